@@ -1,0 +1,26 @@
+#pragma once
+// Exact curves of the discrete noise models: Allan variance, generalised covariance of the phase, spectrum.
+// (declared here, formulas and sources in noise_curves.cpp; shared/reference/accuracy.md 1)
+
+#include "libchar/core/noise_terms.hpp"
+
+namespace libchar {
+
+/// Allan variance of unit coefficient (theta_term = 1) at averaging factor m >= 1, tau = m dt.
+double unit_allan_variance(Term term, double m, double dt_s);
+
+/// Sum over the terms of theta * unit_allan_variance.
+double allan_variance(const Mixture& theta, double m, double dt_s);
+
+/// Asymptotes as plotted: Q^2/tau, (2 ln2/pi) B^2, K^2 tau/3, 3 Qz^2/tau^2, R^2 tau^2/2 for unit coefficient.
+double allan_asymptote(Term term, double tau_s);
+
+/// Two-sided density S(f) of unit coefficient for samples at 1/dt, 0 < f <= 1/(2 dt) (exact discrete form:
+/// 1, 1/(2π·dt)… with 2 sin(π f dt) in place of 2π f dt). The ramp has none: 0.
+double unit_spectrum(Term term, double frequency_hz, double dt_s);
+double spectrum(const Mixture& theta, double frequency_hz, double dt_s);
+
+/// Continuous asymptotes: 1, 1/(2π f), 1/(2π f)^2, (2π f)^2 dt for unit theta, two-sided.
+double spectrum_asymptote(Term term, double frequency_hz, double dt_s);
+
+}  // namespace libchar

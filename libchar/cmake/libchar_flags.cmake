@@ -1,0 +1,33 @@
+# Flags shared by every target of this project, as one interface target that is never installed.
+add_library(libchar_flags INTERFACE)
+target_compile_features(libchar_flags INTERFACE cxx_std_20)
+# -ffp-contract=off: the same bits with and without fused multiply-add. -ffast-math is banned (NaN marks a missing sample).
+target_compile_options(
+  libchar_flags
+  INTERFACE -ffp-contract=off
+            -Wall
+            -Wextra
+            -Wpedantic
+            -Wshadow
+            -Wconversion
+            -Wno-sign-conversion
+            -Wno-restrict # GCC 12 warns falsely inside std::string (GCC bug 105329)
+            -Wdouble-promotion
+            -Wold-style-cast
+            -Wnon-virtual-dtor
+            -Woverloaded-virtual
+            $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond
+            -Wlogical-op>)
+if(LIBCHAR_WERROR)
+  target_compile_options(libchar_flags INTERFACE -Werror)
+endif()
+if(LIBCHAR_SANITIZE)
+  set(sanitizers address,undefined,float-cast-overflow)
+  target_compile_options(libchar_flags INTERFACE -fsanitize=${sanitizers} -fno-sanitize-recover=all
+                                                 -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS)
+  target_link_options(libchar_flags INTERFACE -fsanitize=${sanitizers})
+endif()
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()

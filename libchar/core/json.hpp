@@ -1,0 +1,20 @@
+#pragma once
+// JSON at the borders: nlohmann's type, with the guards it lacks.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace libchar {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses one JSON document strictly: no duplicate keys, no NaN or Infinity, numbers that fit a double, depth <= 64, valid
+/// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
+Json parse_json(std::string_view text, const std::string& file);
+
+/// The document as text, doubles in shortest round-trip form, two-space indent, newline at the end. Strings that are not
+/// UTF-8 are escaped by `printable`. A NaN or infinity in the document is a programmer's mistake and throws.
+std::string dump_json(const Json& document);
+
+}  // namespace libchar

@@ -1,0 +1,42 @@
+#pragma once
+// Mean, variance, skewness, kurtosis, extremes of a stream of samples; NaN is skipped and counted.
+
+#include <cstdint>
+#include <span>
+
+namespace libchar {
+
+/// Central moments merged block by block: within a block of 4096 samples, sums about the block's mean; between blocks
+///   M2 = M2a + M2b + d^2 na nb / n,   d = mean_b - mean_a      (Chan, Golub & LeVeque 1979; Pébay 2008 for M3, M4)
+/// so that an offset of 1e9 standard deviations costs nothing. Results depend on the sequence only, not on how it is pushed.
+class Moments {
+ public:
+  void push(std::span<const double> samples);
+
+  std::uint64_t count() const;    ///< samples that are not NaN
+  std::uint64_t missing() const;  ///< NaN
+  double mean() const;            ///< 0 when there is no sample
+  double variance() const;        ///< divided by n - 1; 0 when n < 2
+  double standard_deviation() const;
+  double skewness() const;         ///< 0 for constant data
+  double kurtosis() const;         ///< 3 for a Gaussian; 0 for constant data
+  double minimum() const;          ///< +inf when there is no sample
+  double maximum() const;          ///< -inf when there is no sample
+
+ private:
+  static constexpr int kBlock = 4096;
+  struct Central {
+    double n = 0, mean = 0, m2 = 0, m3 = 0, m4 = 0;
+  };
+  static Central of_block(const double* x, int n);
+  static Central merged(const Central& a, const Central& b);
+  Central total() const;
+
+  Central done_;
+  double pending_[kBlock];
+  int pending_count_ = 0;
+  std::uint64_t missing_ = 0;
+  double minimum_ = __builtin_inf(), maximum_ = -__builtin_inf();
+};
+
+}  // namespace libchar

@@ -1,0 +1,27 @@
+#pragma once
+// The five noise terms of design.md 2, by index, name and letter; and a mixture of them.
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace libchar {
+
+enum class Term : std::size_t { white = 0, flicker = 1, walk = 2, quantization = 3, ramp = 4 };
+inline constexpr std::size_t kTerms = 5;
+
+struct TermName {
+  std::string_view key;       ///< in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
+  std::string_view letter;    ///< in text for people, beside the long name: Q, B, K, Qz, R
+  std::string_view ieee;      ///< IEEE 952 letter: N, B, K, Q, R
+};
+inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "Q", "N"},
+                                                             {"bias_instability", "B", "B"},
+                                                             {"random_walk", "K", "K"},
+                                                             {"quantization", "Qz", "Q"},
+                                                             {"rate_ramp", "R", "R"}}};
+
+/// Squared coefficients theta = (Q^2, B^2, K^2, Qz^2, R^2), each >= 0; every curve is linear in them.
+using Mixture = std::array<double, kTerms>;
+
+}  // namespace libchar

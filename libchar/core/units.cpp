@@ -1,0 +1,170 @@
+#include "libchar/core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kGravity = 9.80665;  // standard gravity, m/s^2 (CGPM 1901)
+
+struct Row {
+  const char* symbol;
+  Quantity quantity;
+  double to_si;
+  const char* spellings;  // separated by '|', in the normal form of `normal`
+};
+
+const std::array kUnits = {
+    Row{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
+    Row{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
+    Row{"deg/s", Quantity::angular_rate, kDegree, "deg/s|°/s|dps|degs-1|deg/sec|degree/s|degrees/s|degs^-1"},
+    Row{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
+    Row{"deg/h", Quantity::angular_rate, kDegree / 3600, "deg/h|°/h|dph|deg/hr|degh^-1"},
+    Row{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
+    Row{"m/s²", Quantity::acceleration, 1, "m/s²|m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
+    Row{"mm/s²", Quantity::acceleration, 1e-3, "mm/s²|mm/s2|mm/s^2"},
+    Row{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
+    Row{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
+    Row{"µg", Quantity::acceleration, 1e-6 * kGravity, "µg|ug|μg"},
+    Row{"Gal", Quantity::acceleration, 1e-2, "gal|cm/s²|cm/s2|cm/s^2"},
+    Row{"T", Quantity::magnetic_field, 1, "t|tesla"},
+    Row{"mT", Quantity::magnetic_field, 1e-3, "mt"},
+    Row{"µT", Quantity::magnetic_field, 1e-6, "µt|ut|μt|utesla"},
+    Row{"nT", Quantity::magnetic_field, 1e-9, "nt"},
+    Row{"Gauss", Quantity::magnetic_field, 1e-4, "gauss|gs"},
+    Row{"mGauss", Quantity::magnetic_field, 1e-7, "mgauss|mgs"},
+    Row{"Pa", Quantity::pressure, 1, "pa"},
+    Row{"hPa", Quantity::pressure, 100, "hpa|mbar"},
+    Row{"kPa", Quantity::pressure, 1000, "kpa"},
+    Row{"bar", Quantity::pressure, 1e5, "bar"},
+    Row{"°C", Quantity::temperature, 1, "°c|degc|celsius|c|degreesc|deg_c"},
+    Row{"K", Quantity::temperature, 1, "k|kelvin"},
+    Row{"°F", Quantity::temperature, 5.0 / 9, "°f|degf|fahrenheit"},
+    Row{"V", Quantity::voltage, 1, "v|volt|volts"},
+    Row{"mV", Quantity::voltage, 1e-3, "mv"},
+    Row{"µV", Quantity::voltage, 1e-6, "µv|uv|μv"},
+    Row{"deg", Quantity::angle, kDegree, "deg|°|degree|degrees"},
+    Row{"rad", Quantity::angle, 1, "rad"},
+    Row{"s", Quantity::time, 1, "s|sec|second|seconds"},
+    Row{"ms", Quantity::time, 1e-3, "ms|msec|milliseconds"},
+    Row{"µs", Quantity::time, 1e-6, "us|µs|μs|usec|microseconds"},
+    Row{"ns", Quantity::time, 1e-9, "ns|nsec|nanoseconds"},
+    Row{"min", Quantity::time, 60, "min|minutes"},
+    Row{"h", Quantity::time, 3600, "h|hr|hour|hours"},
+    Row{"Hz", Quantity::frequency, 1, "hz"},
+    Row{"kHz", Quantity::frequency, 1e3, "khz"},
+    Row{"MHz", Quantity::frequency, 1e6, "mhz"},
+    Row{"ppm", Quantity::concentration, 1e-6, "ppm"},
+    Row{"ppb", Quantity::concentration, 1e-9, "ppb"},
+    Row{"µg/m³", Quantity::concentration, 1, "µg/m³|ug/m3|μg/m³|ug/m^3"},
+    Row{"%", Quantity::ratio, 1e-2, "%|percent|%rh"},
+    Row{"1", Quantity::ratio, 1, "1|-|none"},
+};
+
+// Lower case, blanks, '*' and '·' dropped: "rad s^-1" and "Rad·s^-1" are the same.
+std::string normal(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == ' ' || c == '*') continue;
+    if (text.substr(i, 2) == "·") {
+      ++i;
+      continue;
+    }
+    out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return out;
+}
+
+bool listed(std::string_view spellings, std::string_view wanted) {
+  while (!spellings.empty()) {
+    const std::size_t bar = spellings.find('|');
+    if (spellings.substr(0, bar) == wanted) return true;
+    if (bar == std::string_view::npos) return false;
+    spellings.remove_prefix(bar + 1);
+  }
+  return false;
+}
+
+// "1/16.4 deg/s", "0.05 deg/s": a factor, a blank, a unit.
+std::optional<Unit> with_factor(std::string_view text) {
+  const std::size_t blank = text.find(' ');
+  if (blank == std::string_view::npos || blank == 0) return std::nullopt;
+  const std::string_view front = text.substr(0, blank);
+  const std::size_t slash = front.find('/');
+  const auto numerator = parse_double(front.substr(0, slash));
+  const auto denominator = slash == std::string_view::npos ? std::optional(1.0) : parse_double(front.substr(slash + 1));
+  if (!numerator || !denominator || *denominator == 0 || *numerator == 0) return std::nullopt;
+  auto unit = find_unit(text.substr(blank + 1));
+  if (!unit) return std::nullopt;
+  unit->to_si *= *numerator / *denominator;
+  unit->symbol = std::string(front) + " " + unit->symbol;
+  return unit;
+}
+
+}  // namespace
+
+std::optional<Unit> find_unit(std::string_view text) {
+  const std::string wanted = normal(text);
+  if (wanted.empty()) return std::nullopt;
+  // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a lone
+  // capital G is refused because half the field means gauss by it and the other half gravity.
+  if (text == "G" || text == "M" || text == "t") return std::nullopt;
+  for (const Row& row : kUnits)
+    if (listed(row.spellings, wanted)) return Unit{row.symbol, row.quantity, row.to_si};
+  return with_factor(text);
+}
+
+std::vector<HabitualValue> habitual_units(std::string_view term, std::string_view unit_text) {
+  const auto unit = find_unit(unit_text);
+  if (!unit) return {};
+  const double si = unit->to_si;
+  const double root2 = std::numbers::sqrt2, hour = 3600, root_hour = 60;
+  if (unit->quantity == Quantity::angular_rate) {
+    const double deg = si / kDegree;  // channel unit -> deg/s
+    if (term == "white_noise")
+      return {{deg * root_hour, "deg/√h", "angle random walk"},
+              {deg * root2, "deg/s/√Hz", "noise density, one-sided"},
+              {si, "rad/s/√Hz", "noise density, two-sided (Kalibr and kin)"}};
+    if (term == "bias_instability")
+      return {{deg * hour, "deg/h", "bias instability B"}, {deg * hour * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), "deg/h", "flicker floor 0.664·B"}};
+    if (term == "random_walk")
+      return {{deg * hour * root_hour, "deg/h/√h", "rate random walk"}, {si, "rad/s²/√Hz", "bias random walk (Kalibr and kin)"}};
+    if (term == "quantization") return {{deg * hour, "arcsec", "quantization (angle)"}};
+    if (term == "rate_ramp") return {{deg * hour * hour, "deg/h/h", "rate ramp"}};
+  }
+  if (unit->quantity == Quantity::acceleration) {
+    const double g = si / kGravity;
+    if (term == "white_noise")
+      return {{si * root_hour, "m/s/√h", "velocity random walk"},
+              {g * 1e6 * root2, "µg/√Hz", "noise density, one-sided"},
+              {si, "m/s²/√Hz", "noise density, two-sided (Kalibr and kin)"}};
+    if (term == "bias_instability")
+      return {{g * 1e6, "µg", "bias instability B"}, {g * 1e6 * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), "µg", "flicker floor 0.664·B"}};
+    if (term == "random_walk") return {{g * 1e6 * root_hour, "µg/√h", "acceleration random walk"}, {si, "m/s³/√Hz", "bias random walk (Kalibr and kin)"}};
+    if (term == "quantization") return {{si, "m/s", "quantization (velocity)"}};
+    if (term == "rate_ramp") return {{g * 1e6 * hour, "µg/h", "acceleration ramp"}};
+  }
+  if (term == "white_noise") return {{root2, unit->symbol + "/√Hz", "noise density, one-sided"}};
+  if (term == "bias_instability") return {{std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), unit->symbol, "flicker floor 0.664·B"}};
+  return {};
+}
+
+std::string term_unit(std::string_view term, std::string_view unit) {
+  const std::string u(unit.empty() ? "U" : unit);
+  if (term == "white_noise") return u + "·√s";
+  if (term == "random_walk") return u + "/√s";
+  if (term == "quantization") return u + "·s";
+  if (term == "rate_ramp") return u + "/s";
+  return u;
+}
+
+}  // namespace libchar

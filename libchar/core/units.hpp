@@ -1,0 +1,37 @@
+#pragma once
+// Units of sensor channels: what a unit text means, and the units in which each field quotes noise.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+enum class Quantity { angular_rate, acceleration, magnetic_field, pressure, temperature, voltage, angle, time, frequency, concentration, ratio };
+
+struct Unit {
+  std::string symbol;  ///< canonical spelling, e.g. "deg/s"
+  Quantity quantity = Quantity::ratio;
+  double to_si = 1;  ///< multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
+};
+
+/// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as people write
+/// them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
+std::optional<Unit> find_unit(std::string_view text);
+
+/// A value of one noise term expressed as the field says it.
+struct HabitualValue {
+  double factor = 1;   ///< multiply the coefficient in the channel's own unit by this
+  std::string symbol;  ///< "deg/√h", "µg/√Hz", "deg/h"…
+  std::string name;    ///< "angle random walk", "bias instability", "noise density (one-sided)"…
+};
+
+/// The habitual units of a term ("white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp") for a channel
+/// in `unit`; empty when the unit is unknown or the field has no habit.
+std::vector<HabitualValue> habitual_units(std::string_view term, std::string_view unit);
+
+/// Unit text of a term's coefficient for a channel unit U: "U·√s" or "U/√Hz" for white noise, U, "U/√s", "U·s", "U/s".
+std::string term_unit(std::string_view term, std::string_view unit);
+
+}  // namespace libchar

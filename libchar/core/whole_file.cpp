@@ -1,0 +1,148 @@
+#include "libchar/core/whole_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kBuffer = std::size_t{1} << 18;
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+}
+
+bool exists(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
+}
+
+// A device or pipe (/dev/stdout, /dev/full) cannot be replaced by renaming: it is written through.
+bool is_special(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+}  // namespace
+
+void WholeFile::fail(std::string_view doing) const {
+  throw Error({ErrorKind::output, "E0501", path_, fmt::format("cannot {}: {}", doing, std::strerror(errno)), "", ""});
+}
+
+WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
+  if (is_special(path_)) {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail("open for writing");
+    return;
+  }
+  struct stat status {};
+  if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
+    throw Error({ErrorKind::output, "E0502", path_, "is a folder, a file was expected", "", "name a file inside it"});
+  if (!overwrite_ && exists(path_))
+    throw Error({ErrorKind::output, "E0503", path_, "exists already and is left as it is", "", "choose another name or pass --force"});
+  // A file without a name vanishes with the process, however that ends; not every file system offers it.
+  descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
+    temporary_ = fmt::format("{}.tmp-{}-{}", path_, ::getpid(), attempt);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) break;
+  }
+  if (descriptor_ < 0) {
+    temporary_.clear();
+    fail("create a file in this folder");
+  }
+}
+
+WholeFile::WholeFile(WholeFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      overwrite_(other.overwrite_) {}
+
+WholeFile::~WholeFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void WholeFile::write(std::string_view bytes) {
+  buffer_.append(bytes);
+  if (buffer_.size() >= kBuffer) flush();
+}
+
+void WholeFile::flush() {
+  for (std::size_t done = 0; done < buffer_.size();) {
+    const ssize_t n = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail("write");
+    done += static_cast<std::size_t>(n);
+  }
+  buffer_.clear();
+}
+
+void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
+  flush();
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail("write");
+    done += static_cast<std::size_t>(n);
+  }
+}
+
+void WholeFile::commit() {
+  flush();
+  if (is_special(path_)) {
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
+    return;
+  }
+  if (::fsync(descriptor_) != 0) fail("flush to disk");
+  if (temporary_.empty()) {  // give the nameless file a temporary name first: linkat cannot replace
+    const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      const std::string name = fmt::format("{}.tmp-{}-{}", path_, ::getpid(), attempt);
+      if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+        temporary_ = name;
+        break;
+      }
+      if (errno != EEXIST) fail("name the finished file");
+    }
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
+  if (!overwrite_ && exists(path_)) {
+    errno = EEXIST;
+    fail("take its name");
+  }
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
+  temporary_.clear();
+  const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) {  // best effort: not every file system lets a folder be synchronised
+    ::fsync(folder);
+    ::close(folder);
+  }
+}
+
+void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite) {
+  WholeFile file(path, overwrite);
+  file.write(bytes);
+  file.commit();
+}
+
+void refuse_same_file(const std::string& input, const std::string& output) {
+  struct stat a {}, b {};
+  if (::stat(input.c_str(), &a) != 0 || ::stat(output.c_str(), &b) != 0) return;
+  if (a.st_dev == b.st_dev && a.st_ino == b.st_ino && S_ISREG(a.st_mode))
+    throw Error({ErrorKind::output, "E0504", output, "is the input itself; an input is never overwritten", "", "choose another name"});
+}
+
+}  // namespace libchar

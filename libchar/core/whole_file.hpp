@@ -1,0 +1,43 @@
+#pragma once
+// Output files are whole or absent: written under no name (or a temporary one) in the target's folder, flushed to disk and
+// given their name only by commit().
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+class WholeFile {
+ public:
+  /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false, or when the folder cannot be written.
+  explicit WholeFile(std::string path, bool overwrite = false);
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+  WholeFile(WholeFile&& other) noexcept;
+  /// Discards everything unless commit() was called.
+  ~WholeFile();
+
+  void write(std::string_view bytes);
+  void write(const void* data, std::size_t size) { write({static_cast<const char*>(data), size}); }
+  /// Replaces `size` bytes at `offset`, all of which were written before (for headers that hold a count).
+  void rewrite(std::size_t offset, std::string_view bytes);
+  /// fsync, rename, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
+  void commit();
+  const std::string& path() const { return path_; }
+
+ private:
+  void flush();
+  [[noreturn]] void fail(std::string_view doing) const;
+  std::string path_, temporary_, buffer_;
+  int descriptor_ = -1;
+  bool overwrite_ = false;
+};
+
+/// One call for small files.
+void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite = false);
+
+/// Throws Error(output) when two paths name the same existing file (an input is never overwritten).
+void refuse_same_file(const std::string& input, const std::string& output);
+
+}  // namespace libchar

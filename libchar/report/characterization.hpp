@@ -1,0 +1,48 @@
+#pragma once
+// The main job: one pass over a log, curves, fit, and everything a report needs to show.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/json.hpp"
+#include "libchar/core/progress.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/log/quality.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+
+namespace libchar {
+
+struct CharacterizeOptions {
+  ReadOptions reading;
+  AllanOptions allan;
+  WelchOptions spectrum;
+  FitOptions fit;
+  std::uint64_t memory_bytes = std::uint64_t{1} << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
+  bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
+};
+
+struct ChannelResult {
+  Channel channel;
+  ChannelQuality quality;
+  AllanCurve allan;                 ///< with intervals for the fitted mixture; no points when the record is too short
+  Spectrum spectrum;                ///< log-binned for plots and curves.csv, at most 400 bins
+  std::vector<SpectralLine> lines;
+  std::optional<NoiseFit> fit;
+  std::vector<std::string> problems;  ///< why something is absent, in sentences
+};
+
+struct Characterization {
+  LogInfo log;
+  std::vector<ChannelResult> channels;
+  Json settings;                     ///< effective settings, for provenance
+  std::vector<std::string> command;  ///< as typed
+  double seconds = 0;                ///< measured; kept apart from everything else in the outputs
+};
+
+/// Reads the log once (a second time only when a remedy asks for it) and computes what the report shows.
+Characterization characterize(const std::string& path, const CharacterizeOptions& options, Progress& progress = no_progress());
+
+}  // namespace libchar

@@ -1,0 +1,27 @@
+#pragma once
+// The files of a characterization, as text: whoever calls writes them (whole_file.hpp).
+
+#include <string>
+
+#include "libchar/report/characterization.hpp"
+
+namespace libchar {
+
+/// One self-contained page: no network, opens from disk. The same bytes for the same characterization.
+std::string html_report(const Characterization& result);
+
+/// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (design.md 6.3).
+Json json_report(const Characterization& result);
+
+/// Allan and spectrum curves of all channels in one table: curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model.
+std::string csv_curves(const Characterization& result);
+
+/// The pieces of JSON that the verbs share (keys of design.md 6.3).
+Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
+Json spectrum_json(const std::vector<Channel>& channels, const std::vector<Spectrum>& spectra);
+Json fit_json(const std::vector<Channel>& channels, const std::vector<NoiseFit>& fits);
+Json inspect_json(const std::vector<LogInfo>& logs, const std::vector<std::vector<ChannelQuality>>& qualities);
+/// tool, command, input (path, sha256, bytes), warnings: the frame around every document.
+void add_provenance(Json& document, const std::vector<std::string>& command, const std::vector<LogInfo>& logs);
+
+}  // namespace libchar

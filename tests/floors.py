@@ -1,0 +1,23 @@
+"""Fails on any #include that looks up: the order of the floors lives here and nowhere else."""
+import pathlib
+import re
+import sys
+
+ORDER = {"core": 0, "log": 1, "allan": 1, "spectrum": 1, "fit": 2, "model": 3, "simulate": 4, "fusion": 1, "replay": 5, "report": 6}
+# Floors of one rank do not know each other.
+# Libraries that are kept to their floors (design.md 7).
+KEPT = {"fftw3.h": {"spectrum"}, "ceres/": {"fit", "fusion"}, "CLI/": set()}
+
+root = pathlib.Path(sys.argv[1])
+faults = []
+for path in sorted((root / "libchar").rglob("*.[ch]pp")):
+    floor = path.relative_to(root / "libchar").parts[0]
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        own = re.match(r'\s*#include "libchar/(\w+)/', line)
+        if own and own[1] != floor and ORDER[own[1]] >= ORDER[floor]:
+            faults.append(f"{path}:{number}: {floor} includes {own[1]}, which is not below it")
+        for library, floors in KEPT.items():
+            if re.match(rf"\s*#include <{re.escape(library)}", line) and floor not in floors:
+                faults.append(f"{path}:{number}: {library} is not to be used in {floor}")
+print("\n".join(faults) or "floors: every include looks down")
+sys.exit(bool(faults))

@@ -1,0 +1,50 @@
+#pragma once
+// Paths of the known answers and recordings that live beside the checkout (never inside it, for their licences).
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include <stdlib.h>
+
+namespace test {
+
+inline std::filesystem::path shared(const std::string& name) { return std::filesystem::path(LIBCHAR_SHARED_DIR) / name; }
+inline std::filesystem::path fixture(const std::string& name) { return std::filesystem::path(LIBCHAR_FIXTURES_DIR) / name; }
+
+inline std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A fresh folder under the system's temporary directory, removed with its contents at the end of the scope.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "libchar-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder");
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::filesystem::path path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace test
+
+/// First line of a test that reads the shared folder: without it the test says so and ends (a clone without the folder).
+#define NEEDS_SHARED(name)                                             \
+  if (!std::filesystem::exists(test::shared(name))) {                  \
+    WARN("skipped: " << test::shared(name).string() << " is absent");  \
+    return;                                                            \
+  }
