@@ -6,10 +6,11 @@
 
 #include "libchar/log/plain_rows.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -84,11 +85,12 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline Field read
   const __m128i digit = _mm_sub_epi8(raw, _mm_set1_epi8('0'));
   const auto is_digit = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, _mm_set1_epi8(9)), digit)));
   Field field;
-  field.plain = (length <= 16) & (((is_digit | points) & inside) == inside) & ((points & (points - 1)) == 0) & ((is_digit & inside) != 0);
-  const std::uint32_t capped = length <= 16 ? length : 16;
-  const std::uint32_t point = _tzcnt_u32(points | (std::uint32_t{1} << capped));
-  field.behind = capped - point - static_cast<std::uint32_t>(points != 0);
-  const __m128i packed = _mm_shuffle_epi8(digit, _mm_load_si128(reinterpret_cast<const __m128i*>(kGather.index[point][capped])));
+  // Branches that are never taken in a plain file are cheaper than one flag put together from four.
+  if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside || (points & (points - 1)) != 0 || (is_digit & inside) == 0, 0)) return field;
+  field.plain = true;
+  const std::uint32_t point = _tzcnt_u32(points | (std::uint32_t{1} << length));
+  field.behind = length - point - static_cast<std::uint32_t>(points != 0);
+  const __m128i packed = _mm_shuffle_epi8(digit, _mm_load_si128(reinterpret_cast<const __m128i*>(kGather.index[point][length])));
   const __m128i pairs = _mm_maddubs_epi16(packed, _mm_setr_epi8(10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1));
   const __m128i fours = _mm_madd_epi16(pairs, _mm_setr_epi16(100, 1, 100, 1, 100, 1, 100, 1));
   const __m128i words = _mm_packus_epi32(fours, fours);
@@ -98,66 +100,111 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline Field read
   return field;
 }
 
+// What the slow parsers give back by value: an address of a local would keep the fast path's variables in memory.
+template <class T>
+struct Slow {
+  T value{};
+  bool good = false;
+};
+
 // Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite".
-bool read_value_slowly(const char* begin, const char* end, double& value) {
-  const auto [stop, status] = std::from_chars(begin, end, value);
-  return status == std::errc() && stop == end && std::isfinite(value);
+__attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
+  Slow<double> out;
+  const auto [stop, status] = std::from_chars(begin, end, out.value);
+  out.good = status == std::errc() && stop == end && std::isfinite(out.value);
+  return out;
 }
 
-bool read_stamp_slowly(const char* begin, const char* end, int stamp_digits, std::int64_t& stamp) {
-  if (stamp_digits != 0) return false;
-  const auto [stop, status] = std::from_chars(begin, end, stamp);
-  return status == std::errc() && stop == end;
+__attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin, const char* end, int stamp_digits) {
+  Slow<std::int64_t> out;
+  if (stamp_digits != 0) return out;
+  const auto [stop, status] = std::from_chars(begin, end, out.value);
+  out.good = status == std::errc() && stop == end;
+  return out;
 }
 
-__attribute__((target("avx2,bmi,bmi2,popcnt"))) PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
+/// The fields of one column over consecutive rows: field r lies between the separators at stops[r * width - 1] (the byte before
+/// the text for the very first) and stops[r * width].
+struct Column {
+  const char* text;
+  const std::uint32_t* stops;
+  std::size_t width, index;
+  char separator;  // that must stand behind the field
+
+  std::size_t begin(std::size_t row) const {
+    const std::size_t field = row * width + index;
+    return field == 0 ? 0 : stops[field - 1] + std::size_t{1};
+  }
+  std::size_t stop(std::size_t row) const { return stops[row * width + index]; }
+};
+
+/// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the first row that it refuses.
+template <class Take>
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last, Take take) {
+  for (std::size_t row = first; row < last; ++row) {
+    const std::size_t from = column.begin(row);
+    std::size_t to = column.stop(row);
+    if (column.text[to] != column.separator) return row;
+    if (column.separator == '\n') to -= static_cast<std::size_t>(to > from && column.text[to - 1] == '\r');
+    const char* const begin = column.text + from;
+    const char* const end = column.text + to;
+    // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
+    const std::uint32_t negative = ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
+    if (!take(row, begin, end, negative, read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative))) return row;
+  }
+  return last;
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Column& column, std::size_t first, std::size_t last, double* values) {
+  return take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
+      const Slow<double> slow = read_value_slowly(begin, end);
+      values[row] = slow.value;
+      return slow.good;
+    }
+    const double magnitude = static_cast<double>(field.digits) / kPowers[field.behind];
+    values[row] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (std::uint64_t{negative} << 63U));
+    return true;
+  });
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last, const PlainColumn& to) {
+  return take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    const int shift = to.stamp_digits - static_cast<int>(field.behind);
+    if (__builtin_expect(field.plain && shift >= 0, 1))
+      return !__builtin_mul_overflow(negative ? -field.digits : field.digits, kIntegerPowers[static_cast<std::size_t>(shift)], &to.stamps[row]);
+    const Slow<std::int64_t> slow = read_stamp_slowly(begin, end, to.stamp_digits);
+    to.stamps[row] = slow.value;
+    return slow.good;
+  });
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t check_fields(const Column& column, std::size_t first, std::size_t last) {
+  return take_column(column, first, last, [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    return field.plain || read_value_slowly(begin, end).good;
+  });
+}
+
+constexpr std::size_t kBatch = 128;  // rows read column by column while their text is in the first-level cache
+
+PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
   const std::size_t width = columns.size();
-  const std::size_t separators = find_separators(text, delimiter, scratch);
-  const std::size_t rows = std::min(max_rows, separators / width);
-  const std::uint32_t* stop_of = scratch.data();
-  PlainRows result;
-  std::uint32_t start = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    bool good = true;
+  const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, scratch) / width);
+  std::size_t good = 0;
+  for (std::size_t first = 0; first < rows; first = good) {
+    good = std::min(rows, first + kBatch);
+    const std::size_t whole = good;
     for (std::size_t c = 0; c < width; ++c) {
-      std::uint32_t stop = *stop_of++;
-      const char* begin = text.data() + start;
-      start = stop + 1;
-      const bool last = c + 1 == width;
-      good &= text[stop] == (last ? '\n' : delimiter);
-      stop -= static_cast<std::uint32_t>(last && stop != 0 && text[stop - 1] == '\r');
-      const char* end = text.data() + stop;
-      const PlainColumn& column = columns[c];
-      // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
-      const std::uint32_t negative = ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
-      const auto length = static_cast<std::uint32_t>(end - begin) - negative;
-      const Field field = read_field(begin + negative, length);
-      if (column.use == PlainColumn::Use::value) {
-        double value = static_cast<double>(field.digits) / kPowers[field.behind];
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &value, sizeof bits);
-        bits |= std::uint64_t{negative} << 63U;
-        std::memcpy(&value, &bits, sizeof bits);
-        if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) good = good && read_value_slowly(begin, end, value);
-        column.values[row] = value;
-      } else if (column.use == PlainColumn::Use::stamp) {
-        std::int64_t stamp = 0;
-        const int shift = column.stamp_digits - static_cast<int>(field.behind);
-        if (__builtin_expect(field.plain && shift >= 0, 1)) {
-          good &= !__builtin_mul_overflow(negative ? -field.digits : field.digits, kIntegerPowers[static_cast<std::size_t>(shift)], &stamp);
-        } else {
-          good = good && read_stamp_slowly(begin, end, column.stamp_digits, stamp);
-        }
-        column.stamps[row] = stamp;
-      } else {
-        good &= field.plain;
+      const Column column{text.data(), scratch.data(), width, c, c + 1 == width ? '\n' : delimiter};
+      switch (columns[c].use) {
+        case PlainColumn::Use::value: good = take_values(column, first, good, columns[c].values); break;
+        case PlainColumn::Use::stamp: good = take_stamps(column, first, good, columns[c]); break;
+        case PlainColumn::Use::skip: good = check_fields(column, first, good); break;
       }
     }
-    if (!good) return result;
-    ++result.rows;
-    result.consumed = start;
+    if (good != whole) break;
   }
-  return result;
+  return {good, good == 0 ? 0 : scratch[good * width - 1] + std::size_t{1}};
 }
 
 }  // namespace
