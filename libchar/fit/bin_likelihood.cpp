@@ -16,13 +16,19 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   if (!(largest > 0) || !std::isfinite(largest)) {
-    throw Error({ErrorKind::numeric, "", "", "the record is constant or not finite: there is no noise to fit", "", ""});
+    throw Error({ErrorKind::numeric,
+                 "",
+                 "",
+                 "the record is constant or not finite: there is no noise to fit",
+                 "",
+                 ""});
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];
     problem.energy[j] = std::max(bin.energy, 1e-40 * largest);  // an exact zero has no logarithm
     problem.dof[j] = bin.dof;
-    for (std::size_t i = 0; i < kTerms; ++i) problem.unit(j, static_cast<Eigen::Index>(i)) = bin.unit[i];
+    for (std::size_t i = 0; i < kTerms; ++i)
+      problem.unit(j, static_cast<Eigen::Index>(i)) = bin.unit[i];
   }
   return problem;
 }
@@ -45,7 +51,9 @@ double half_deviance(const BinProblem& problem, const Mixture& theta) {
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
-TermMatrix fisher_information(const BinProblem& problem, const Mixture& theta, const TermSet& terms) {
+TermMatrix fisher_information(const BinProblem& problem,
+                              const Mixture& theta,
+                              const TermSet& terms) {
   const Eigen::ArrayXd model = model_of(problem, theta);
   const Eigen::ArrayXd weight = problem.dof / (2 * model * model);
   TermMatrix information = TermMatrix::Zero();
@@ -53,7 +61,8 @@ TermMatrix fisher_information(const BinProblem& problem, const Mixture& theta, c
     for (std::size_t b = 0; b <= a; ++b) {
       if (!terms[a] || !terms[b]) continue;
       const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-      information(i, j) = information(j, i) = (weight * problem.unit.col(i) * problem.unit.col(j)).sum();
+      information(i, j) = information(j, i) =
+          (weight * problem.unit.col(i) * problem.unit.col(j)).sum();
     }
   }
   return information;
@@ -69,7 +78,8 @@ TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms) {
   Eigen::VectorXd scale(n);
   for (Eigen::Index a = 0; a < n; ++a) scale[a] = 1 / std::sqrt(information(in[a], in[a]));
   for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < n; ++b) block(a, b) = information(in[a], in[b]) * scale[a] * scale[b];
+    for (Eigen::Index b = 0; b < n; ++b)
+      block(a, b) = information(in[a], in[b]) * scale[a] * scale[b];
   }
   const Eigen::MatrixXd inverse = block.llt().solve(Eigen::MatrixXd::Identity(n, n));
   TermMatrix result = TermMatrix::Zero();

@@ -1,6 +1,7 @@
 #pragma once
 // The likelihood of power bins: independent gamma variables whose means are linear in theta.
-//   half deviance  D(theta) = sum_j nu_j/2 (u_j - 1 - ln u_j),  u_j = measured_j / mu_j,  mu = A theta,  -ln L = D + const
+//   half deviance  D(theta) = sum_j nu_j/2 (u_j - 1 - ln u_j),  u_j = measured_j / mu_j,  mu = A
+//   theta,  -ln L = D + const
 
 #include <Eigen/Core>
 #include <array>
@@ -26,10 +27,14 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins);
 Eigen::ArrayXd model_of(const BinProblem& problem, const Mixture& theta);
 double half_deviance(const BinProblem& problem, const Mixture& theta);
 
-/// Expected information of theta at theta, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows).
-TermMatrix fisher_information(const BinProblem& problem, const Mixture& theta, const TermSet& terms);
+/// Expected information of theta at theta, 1/2 sum nu a a' / mu^2, for the terms of the set
+/// (others: zero rows).
+TermMatrix fisher_information(const BinProblem& problem,
+                              const Mixture& theta,
+                              const TermSet& terms);
 
-/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are scaled first.
+/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are
+/// scaled first.
 TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms);
 
 /// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`.
@@ -39,7 +44,10 @@ struct ScoringResult {
   int iterations = 0;
   bool converged = false;
 };
-ScoringResult score(const BinProblem& problem, const TermSet& free, const Mixture* start = nullptr, double tolerance = 1e-10);
+ScoringResult score(const BinProblem& problem,
+                    const TermSet& free,
+                    const Mixture* start = nullptr,
+                    double tolerance = 1e-10);
 
 inline TermSet only_positive(const Mixture& theta) {
   TermSet set{};

@@ -1,5 +1,6 @@
-// With p <= 5 unknowns the 2^p - 1 sets of positive unknowns can all be solved: the feasible one of least cost is the minimum.
-// No iteration, hence no tolerance. Columns are scaled to a unit diagonal before the Cholesky factorisation.
+// With p <= 5 unknowns the 2^p - 1 sets of positive unknowns can all be solved: the feasible one of
+// least cost is the minimum. No iteration, hence no tolerance. Columns are scaled to a unit
+// diagonal before the Cholesky factorisation.
 #include "libchar/fit/nonnegative.hpp"
 
 #include <cmath>
@@ -58,7 +59,8 @@ Mixture nonnegative_minimum(const TermMatrix& gram, const Mixture& right, const 
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = b[i] = right[unknown[in[i]]] * scale[in[i]];
       for (std::size_t j = 0; j < n; ++j) {
-        g[i][j] = gram(static_cast<Eigen::Index>(unknown[in[i]]), static_cast<Eigen::Index>(unknown[in[j]])) *
+        g[i][j] = gram(static_cast<Eigen::Index>(unknown[in[i]]),
+                       static_cast<Eigen::Index>(unknown[in[j]])) *
                   scale[in[i]] * scale[in[j]];
       }
     }

@@ -1,9 +1,12 @@
-// Squared DCT-II coefficients as log bins. A record of at most `block` samples: one DCT, k = 1..N-1 (exact). A longer one:
-//   above f_split = 15.5/(2 block dt):  DCT of each block, pooled over blocks, k >= 16, and of the tail;
-//   below f_split:                      DCT of the series of means of block/64 samples over the whole segment.
-// Both levels use their exact expectations (dct_means). Sixteen coefficients of every block are left to the second level, so
-// that neighbouring blocks stay uncorrelated under flicker and walk and the slow noise is seen with the full resolution of the
-// segment; white noise is exactly uncorrelated within each level. Memory: two blocks and 64 means per block.
+// Squared DCT-II coefficients as log bins. A record of at most `block` samples: one DCT, k = 1..N-1
+// (exact). A longer one:
+//   above f_split = 15.5/(2 block dt):  DCT of each block, pooled over blocks, k >= 16, and of the
+//   tail; below f_split:                      DCT of the series of means of block/64 samples over
+//   the whole segment.
+// Both levels use their exact expectations (dct_means). Sixteen coefficients of every block are
+// left to the second level, so that neighbouring blocks stay uncorrelated under flicker and walk
+// and the slow noise is seen with the full resolution of the segment; white noise is exactly
+// uncorrelated within each level. Memory: two blocks and 64 means per block.
 #include <algorithm>
 #include <cmath>
 
@@ -16,12 +19,14 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kLeftToMeans = 16;  ///< coefficients of a block that the series of means covers
+constexpr std::uint64_t kLeftToMeans =
+    16;  ///< coefficients of a block that the series of means covers
 constexpr std::uint64_t kMeansPerBlock = 64;
-constexpr std::uint64_t kSmallest = 8;      ///< shorter segments carry nothing worth their edge effects
+constexpr std::uint64_t kSmallest = 8;  ///< shorter segments carry nothing worth their edge effects
 constexpr std::uint64_t kSingles = 24, kPerOctave = 8;
-constexpr std::uint64_t kExactBelow = 4096;  ///< shorter records get the exact flicker means (accuracy.md 1: 6e-5 beyond)
-constexpr std::uint64_t kLongGap = 4096;     ///< shorter gaps are closed up
+constexpr std::uint64_t kExactBelow =
+    4096;  ///< shorter records get the exact flicker means (accuracy.md 1: 6e-5 beyond)
+constexpr std::uint64_t kLongGap = 4096;  ///< shorter gaps are closed up
 
 /// Mean squared coefficients k = first.. of one transform length, pooled over `pooled` transforms.
 struct Power {
@@ -42,30 +47,38 @@ std::uint64_t next_edge(std::uint64_t k) {
 
 using Unit = std::array<double, kTerms>;
 
-/// Mean of unit(k) over the kept coefficients lo..hi-1; a wide bin without clipped coefficients by Gauss-Legendre over k.
+/// Mean of unit(k) over the kept coefficients lo..hi-1; a wide bin without clipped coefficients by
+/// Gauss-Legendre over k.
 template <typename UnitAt>
-Unit average_unit(std::uint64_t lo, std::uint64_t hi, const std::vector<char>& clipped, std::uint64_t first,
-                  bool smooth, UnitAt&& unit_at) {
-  static constexpr std::array<double, 4> node = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                                 0.9602898564975363};
-  static constexpr std::array<double, 4> weight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                                   0.1012285362903763};
+Unit average_unit(std::uint64_t lo,
+                  std::uint64_t hi,
+                  const std::vector<char>& clipped,
+                  std::uint64_t first,
+                  bool smooth,
+                  UnitAt&& unit_at) {
+  static constexpr std::array<double, 4> node = {
+      0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  static constexpr std::array<double, 4> weight = {
+      0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
   Unit sum{};
   const auto add = [&](double k, double w) {
     const Unit unit = unit_at(k);
     for (std::size_t i = 0; i < kTerms; ++i) sum[i] += w * unit[i];
   };
   if (smooth && hi - lo > 64) {
-    const double middle = 0.5 * static_cast<double>(lo + hi - 1), half = 0.5 * static_cast<double>(hi - lo);
+    const double middle = 0.5 * static_cast<double>(lo + hi - 1),
+                 half = 0.5 * static_cast<double>(hi - lo);
     for (std::size_t i = 0; i < node.size(); ++i) {
-      // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern would bite.
+      // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern
+      // would bite.
       add(middle + half * node[i] + 1e-7, 0.5 * weight[i]);
       add(middle - half * node[i] + 1e-7, 0.5 * weight[i]);
     }
     return sum;
   }
   double kept = 0;
-  for (std::uint64_t k = lo; k < hi; ++k) kept += clipped.empty() || clipped[k - first] == 0 ? 1 : 0;
+  for (std::uint64_t k = lo; k < hi; ++k)
+    kept += clipped.empty() || clipped[k - first] == 0 ? 1 : 0;
   for (std::uint64_t k = lo; k < hi; ++k) {
     if (clipped.empty() || clipped[k - first] == 0) add(static_cast<double>(k), 1 / kept);
   }
@@ -73,9 +86,14 @@ Unit average_unit(std::uint64_t lo, std::uint64_t hi, const std::vector<char>& c
 }
 
 template <typename UnitAt>
-void append_bins(const Power& power, double rate_hz, const std::vector<char>& clipped, bool smooth, UnitAt&& unit_at,
+void append_bins(const Power& power,
+                 double rate_hz,
+                 const std::vector<char>& clipped,
+                 bool smooth,
+                 UnitAt&& unit_at,
                  std::vector<PowerBin>& bins) {
-  const double step_hz = rate_hz / static_cast<double>(power.spacing) / (2 * static_cast<double>(power.length));
+  const double step_hz =
+      rate_hz / static_cast<double>(power.spacing) / (2 * static_cast<double>(power.length));
   const std::uint64_t end = power.first + power.mean.size();
   for (std::uint64_t lo = power.first, hi = 0; lo < end; lo = hi) {
     hi = std::min(end, next_edge(lo));
@@ -91,7 +109,8 @@ void append_bins(const Power& power, double rate_hz, const std::vector<char>& cl
     PowerBin bin;
     bin.low_hz = (static_cast<double>(lo) - 0.5) * step_hz;
     bin.high_hz = (static_cast<double>(hi) - 0.5) * step_hz;
-    bin.frequency_hz = hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
+    bin.frequency_hz =
+        hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
     bin.energy = sum / static_cast<double>(kept);
     bin.dof = static_cast<double>(kept * power.pooled);
     bin.unit = average_unit(lo, hi, clipped, power.first, smooth && kept == hi - lo, unit_at);
@@ -99,17 +118,36 @@ void append_bins(const Power& power, double rate_hz, const std::vector<char>& cl
   }
 }
 
-void append_bins(const Power& power, double rate_hz, const std::vector<char>& clipped, std::vector<PowerBin>& bins) {
+void append_bins(const Power& power,
+                 double rate_hz,
+                 const std::vector<char>& clipped,
+                 std::vector<PowerBin>& bins) {
   const double dt_s = 1 / rate_hz;
   if (power.spacing > 1 || power.length <= kExactBelow) {
     const BlockMeanDct exact(power.length, power.spacing, dt_s);
-    append_bins(power, rate_hz, clipped, false, [&](double k) { return exact.mean(static_cast<std::uint64_t>(k)); }, bins);
+    append_bins(
+        power,
+        rate_hz,
+        clipped,
+        false,
+        [&](double k) { return exact.mean(static_cast<std::uint64_t>(k)); },
+        bins);
   } else {
-    append_bins(power, rate_hz, clipped, true, [&](double k) { return dct_mean(k, power.length, dt_s); }, bins);
+    append_bins(
+        power,
+        rate_hz,
+        clipped,
+        true,
+        [&](double k) { return dct_mean(k, power.length, dt_s); },
+        bins);
   }
 }
 
-Power transform(std::span<const double> points, std::uint64_t spacing, std::uint64_t first, std::uint64_t end, Dct* plan) {
+Power transform(std::span<const double> points,
+                std::uint64_t spacing,
+                std::uint64_t first,
+                std::uint64_t end,
+                Dct* plan) {
   Power power{points.size(), spacing, first, 1, {}};
   std::optional<Dct> own;
   if (plan == nullptr) plan = &own.emplace(points.size());
@@ -127,12 +165,14 @@ struct PowerBinner::State {
   std::vector<double> block_power;   ///< sums of c_k^2 over the whole blocks of all segments
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
-  std::vector<double> means;         ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  double shift = 0, partial = 0;     ///< first sample of the segment; sum of the mean being filled
+  std::vector<double>
+      means;  ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
+  double shift = 0, partial = 0;  ///< first sample of the segment; sum of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
-  std::vector<Power> done;           ///< of finished segments (their tails and series of means)
+  std::vector<Power> done;  ///< of finished segments (their tails and series of means)
 
-  explicit State(std::uint64_t size) : block(size), per_mean(std::max<std::uint64_t>(1, size / kMeansPerBlock)) {
+  explicit State(std::uint64_t size)
+      : block(size), per_mean(std::max<std::uint64_t>(1, size / kMeansPerBlock)) {
     pending.reserve(std::min<std::uint64_t>(block, 1U << 16U));
   }
 
@@ -153,7 +193,8 @@ struct PowerBinner::State {
     }
     ++segment_samples;
     ++samples;
-    // The block is transformed only when a further sample shows that the record is longer than a block.
+    // The block is transformed only when a further sample shows that the record is longer than a
+    // block.
     if (pending.size() > block) flush_block();
   }
 
@@ -182,8 +223,10 @@ struct PowerBinner::State {
     if (tail >= kSmallest && first < tail) {
       powers.push_back(transform(pending, 1, std::max<std::uint64_t>(1, first), tail, nullptr));
     }
-    const auto low = static_cast<std::uint64_t>(split * static_cast<double>(means.size() * per_mean));
-    powers.push_back(transform(means, per_mean, 1, std::min<std::uint64_t>(low + 1, means.size()), nullptr));
+    const auto low =
+        static_cast<std::uint64_t>(split * static_cast<double>(means.size() * per_mean));
+    powers.push_back(
+        transform(means, per_mean, 1, std::min<std::uint64_t>(low + 1, means.size()), nullptr));
     return powers;
   }
 
@@ -212,7 +255,12 @@ struct PowerBinner::State {
 PowerBinner::PowerBinner(std::uint64_t block) {
   // 64 means of at least one sample, of which the lowest quarter of the band is used.
   if (block < kMeansPerBlock) {
-    throw Error({ErrorKind::usage, "", "", "the block of the power binner must have at least 64 samples", std::to_string(block), ""});
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "the block of the power binner must have at least 64 samples",
+                 std::to_string(block),
+                 ""});
   }
   state_ = std::make_unique<State>(block);
 }

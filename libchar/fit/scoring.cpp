@@ -1,6 +1,7 @@
-// Non-negative Fisher scoring. The likelihood is that of gamma variables whose means are linear in theta, so that each scoring
-// step is a weighted linear least-squares problem, theta <- argmin_{theta >= 0} sum nu/(2 mu^2) (x - A theta)^2, solved exactly.
-// Start: weights 1/x^2. A step that does not lower -ln L is halved. Typically 5-15 steps.
+// Non-negative Fisher scoring. The likelihood is that of gamma variables whose means are linear in
+// theta, so that each scoring step is a weighted linear least-squares problem, theta <-
+// argmin_{theta >= 0} sum nu/(2 mu^2) (x - A theta)^2, solved exactly. Start: weights 1/x^2. A step
+// that does not lower -ln L is halved. Typically 5-15 steps.
 #include <cmath>
 #include <limits>
 
@@ -11,7 +12,10 @@
 namespace libchar {
 namespace {
 
-Mixture weighted_solution(const BinProblem& problem, const TermSet& free, const Eigen::ArrayXd& weight, const Eigen::ArrayXd& target) {
+Mixture weighted_solution(const BinProblem& problem,
+                          const TermSet& free,
+                          const Eigen::ArrayXd& weight,
+                          const Eigen::ArrayXd& target) {
   TermMatrix gram = TermMatrix::Zero();
   Mixture right{};
   for (std::size_t a = 0; a < kTerms; ++a) {
@@ -41,7 +45,10 @@ Mixture between(const Mixture& a, const Mixture& b, double share) {
 
 }  // namespace
 
-ScoringResult score(const BinProblem& problem, const TermSet& free, const Mixture* start, double tolerance) {
+ScoringResult score(const BinProblem& problem,
+                    const TermSet& free,
+                    const Mixture* start,
+                    double tolerance) {
   Mixture fixed{};
   if (start != nullptr) {
     for (std::size_t i = 0; i < kTerms; ++i) fixed[i] = free[i] ? 0 : (*start)[i];
