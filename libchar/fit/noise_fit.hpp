@@ -106,7 +106,6 @@ struct PowerBin {
   double dof = 0;                       ///< number of coefficients averaged
   std::array<double, kTerms> unit{};    ///< E[energy] for theta_term = 1
   double low_hz = 0, high_hz = 0;       ///< edges
-  double low_hz = 0, high_hz = 0;       ///< edges
 };
 
 /// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`
