@@ -14,8 +14,16 @@
 namespace libchar {
 
 enum class DeviationType { adev, oadev, mdev, tdev, hdev, ohdev, totdev };
-enum class DataKind { rate, phase };  ///< rate: N samples averaged over dt; phase: N + 1 points of the integral of the rate
-enum class TauGrid { octave, decade, dense, list };  ///< m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); given
+enum class DataKind {
+  rate,
+  phase
+};  ///< rate: N samples averaged over dt; phase: N + 1 points of the integral of the rate
+enum class TauGrid {
+  octave,
+  decade,
+  dense,
+  list
+};  ///< m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); given
 
 std::string_view name_of(DeviationType type);  ///< "oadev"
 std::optional<DeviationType> deviation_type(std::string_view name);
@@ -25,13 +33,14 @@ struct Interval {
 };
 
 struct AllanPoint {
-  std::uint64_t m = 0;       ///< averaging factor
+  std::uint64_t m = 0;  ///< averaging factor
   double tau_s = 0;
   double deviation = 0;
-  std::uint64_t terms = 0;   ///< second (third) differences that were averaged
-  double edf = 0;            ///< equivalent degrees of freedom for the mixture given to `add_intervals`; 0 before
-  Interval ci68, ci95;       ///< equal-tailed chi-square, at confidence 68.27 % and 95 %
-  bool reliable = true;      ///< edf >= 5
+  std::uint64_t terms = 0;  ///< second (third) differences that were averaged
+  double edf =
+      0;  ///< equivalent degrees of freedom for the mixture given to `add_intervals`; 0 before
+  Interval ci68, ci95;   ///< equal-tailed chi-square, at confidence 68.27 % and 95 %
+  bool reliable = true;  ///< edf >= 5
 };
 
 struct AllanCurve {
@@ -39,28 +48,34 @@ struct AllanCurve {
   double dt_s = 1;
   std::uint64_t samples = 0;  ///< rate samples, missing ones included
   std::uint64_t missing = 0;
-  std::uint64_t stride_divisor = 0;  ///< 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used
+  std::uint64_t stride_divisor =
+      0;  ///< 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used
   std::vector<AllanPoint> points;
-  std::vector<std::string> notes;    ///< what was approximated or left out
+  std::vector<std::string> notes;  ///< what was approximated or left out
 };
 
 struct AllanOptions {
   DeviationType type = DeviationType::oadev;
   DataKind data = DataKind::rate;
   TauGrid grid = TauGrid::octave;
-  std::vector<double> taus_s;    ///< for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
-  double tau_min_s = 0;          ///< 0 = dt
-  double tau_max_s = 0;          ///< 0 = T/2 (each type's own limit is applied as well)
-  int threads = 0;               ///< 0 = all cores; the result does not depend on it
+  std::vector<double>
+      taus_s;  ///< for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
+  double tau_min_s = 0;  ///< 0 = dt
+  double tau_max_s = 0;  ///< 0 = T/2 (each type's own limit is applied as well)
+  int threads = 0;       ///< 0 = all cores; the result does not depend on it
 };
 
 /// Deviations of a record with full overlap. NaN = missing: every term that touches one is dropped.
-/// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two scale exactly.
-/// Throws Error(numeric) when no point is possible, naming the number of samples needed; Error(usage) for a bad tau.
-AllanCurve allan_deviation(std::span<const double> record, double dt_s, const AllanOptions& options = {});
+/// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
+/// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
+/// needed; Error(usage) for a bad tau.
+AllanCurve allan_deviation(std::span<const double> record,
+                           double dt_s,
+                           const AllanOptions& options = {});
 
-/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m >= 8 at stride m/4
-/// (accuracy.md 9-10). One pass, no cumulative sum over the record. Result independent of block boundaries.
+/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m
+/// >= 8 at stride m/4 (accuracy.md 9-10). One pass, no cumulative sum over the record. Result
+/// independent of block boundaries.
 class AllanPyramid {
  public:
   AllanPyramid();

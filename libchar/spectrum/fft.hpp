@@ -1,6 +1,6 @@
 #pragma once
-// FFTW behind two small classes; no other file includes fftw3.h. Plans are FFTW_ESTIMATE (same bits every run), created under
-// one mutex, and run on aligned buffers owned by the object.
+// FFTW behind two small classes; no other file includes fftw3.h. Plans are FFTW_ESTIMATE (same bits
+// every run), created under one mutex, and run on aligned buffers owned by the object.
 
 #include <complex>
 #include <cstddef>
@@ -10,17 +10,18 @@
 
 namespace libchar {
 
-/// Forward real-to-complex transform of fixed length n: X_k = sum_t x_t exp(-2 pi i k t / n), k = 0..n/2.
+/// Forward real-to-complex transform of fixed length n: X_k = sum_t x_t exp(-2 pi i k t / n), k =
+/// 0..n/2.
 class RealFft {
  public:
   explicit RealFft(std::size_t n);
   ~RealFft();
   RealFft(RealFft&&) noexcept;
   RealFft& operator=(RealFft&&) noexcept;
-  std::span<double> input();                                ///< n values to fill in
-  std::span<const std::complex<double>> transform();        ///< n/2 + 1 values, valid until the next call
-  std::span<std::complex<double>> coefficients();           ///< n/2 + 1 values to fill in for `inverse`
-  std::span<const double> inverse();                        ///< n values, not divided by n
+  std::span<double> input();                          ///< n values to fill in
+  std::span<const std::complex<double>> transform();  ///< n/2 + 1 values, valid until the next call
+  std::span<std::complex<double>> coefficients();     ///< n/2 + 1 values to fill in for `inverse`
+  std::span<const double> inverse();                  ///< n values, not divided by n
   std::size_t size() const;
 
  private:
@@ -28,14 +29,16 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
-/// Orthonormal DCT-II: c_0 = sum y / sqrt(n); c_k = sqrt(2/n) sum_t y_t cos(pi k (t + 1/2) / n), by one real FFT of permuted data.
+/// Orthonormal DCT-II: c_0 = sum y / sqrt(n); c_k = sqrt(2/n) sum_t y_t cos(pi k (t + 1/2) / n), by
+/// one real FFT of permuted data.
 class Dct {
  public:
   explicit Dct(std::size_t n);
   ~Dct();
   Dct(Dct&&) noexcept;
   Dct& operator=(Dct&&) noexcept;
-  /// n coefficients of y (n values), valid until the next call. The first sample is subtracted first (c_0 corrected after).
+  /// n coefficients of y (n values), valid until the next call. The mean is subtracted first (c_0
+  /// corrected after).
   std::span<const double> transform(std::span<const double> y);
 
  private:

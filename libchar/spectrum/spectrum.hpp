@@ -12,7 +12,13 @@
 
 namespace libchar {
 
-enum class Window { hann, rectangular, blackman_harris, flat_top, hann_nonzero };  ///< periodic, but hann_nonzero = MATLAB's hanning
+enum class Window {
+  hann,
+  rectangular,
+  blackman_harris,
+  flat_top,
+  hann_nonzero
+};  ///< periodic, but hann_nonzero = MATLAB's hanning
 enum class Sides { one, two };
 enum class Scaling { psd, ps, lsd, ls };  ///< U²/Hz, U², U/√Hz, U
 enum class Detrend { none, constant, linear };
@@ -23,8 +29,9 @@ std::vector<double> window_values(Window window, std::size_t n);
 
 struct WelchOptions {
   Window window = Window::hann;
-  std::uint64_t segment = 0;  ///< samples per segment; 0 = a quarter of the record as in [RV app. A]
-  double overlap = 0.5;       ///< fraction of a segment, 0 <= overlap < 1
+  std::uint64_t segment =
+      0;                 ///< samples per segment; 0 = a quarter of the record as in [RV app. A]
+  double overlap = 0.5;  ///< fraction of a segment, 0 <= overlap < 1
   Detrend detrend = Detrend::constant;
   Sides sides = Sides::one;
   Scaling scaling = Scaling::psd;
@@ -36,18 +43,20 @@ struct Spectrum {
   Scaling scaling = Scaling::psd;
   Window window = Window::hann;
   double rate_hz = 1;
-  std::uint64_t segment = 0;      ///< samples per segment as used
-  std::uint64_t segments = 0;     ///< averaged (those that touch a missing sample are dropped)
+  std::uint64_t segment = 0;   ///< samples per segment as used
+  std::uint64_t segments = 0;  ///< averaged (those that touch a missing sample are dropped)
   std::uint64_t dropped = 0;
-  double enbw_hz = 0;             ///< equivalent noise bandwidth
+  double enbw_hz = 0;                ///< equivalent noise bandwidth
   std::vector<double> frequency_hz;  ///< two-sided: from -f_Nyquist (excluded) to +f_Nyquist
   std::vector<double> value;
-  std::vector<double> dof;        ///< degrees of freedom per bin (overlap correlation included; half at DC and Nyquist)
+  std::vector<double>
+      dof;  ///< degrees of freedom per bin (overlap correlation included; half at DC and Nyquist)
   std::vector<std::string> notes;
 };
 
-/// Welch's averaged modified periodogram. NaN = missing: segments that touch one are dropped; when fewer than one whole segment
-/// is left the segment is shortened and a note says so. Throws Error(numeric) when no segment of >= 8 samples is possible.
+/// Welch's averaged modified periodogram. NaN = missing: segments that touch one are dropped; when
+/// fewer than one whole segment is left the segment is shortened and a note says so. Throws
+/// Error(numeric) when no segment of >= 8 samples is possible.
 Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {});
 
 /// The same, streaming, for a fixed segment length (options.segment > 0).
@@ -66,22 +75,30 @@ class WelchStream {
 };
 
 /// Chi-square interval of bin i of a density at the given confidence (for lsd, ls: of the root).
-std::pair<double, double> spectrum_interval(const Spectrum& spectrum, std::size_t i, double confidence);
+std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
+                                            std::size_t i,
+                                            double confidence);
 
-/// The spectrum averaged into bins of equal width on a logarithmic frequency axis, degrees of freedom summed; at most `bins`.
+/// The spectrum averaged into bins of equal width on a logarithmic frequency axis, degrees of
+/// freedom summed; at most `bins`.
 Spectrum log_binned(const Spectrum& spectrum, std::size_t bins);
 
-/// A log-frequency spectrum for display of a long record: short segments for high frequencies, long ones for low ones.
-Spectrum log_frequency_spectrum(std::span<const double> record, double rate_hz, Sides sides, std::size_t bins);
+/// A log-frequency spectrum for display of a long record: short segments for high frequencies, long
+/// ones for low ones.
+Spectrum log_frequency_spectrum(std::span<const double> record,
+                                double rate_hz,
+                                Sides sides,
+                                std::size_t bins);
 
 struct SpectralLine {
   double frequency_hz = 0;
-  double amplitude = 0;   ///< of the sine, in U (peak, not rms)
-  double excess = 0;      ///< power above the local floor, in multiples of the floor
-  double width_hz = 0;    ///< at half the excess
+  double amplitude = 0;  ///< of the sine, in U (peak, not rms)
+  double excess = 0;     ///< power above the local floor, in multiples of the floor
+  double width_hz = 0;   ///< at half the excess
 };
 
-/// Narrow lines that stand out of the local median floor with a false-alarm probability below `alarm` over the whole spectrum.
+/// Narrow lines that stand out of the local median floor with a false-alarm probability below
+/// `alarm` over the whole spectrum.
 std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm = 1e-3);
 
 }  // namespace libchar
