@@ -105,6 +105,7 @@ struct PowerBin {
   double energy = 0;                    ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
   double dof = 0;                       ///< number of coefficients averaged
   std::array<double, kTerms> unit{};    ///< E[energy] for theta_term = 1
+  double low_hz = 0, high_hz = 0;       ///< edges
 };
 
 /// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`

@@ -1,0 +1,38 @@
+#pragma once
+// Expected squared DCT-II coefficients of every noise term: the model side of the likelihood.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libchar/core/noise_terms.hpp"
+
+namespace libchar {
+
+/// Si(pi k) for integer k >= 0, 1e-15 relative.
+double sine_integral_at_pi(std::uint64_t k);
+
+/// E[c_k^2] per unit theta for a record of n point samples at spacing dt; real-valued k >= 1
+/// allowed (bin centres of a bound).
+std::array<double, kTerms> dct_mean(double k, std::uint64_t n, double dt_s);
+
+/// E[c_k^2], k = 1..n-1 at [k-1], of a contrast-only process with generalised covariance g(0..n-1):
+///   (2/n) sum_j g(j) e_j [(n-j) cos(a j) - sin(a j)/sin a],   e_0 = 1/2... as two real transforms
+///   (accuracy.md 1).
+std::vector<double> dct_means_of_covariance(const std::vector<double>& g);
+
+/// E[c_k^2] per unit theta for the series sqrt(m) * (mean of m samples), n of them: white noise
+/// keeps its level fs. Exact for every term (flicker: second differences of the phase's generalised
+/// covariance).
+class BlockMeanDct {
+ public:
+  BlockMeanDct(std::uint64_t n, std::uint64_t m, double dt_s);
+  std::array<double, kTerms> mean(std::uint64_t k) const;
+
+ private:
+  std::uint64_t n_, m_;
+  double dt_s_;
+  std::vector<double> flicker_;
+};
+
+}  // namespace libchar
