@@ -94,7 +94,7 @@ std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::strin
   return fmt::format(
       "<tr><th scope=\"row\">{} <b>{}</b><span class=\"dim\"> IEEE 952: {}</span></th><td class=\"n\"><b>{}</b></td><td class=\"n\">{}</td>"
       "<td class=\"u\">{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-      people_name(static_cast<Term>(t)), name.letter, name.ieee, html_text(people_value(c)), html_text(interval),
+      term_title(static_cast<Term>(t)), name.letter, name.ieee, html_text(people_value(c)), html_text(interval),
       html_text(term_unit(name.key, unit)), in_field_units(c, t, unit), status_chip(c.status), known,
       c.bound ? "±" + people(100 * *c.bound, 2) + " %" : "–",
       c.seconds_for_10_percent ? html_text(people_seconds(*c.seconds_for_10_percent)) : "–");
@@ -147,7 +147,7 @@ std::string second_opinion_table(const NoiseFit& fit, const std::string& unit) {
     if (!opinion.value[t]) continue;
     const Coefficient& c = fit.term[t];
     const double sd = c.value ? std::hypot(opinion.sd[t], *c.value * c.relative_sd) : 0;
-    out += table_row({people_name(static_cast<Term>(t)), people_value(c), people(*opinion.value[t]), people(opinion.sd[t], 2),
+    out += table_row({term_title(static_cast<Term>(t)), people_value(c), people(*opinion.value[t]), people(opinion.sd[t], 2),
                       term_unit(kTermNames[t].key, unit),
                       c.value && sd > 0 ? people((*opinion.value[t] - *c.value) / sd, 2) + " sd" : "–"});
   }

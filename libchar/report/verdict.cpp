@@ -27,12 +27,12 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const std::string value = people_value(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
   switch (c.status) {
     case Status::detected:
-      return fmt::format("{} {} = {}, known to {} %.", people_name(term), name.letter, value, people(100 * c.relative_sd, 2));
+      return fmt::format("{} {} = {}, known to {} %.", term_title(term), name.letter, value, people(100 * c.relative_sd, 2));
     case Status::undetermined:
-      return fmt::format("{} {} = {}, but the record cannot tell it apart from another term.", people_name(term), name.letter, value);
+      return fmt::format("{} {} = {}, but the record cannot tell it apart from another term.", term_title(term), name.letter, value);
     case Status::not_detected:
-      return fmt::format("{} {} not detected, {} (95 %).", people_name(term), name.letter, value);
-    case Status::given: return fmt::format("{} {} = {}, given.", people_name(term), name.letter, value);
+      return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
+    case Status::given: return fmt::format("{} {} = {}, given.", term_title(term), name.letter, value);
     case Status::not_fitted: return "";
   }
   return "";
@@ -49,7 +49,7 @@ std::string list_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::string people_name(Term term) {
+std::string term_title(Term term) {
   switch (term) {
     case Term::white: return "White noise";
     case Term::flicker: return "Bias instability";

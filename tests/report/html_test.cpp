@@ -84,7 +84,7 @@ TEST_CASE("html: what could not be computed leaves a sentence, not a hole") {
   const std::string page = html_report(test::barely_anything());
   CHECK(count(page, "5 samples are too few for a fit") >= 2);
   CHECK(count(page, "unit not stated") == 1);
-  CHECK(count(without_assets(page), "nan") == 0);
+  CHECK(!std::regex_search(without_assets(page), std::regex("\\b(nan|inf)\\b")));
 }
 
 TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
