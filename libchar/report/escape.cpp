@@ -33,8 +33,9 @@ std::string html_text(std::string_view text) { return entities(printable(text));
 std::string html_attribute(std::string_view text) { return entities(printable(text)); }
 
 std::string json_in_script(const Json& document) {
-  // One space of indent would cost a line per number; a page is read by its script.
-  const std::string plain = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // No indent (a line for each number would double the page), and ASCII only: line separators and bidirectional controls
+  // inside a script would mislead whoever reads the page's source.
+  const std::string plain = document.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string out;
   out.reserve(plain.size() + plain.size() / 16);
   for (const char c : plain) {
@@ -45,8 +46,6 @@ std::string json_in_script(const Json& document) {
       default: out += c;
     }
   }
-  replace_all(out, "\xE2\x80\xA8", "\\u2028");
-  replace_all(out, "\xE2\x80\xA9", "\\u2029");
   return out;
 }
 

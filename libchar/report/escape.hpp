@@ -16,7 +16,7 @@ std::string html_text(std::string_view text);
 std::string html_attribute(std::string_view text);
 
 /// A document for the inside of <script type="application/json">: '<', '>' and '&' as \u003c…, so that neither "</script>"
-/// nor "<!--" can end or change the element; U+2028 and U+2029 escaped.
+/// nor "<!--" can end or change the element, and everything beyond ASCII escaped.
 std::string json_in_script(const Json& document);
 
 /// For the inside of an HTML comment: "--" cannot occur, so the comment ends where we end it.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/consumers.hpp"
 #include "libchar/report/escape.hpp"
@@ -92,8 +93,8 @@ std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::strin
   const std::string known = c.value ? "±" + people(100 * c.relative_sd, 2) + " %" : "–";
   return fmt::format(
       "<tr><th scope=\"row\">{} <b>{}</b><span class=\"dim\"> IEEE 952: {}</span></th><td class=\"n\"><b>{}</b></td><td class=\"n\">{}</td>"
-      "<td>{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-      people_name(static_cast<Term>(t)), name.letter, name.ieee, html_text(people_value(c)), html_text(interval),
+      "<td class=\"u\">{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+      term_title(static_cast<Term>(t)), name.letter, name.ieee, html_text(people_value(c)), html_text(interval),
       html_text(term_unit(name.key, unit)), in_field_units(c, t, unit), status_chip(c.status), known,
       c.bound ? "±" + people(100 * *c.bound, 2) + " %" : "–",
       c.seconds_for_10_percent ? html_text(people_seconds(*c.seconds_for_10_percent)) : "–");
@@ -104,13 +105,13 @@ std::string derived_rows(const ChannelResult& c, double rate_hz) {
   std::string out;
   const Coefficient& white = (*c.fit)[Term::white];
   const auto row = [&](const std::string& name, const std::string& value, const std::string& what) {
-    out += fmt::format("<tr class=\"derived\"><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td></td><td>{}</td><td colspan=\"5\">{}</td></tr>\n",
+    out += fmt::format("<tr class=\"derived\"><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td></td><td class=\"u\">{}</td><td colspan=\"5\">{}</td></tr>\n",
                        html_text(name), html_text(value), html_text(unit), html_text(what));
   };
   if (white.value) {
     row("Noise of a single sample", people_value(white, std::sqrt(rate_hz)),
         fmt::format("Q·√f: what white noise alone gives at f = {} Hz; the samples of this recording have a standard deviation of {} {}",
-                    people(rate_hz, 6), people(c.quality.standard_deviation, 4), unit));
+                    significant(rate_hz, 6), people(c.quality.standard_deviation, 4), unit));
   }
   if (const AllanPoint* lowest = allan_minimum(c.allan)) {
     row("Minimum of the Allan curve", people(lowest->deviation, 4),
@@ -146,7 +147,7 @@ std::string second_opinion_table(const NoiseFit& fit, const std::string& unit) {
     if (!opinion.value[t]) continue;
     const Coefficient& c = fit.term[t];
     const double sd = c.value ? std::hypot(opinion.sd[t], *c.value * c.relative_sd) : 0;
-    out += table_row({people_name(static_cast<Term>(t)), people_value(c), people(*opinion.value[t]), people(opinion.sd[t], 2),
+    out += table_row({term_title(static_cast<Term>(t)), people_value(c), people(*opinion.value[t]), people(opinion.sd[t], 2),
                       term_unit(kTermNames[t].key, unit),
                       c.value && sd > 0 ? people((*opinion.value[t] - *c.value) / sd, 2) + " sd" : "–"});
   }
@@ -213,8 +214,15 @@ std::string consumers(const ChannelResult& c, double rate_hz) {
   if (rows.empty()) return "";
   std::string out = "<h3>Which number goes where</h3>\n<div class=\"wide\"><table>\n" +
                     table_head({"For", "Name there", "Formula", "Value", "Unit"});
-  for (const ConsumerRow& row : rows) out += table_row({row.consumer, row.key, row.formula, row.value, row.unit});
-  return out + "</tbody></table></div>\n<p class=\"note\">f = " + html_text(people(rate_hz, 6)) +
+  const std::string* before = nullptr;
+  for (const ConsumerRow& row : rows) {
+    const bool repeated = before != nullptr && *before == row.consumer;
+    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"u\">{}</td><td class=\"n\">{}</td><td class=\"u\">{}</td></tr>\n",
+                       repeated ? "" : html_text(row.consumer), html_text(row.key), html_text(row.formula), html_text(row.value),
+                       html_text(row.unit));
+    before = &row.consumer;
+  }
+  return out + "</tbody></table></div>\n<p class=\"note\">f = " + html_text(significant(rate_hz, 6)) +
          " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.</p>\n";
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/assets.hpp"
@@ -61,7 +62,7 @@ std::string facts(const Characterization& result) {
   out += fmt::format("<b>{}</b> {} · <b>{}</b> samples a channel", result.channels.size(),
                      result.channels.size() == 1 ? "channel" : "channels", people_count(log.samples));
   if (log.time.rate_hz > 0) {
-    out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>", people(log.time.rate_hz, 6),
+    out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>", significant(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)", html_text(people_seconds(duration_s)));
   }
   if (log.time.gaps > 0) {
@@ -84,8 +85,10 @@ std::string overview_cell(const ChannelResult& c, Term term) {
   const double factor = known ? habits[0].factor : 1;
   const std::string unit = known ? habits[0].symbol : term_unit(key, c.channel.unit);
   const std::string mark = k.status == Status::undetermined ? "<span class=\"dim\"> ?</span>" : "";
-  return fmt::format("<td class=\"n{}\">{} <span class=\"dim\">{}</span>{}</td>", k.value ? "" : " limit", html_text(people_value(k, factor)),
-                     html_text(unit), mark);
+  const std::string whole = people_coefficient(k, factor);
+  const std::string interval = k.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
+  return fmt::format("<td class=\"n{}\">{} <span class=\"dim\">{}</span>{}{}</td>", k.value ? "" : " limit",
+                     html_text(people_value(k, factor)), html_text(unit), mark, interval);
 }
 
 std::string overview_row(const ChannelResult& c, std::size_t index, double rate_hz) {
@@ -111,14 +114,14 @@ std::string overview(const Characterization& result) {
                     "<div class=\"wide\"><table class=\"overview\">\n" +
                     table_head({"Channel", "White noise Q", "Bias instability B", "Random walk K", "Allan minimum", "Sample sd Q·√f", "Fit", "Cautions"});
   for (std::size_t i = 0; i < result.channels.size(); ++i) out += overview_row(result.channels[i], i, result.log.time.rate_hz);
-  return out + "</tbody></table></div>\n<p class=\"note\">≤: not detected, upper 95 % limit. ?: the record cannot tell this term from another. "
-               "Intervals, units and all else stand with each channel.</p>\n</section>\n";
+  return out + "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: the record cannot tell this term from another. "
+               "All else stands with each channel.</p>\n</section>\n";
 }
 
 std::string time_base(const LogInfo& log) {
   const TimeBase& t = log.time;
   std::string out = "<h3>Time base</h3>\n<table class=\"facts\"><tbody>\n";
-  out += table_row({"Rate", t.rate_hz > 0 ? people(t.rate_hz, 9) + " Hz" : "unknown"});
+  out += table_row({"Rate", t.rate_hz > 0 ? significant(t.rate_hz, 9) + " Hz" : "unknown"});
   out += table_row({"Where from", t.from_stamps ? "stamps in " + t.column + " (" + t.unit + (t.unit_guessed ? ", guessed)" : ")") : "stated by the user or the file"});
   if (t.from_stamps) {
     out += table_row({"Jitter", people_seconds(t.jitter_s) + " (robust standard deviation of stamp against grid)"});

@@ -132,7 +132,7 @@
     return {
       position: "bottom",
       labels: {
-        usePointStyle: true, boxWidth: 28, padding: 12, color: INK, font: { size: 12 },
+        usePointStyle: true, boxWidth: 28, boxHeight: 8, padding: 12, color: INK, font: { size: 12 },
         generateLabels(chart) {
           return chart.data.datasets.map((set, index) => ({
             text: set.label, datasetIndex: index, hidden: !chart.isDatasetVisible(index), fontColor: INK,
@@ -190,7 +190,7 @@
         pointRadius: measured.length > 60 ? 2 : 3.5, pointHoverRadius: 6, pointBorderColor: MEASURED, pointBackgroundColor: hollow.map((h) => (h ? "#fff" : MEASURED)), fill: false,
       });
     }
-    if (a.model) sets.push({ label: "fitted model", data: points(a.tau_s, a.model), borderColor: MODEL, borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 3 });
+    if (a.model) sets.push({ label: "fitted model", data: points(a.tau_s, a.model), borderColor: MODEL, cubicInterpolationMode: "monotone", borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 3 });
     sets.push(...asymptotes(a.asymptotes));
     marks.filter((m) => positive(m.tau_s) && positive(m.deviation)).forEach((m) => {
       const style = TERMS[m.term];
@@ -201,7 +201,8 @@
       });
     });
     sets.push(...band("68 % interval", a.tau_s, a.ci68, "rgba(27,79,143,0.30)"), ...band("95 % interval", a.tau_s, a.ci95, "rgba(27,79,143,0.14)"));
-    const near = marks.filter((m) => m.deviation > Math.min(...measured.map((p) => p.y)) / 4);
+    // A mark far below the curve (a K that a short record hardly shows) would press everything else together.
+    const near = marks.filter((m) => m.deviation > Math.min(...measured.map((p) => p.y)) / 30);
     const [xMin, xMax] = padded(measured.map((p) => p.x).concat(marks.map((m) => m.tau_s)), 1.4);
     const [yMin, yMax] = padded(measured.map((p) => p.y).concat(near.map((m) => m.deviation)), 2.2);
     return {
@@ -271,7 +272,8 @@
       draw(entry.target);
     });
   }, { rootMargin: "900px 0px" });
-  figures.forEach((figure) => watch.observe(figure));
+  // What is in view at the start is drawn at once, so that a page shown for a moment (or photographed) has its plots.
+  figures.forEach((figure) => (figure.getBoundingClientRect().top < window.innerHeight + 300 ? draw(figure) : watch.observe(figure)));
 
   // Paper has no viewport: draw all, at the width of the page.
   let opened = [];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/model_curve.hpp"
 #include "libchar/report/people.hpp"
@@ -26,12 +27,12 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const std::string value = people_value(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
   switch (c.status) {
     case Status::detected:
-      return fmt::format("{} {} = {}, known to {} %.", people_name(term), name.letter, value, people(100 * c.relative_sd, 2));
+      return fmt::format("{} {} = {}, known to {} %.", term_title(term), name.letter, value, people(100 * c.relative_sd, 2));
     case Status::undetermined:
-      return fmt::format("{} {} = {}, but the record cannot tell it apart from another term.", people_name(term), name.letter, value);
+      return fmt::format("{} {} = {}, but the record cannot tell it apart from another term.", term_title(term), name.letter, value);
     case Status::not_detected:
-      return fmt::format("{} {} not detected, {} (95 %).", people_name(term), name.letter, value);
-    case Status::given: return fmt::format("{} {} = {}, given.", people_name(term), name.letter, value);
+      return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
+    case Status::given: return fmt::format("{} {} = {}, given.", term_title(term), name.letter, value);
     case Status::not_fitted: return "";
   }
   return "";
@@ -48,7 +49,7 @@ std::string list_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::string people_name(Term term) {
+std::string term_title(Term term) {
   switch (term) {
     case Term::white: return "White noise";
     case Term::flicker: return "Bias instability";
@@ -61,7 +62,7 @@ std::string people_name(Term term) {
 
 std::string goodness_sentence(const Goodness& g) {
   if (!(g.dof > 0)) return "The fit has no degrees of freedom left to be checked with.";
-  const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}", people(g.chi2, 4), people(g.dof, 4), people_probability(g.p));
+  const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}", significant(g.chi2, 4), significant(g.dof, 4), people_probability(g.p));
   if (g.p >= 0.01) return "The model explains the spectrum within its scatter (" + figures + ").";
   if (g.p >= kDoubtful) return "The model explains the spectrum barely (" + figures + ").";
   return "The model does not explain the spectrum (" + figures + "): look at the residuals before using the intervals.";
@@ -92,7 +93,8 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
     if (fit.second_opinion && !fit.second_opinion->agrees) out.push_back("The Allan fit disagrees: " + fit.second_opinion->sentence);
   }
   if (q.saturated > 0) out.push_back(fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));
-  if (q.missing > 0 && all > 0) {
+  // Fewer cost nothing worth mentioning here: terms that touch them are left out.
+  if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
     out.push_back(fmt::format("{} samples ({} %) are missing.", people_count(q.missing), people(100 * static_cast<double>(q.missing) / all, 2)));
   }
   out.insert(out.end(), q.suggestions.begin(), q.suggestions.end());

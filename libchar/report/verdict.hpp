@@ -12,7 +12,7 @@ namespace libchar {
 std::string verdict_of(const Characterization& result);
 
 /// Name of a term for people: "white noise", "bias instability"…
-std::string people_name(Term term);
+std::string term_title(Term term);
 
 /// What was found in one channel, in sentences with numbers.
 std::vector<std::string> findings(const ChannelResult& channel);
