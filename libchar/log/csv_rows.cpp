@@ -28,6 +28,7 @@ class RowParser {
       if (const char* next = quick_row(p); next != nullptr) {
         p = next;
         out_.account.row_bytes += static_cast<std::uint64_t>(p - start);
+        ++quick_rows_;
         note_line();
         ++rows_;
         ++line_;
@@ -62,6 +63,7 @@ class RowParser {
     out_.blank = out_.comment = out_.repeated = out_.infinite = out_.mixed_end = out_.overflow =
         out_.missing = {};
     out_.missing_per_channel.assign(plan_.channels, 0);
+    out_.words_per_channel.assign(plan_.channels, 0);
     out_.fractional.assign(plan_.channels, 0);
     out_.inexact_integers = 0;
     out_.account = {};
@@ -300,7 +302,7 @@ class RowParser {
          std::string(line),
          fields == 2 * count && dialect_.delimiter == ','
              ? "are these decimal commas? write the file with another delimiter, such as ;"
-             : "--delimiter, if , is not the one",
+             : fmt::format("--delimiter, if '{}' does not separate the fields", dialect_.delimiter),
          i);
     return false;
   }
@@ -384,6 +386,7 @@ class RowParser {
         break;
       case Cell::missing:
         out_.missing.add(line_, span.start + 1);
+        out_.words_per_channel[channel] += !text.empty();
         break;
       case Cell::bad:
         fail("E0311",
@@ -415,6 +418,11 @@ class RowParser {
     RowBlock& rows = out_.rows;
     rows.rows = rows_;
     out_.lines = line_;
+    const std::uint64_t stamps = dialect_.time_column >= 0 ? 1 : 0;
+    out_.account.cells += quick_rows_ * plan_.target.size();
+    out_.account.values += quick_rows_ * plan_.channels;
+    out_.account.stamps += quick_rows_ * stamps;
+    out_.account.unread += quick_rows_ * (plan_.target.size() - plan_.channels - stamps);
     const std::uint64_t consumed = static_cast<std::uint64_t>(p - begin_);
     out_.account.bytes = consumed;
     if (out_.fault)
@@ -429,7 +437,7 @@ class RowParser {
   ParsedChunk& out_;
   std::vector<double*> pointers_;
   std::size_t rows_ = 0, capacity_ = 0;
-  std::uint64_t line_ = 0;
+  std::uint64_t line_ = 0, quick_rows_ = 0;
   const char* line_start_ = nullptr;
   bool lines_listed_ = false;
 };

@@ -66,6 +66,8 @@ struct ParsedChunk {
   std::optional<RowFault> fault;
   Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
   std::vector<std::uint64_t> missing_per_channel;
+  std::vector<std::uint64_t>
+      words_per_channel;         ///< of these, cells that say NaN (or NA, null…) in letters
   std::vector<char> fractional;  ///< per channel: some value was not written as an integer
   std::uint64_t inexact_integers = 0;
   Account account;
