@@ -394,7 +394,7 @@ class CsvSource final : public RowSource {
   std::optional<Fault> fault_;
   Tally missing_;
   std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
-  std::vector<char> fractional_;
+  std::vector<std::uint32_t> fractional_;
   Account total_;
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
                 inexact_ = 0;
