@@ -129,28 +129,16 @@ double shifted_energy(const std::vector<double>& w,
   return std::norm(sum);
 }
 
-// How many neighbours of a bin the window's main lobe couples with.
-std::size_t reach_of(Window window) {
-  switch (window) {
-    case Window::rectangular:
-      return 0;
-    case Window::blackman_harris:
-      return 6;
-    case Window::flat_top:
-      return 8;
-    default:
-      return 2;
-  }
-}
-
-// Correlation of the averaged powers of bins m = 1, 2, … apart. With very many lags every sixteenth
-// of the overlap is enough.
-std::vector<double> neighbour_correlation(const std::vector<double>& w,
-                                          Window window,
-                                          std::size_t hop,
+// Correlation of the averaged powers of bins m = 1 … 8 apart. It depends on the shape of the window
+// and the overlap, not on the length: a window of at most 1024 values stands for a long one, and
+// with very many lags every sixteenth of the overlap is enough.
+std::vector<double> neighbour_correlation(Window window,
+                                          const Layout& layout,
                                           std::uint64_t used,
                                           const std::vector<std::uint64_t>& pairs) {
-  const std::size_t n = w.size(), reach = std::min(reach_of(window), n / 4);
+  const std::size_t n = std::min<std::size_t>(layout.segment, 1024),
+                    reach = std::min<std::size_t>(8, n / 4);
+  const std::vector<double> w = window_values(window, n);
   std::vector<std::complex<double>> turns(n);
   for (std::size_t t = 0; t < n; ++t)
     turns[t] =
@@ -161,11 +149,15 @@ std::vector<double> neighbour_correlation(const std::vector<double>& w,
   const std::size_t stride = std::max<std::size_t>(1, pairs.size() / 16);
   for (std::size_t lag = stride; lag < pairs.size(); lag += stride) {
     const double weight = 2 * static_cast<double>(pairs[lag]) * static_cast<double>(stride);
+    const double shift = static_cast<double>(lag * layout.hop) * static_cast<double>(n) /
+                         static_cast<double>(layout.segment);
     for (std::size_t m = 0; m <= reach; ++m)
-      covariance[m] += weight * shifted_energy(w, lag * hop, m, turns);
+      covariance[m] +=
+          weight * shifted_energy(w, static_cast<std::size_t>(std::lround(shift)), m, turns);
   }
   std::vector<double> correlation;
   for (std::size_t m = 1; m <= reach; ++m) correlation.push_back(covariance[m] / covariance[0]);
+  while (!correlation.empty() && correlation.back() < 1e-9) correlation.pop_back();
   return correlation;
 }
 
@@ -274,8 +266,7 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   out.segments = used_;
   out.dropped = dropped_;
   out.enbw_hz = rate_hz * energy / (amplitude * amplitude);
-  out.neighbour_correlation =
-      neighbour_correlation(window, options_.window, layout_.hop, used_, pairs_);
+  out.neighbour_correlation = neighbour_correlation(options_.window, layout_, used_, pairs_);
 
   const auto r = window_correlation(window, layout_.hop, recent_.size());
   double correlated = count;

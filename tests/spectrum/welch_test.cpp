@@ -306,7 +306,8 @@ TEST_CASE("degrees of freedom: 2 a segment without overlap; Hann at half overlap
   CHECK(s.segments == 199);
   CHECK(s.dof[5] ==
         Approx(2 * 199 / (1 + 2 * (1.0 - 1.0 / 199) / 36)).epsilon(1e-12));  // r_1 = 1/6 for Hann
-  CHECK(s.neighbour_correlation.size() == 2);
+  REQUIRE(s.neighbour_correlation.size() >= 2);
+  CHECK(s.neighbour_correlation[0] == Approx(0.44).margin(0.02));  // (2/3)^2 for one segment
   options.overlap = 0.99;  // many lags: by transform; the limit of dense overlap for Hann is 1/0.52
                            // times that of half overlap's 1/0.528
   CHECK(welch(gaussian(25600, 1), 1, options).dof[5] == Approx(s.dof[5]).epsilon(0.12));
