@@ -51,6 +51,9 @@ struct Spectrum {
   std::vector<double> value;
   std::vector<double>
       dof;  ///< degrees of freedom per bin (overlap correlation included; half at DC and Nyquist)
+  /// Correlation of a bin's power with that 1, 2, … bins away, for white noise: what an average
+  /// over bins must account for.
+  std::vector<double> neighbour_correlation;
   std::vector<std::string> notes;
 };
 
@@ -59,7 +62,9 @@ struct Spectrum {
 /// Error(numeric) when no segment of >= 8 samples is possible.
 Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {});
 
-/// The same, streaming, for a fixed segment length (options.segment > 0).
+/// The same, streaming, for a fixed segment length (options.segment > 0): the same bits however the
+/// samples are pushed, in the memory of one segment. `finish` throws Error(numeric) when no whole
+/// segment was seen, and may be called at any time.
 class WelchStream {
  public:
   explicit WelchStream(const WelchOptions& options);
@@ -73,6 +78,10 @@ class WelchStream {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Chi-square interval of an average of powers with `dof` degrees of freedom, as multiples of the
+/// average.
+std::pair<double, double> interval_factors(double dof, double confidence);
 
 /// Chi-square interval of bin i of a density at the given confidence (for lsd, ls: of the root).
 std::pair<double, double> spectrum_interval(const Spectrum& spectrum,

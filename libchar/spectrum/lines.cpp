@@ -1,0 +1,272 @@
+// Narrow lines above a smooth floor.
+//
+// The floor at a bin is estimated on each flank from the median of up to 32 bins outside the
+// window's main lobe, and the *higher* of the two is taken: on a slope such as 1/f^2 it is the one
+// that does not make a line of the slope. Power over floor of a bin of noise is then distributed at
+// most as F(nu, nu_floor), nu_floor from the scatter of a median of m correlated chi-square values,
+//   relative variance = 1 / (4 m p(q)^2 q^2),   p the density and q the median of chi-square / nu,
+//   nu_floor = 2 / that,
+// and a bin is part of a line when its ratio is above the F quantile of alarm / (number of bins
+// tested). The amplitude is that of the whole main lobe: A^2 / 2 = sum (P_k - floor) df, true at
+// any frequency between bins.
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+#include <map>
+
+#include "libchar/spectrum/spectrum.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kFlank = 32, kLeast = 8;
+
+// Half width of the main lobe, in bins.
+std::size_t lobe_of(Window window) {
+  switch (window) {
+    case Window::rectangular:
+      return 1;
+    case Window::blackman_harris:
+      return 4;
+    case Window::flat_top:
+      return 5;
+    default:
+      return 2;
+  }
+}
+
+// One-sided density at the positive frequencies, Nyquist left out.
+struct Density {
+  std::vector<double> frequency_hz, power;
+  double dof = 0, step_hz = 0;
+  std::vector<double> correlation;  // of neighbouring bins
+};
+
+Density density_of(const Spectrum& s) {
+  const bool root = s.scaling == Scaling::lsd || s.scaling == Scaling::ls;
+  const bool per_band = s.scaling == Scaling::ps || s.scaling == Scaling::ls;
+  const double factor = (s.sides == Sides::two ? 2 : 1) / (per_band ? s.enbw_hz : 1);
+  Density out;
+  const auto zero = static_cast<std::size_t>(
+      std::lower_bound(s.frequency_hz.begin(), s.frequency_hz.end(), 0.0) - s.frequency_hz.begin());
+  for (std::size_t i = zero; i < s.value.size(); ++i) {
+    if (2 * (i - zero) == s.segment) break;
+    out.frequency_hz.push_back(s.frequency_hz[i]);
+    out.power.push_back((root ? s.value[i] * s.value[i] : s.value[i]) * factor);
+    if (i > zero) out.dof = s.dof[i];
+  }
+  out.correlation = s.neighbour_correlation;
+  out.step_hz = s.rate_hz / static_cast<double>(std::max<std::uint64_t>(s.segment, 1));
+  return out;
+}
+
+// Means of `count` bins, DC left out.
+Density averaged(const Density& d, std::size_t count) {
+  Density out;
+  double variance = static_cast<double>(count), across = 0;
+  for (std::size_t m = 1; m <= d.correlation.size() && m < count; ++m) {
+    variance += 2 * static_cast<double>(count - m) * d.correlation[m - 1];
+    across += static_cast<double>(m) * d.correlation[m - 1];
+  }
+  out.dof = d.dof * static_cast<double>(count * count) / variance;
+  out.correlation = {across / variance};
+  out.step_hz = d.step_hz * static_cast<double>(count);
+  for (std::size_t begin = 1; begin + count <= d.power.size(); begin += count) {
+    double sum = 0;
+    for (std::size_t k = begin; k < begin + count; ++k) sum += d.power[k];
+    out.power.push_back(sum / static_cast<double>(count));
+    out.frequency_hz.push_back((d.frequency_hz[begin] + d.frequency_hz[begin + count - 1]) / 2);
+  }
+  return out;
+}
+
+// median[i] of values (i - kFlank, i], fewer at the start; a sorted window moves along.
+std::vector<double> trailing_medians(const std::vector<double>& values, std::size_t begin) {
+  std::vector<double> medians(values.size(), 0.0), sorted;
+  for (std::size_t i = begin; i < values.size(); ++i) {
+    if (i >= begin + kFlank)
+      sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), values[i - kFlank]));
+    sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), values[i]), values[i]);
+    medians[i] = (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]) / 2;
+  }
+  return medians;
+}
+
+struct Floor {
+  double level = 0;       // expected power of noise
+  std::size_t count = 0;  // bins behind it
+};
+
+class LocalFloor {
+ public:
+  LocalFloor(const Density& density, std::size_t begin, std::size_t guard)
+      : begin_(begin),
+        guard_(guard),
+        size_(density.power.size()),
+        medians_(trailing_medians(density.power, begin)) {
+    const boost::math::chi_squared distribution(density.dof);
+    typical_ = quantile(distribution, 0.5) / density.dof;
+  }
+  // Of the flanks that have enough bins the higher; none: count 0.
+  Floor at(std::size_t k) const {
+    Floor floor;
+    if (k >= begin_ + guard_ + kLeast)
+      raise(floor, medians_[k - guard_ - 1], std::min(kFlank, k - guard_ - begin_));
+    if (k + guard_ + kFlank < size_) raise(floor, medians_[k + guard_ + kFlank], kFlank);
+    // Slopes fall to the right: without a left flank nothing tells a slope from a line.
+    if (k < begin_ + guard_ + kLeast) floor.count = 0;
+    return floor;
+  }
+
+ private:
+  void raise(Floor& floor, double median, std::size_t count) const {
+    if (floor.count != 0 && median / typical_ <= floor.level) return;
+    floor = {median / typical_, count};
+  }
+  std::size_t begin_, guard_, size_;
+  std::vector<double> medians_;
+  double typical_ = 1;  // median of chi-square / nu
+};
+
+// Ratio of power to floor that noise exceeds with probability `alarm`.
+class Threshold {
+ public:
+  Threshold(double dof, double correlation, double alarm) : dof_(dof), alarm_(alarm) {
+    const boost::math::chi_squared distribution(dof);
+    const double median = quantile(distribution, 0.5);
+    const double spread = 2 * pdf(distribution, median) * median;
+    median_variance_ = (1 + 2 * correlation) / (spread * spread);
+  }
+  double operator()(std::size_t count) {
+    auto [slot, fresh] = known_.try_emplace(count, 0.0);
+    if (fresh) {
+      const double floor_dof = 2 * static_cast<double>(count) / median_variance_;
+      slot->second = quantile(complement(boost::math::fisher_f(dof_, floor_dof), alarm_));
+    }
+    return slot->second;
+  }
+
+ private:
+  double dof_, alarm_, median_variance_ = 1;
+  std::map<std::size_t, double> known_;
+};
+
+// Offset in bins of the top of the parabola through the logarithms of three neighbours.
+double parabola_top(double left, double middle, double right) {
+  if (!(left > 0 && right > 0)) return 0;
+  const double a = std::log(left), b = std::log(middle), c = std::log(right), bend = a - 2 * b + c;
+  return bend < 0 ? std::clamp((a - c) / (2 * bend), -0.5, 0.5) : 0;
+}
+
+// Where the power falls to `level` on the way from the peak, in bins.
+double half_width(const std::vector<double>& power, std::size_t peak, double level, int direction) {
+  std::size_t i = peak;
+  while (i > 0 && i + 1 < power.size() && power[i] > level) i = direction > 0 ? i + 1 : i - 1;
+  const std::size_t inside = direction > 0 ? i - 1 : i + 1;
+  if (power[i] > level) return std::abs(static_cast<double>(i) - static_cast<double>(peak));
+  const double part = (power[inside] - level) / (power[inside] - power[i]);
+  return std::abs(static_cast<double>(inside) - static_cast<double>(peak)) + part;
+}
+
+SpectralLine line_of(
+    const Density& d, std::size_t first, std::size_t last, double floor, std::size_t lobe) {
+  const auto begin = d.power.begin();
+  const auto peak =
+      static_cast<std::size_t>(std::max_element(begin + static_cast<std::ptrdiff_t>(first),
+                                                begin + static_cast<std::ptrdiff_t>(last) + 1) -
+                               begin);
+  SpectralLine line;
+  const bool inner = peak > 0 && peak + 1 < d.power.size();
+  const double offset =
+      inner ? parabola_top(d.power[peak - 1], d.power[peak], d.power[peak + 1]) : 0;
+  line.frequency_hz = d.frequency_hz[peak] + offset * d.step_hz;
+  const std::size_t from = std::min(first, peak - std::min(peak, lobe)),
+                    to = std::min(std::max(last, peak + lobe), d.power.size() - 1);
+  double sum = 0;
+  for (std::size_t k = from; k <= to; ++k) sum += d.power[k] - floor;
+  line.amplitude = std::sqrt(2 * std::max(sum, 0.0) * d.step_hz);
+  line.excess = d.power[peak] / floor - 1;
+  const double half = floor + (d.power[peak] - floor) / 2;
+  line.width_hz =
+      inner ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz
+            : 0;
+  return line;
+}
+
+struct Found {
+  SpectralLine line;
+  double from_hz = 0, to_hz = 0;
+};
+
+// Neighbouring bins above the threshold are one line; so are those that no more than a main lobe
+// separates.
+std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
+  const std::size_t guard = lobe + 1;
+  if (!(d.dof > 0) || d.power.size() < lobe + guard + kLeast + 2) return {};
+  const LocalFloor floors(d, lobe, guard);
+  double correlation = 0;
+  for (const double c : d.correlation) correlation += c;
+  Threshold threshold(d.dof, correlation, alarm / static_cast<double>(d.power.size()));
+
+  std::vector<Found> found;
+  std::size_t first = 0, last = 0;
+  double floor = 0;
+  bool open = false;
+  const auto close = [&] {
+    if (open)
+      found.push_back({line_of(d, first, last, floor, lobe),
+                       d.frequency_hz[first] - d.step_hz,
+                       d.frequency_hz[last] + d.step_hz});
+    open = false;
+  };
+  for (std::size_t k = lobe; k < d.power.size(); ++k) {
+    if (open && k > last + guard) close();
+    const Floor here = floors.at(k);
+    if (here.count == 0 || !(here.level > 0) || !(d.power[k] > here.level * threshold(here.count)))
+      continue;
+    if (!open) first = k;
+    floor = open ? std::min(floor, here.level) : here.level;
+    open = true;
+    last = k;
+  }
+  close();
+  return found;
+}
+
+// Adds a band unless the lines inside it explain it. A swelling of a few percent over many bins may
+// be certain, but it is the shape of the floor, not a line.
+void add_band(std::vector<Found>& lines, const Found& band) {
+  constexpr double kLeastExcess = 0.25;
+  if (band.line.excess < kLeastExcess) return;
+  const auto inside = [&](const Found& f) {
+    return f.line.frequency_hz > band.from_hz && f.line.frequency_hz < band.to_hz;
+  };
+  double power = 0;
+  for (const Found& f : lines)
+    if (inside(f)) power += f.line.amplitude * f.line.amplitude;
+  if (band.line.amplitude * band.line.amplitude <= 2 * power) return;
+  std::erase_if(lines, inside);
+  lines.push_back(band);
+}
+
+}  // namespace
+
+std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm) {
+  if (spectrum.segment == 0) return {};
+  constexpr std::size_t kWidths[] = {4, 16, 64, 256};
+  const double share = alarm / (1 + std::size(kWidths));
+  const Density density = density_of(spectrum);
+  std::vector<Found> found = search(density, lobe_of(spectrum.window), share);
+  for (const std::size_t width : kWidths)
+    for (const Found& band : search(averaged(density, width), 1, share)) add_band(found, band);
+  std::vector<SpectralLine> lines;
+  for (const Found& f : found) lines.push_back(f.line);
+  std::sort(lines.begin(), lines.end(), [](const SpectralLine& a, const SpectralLine& b) {
+    return a.frequency_hz < b.frequency_hz;
+  });
+  return lines;
+}
+
+}  // namespace libchar

@@ -1,0 +1,172 @@
+// Welch's method over a record in memory: choose the segment, then sum groups of segments, in
+// parallel and in order.
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/spectrum/segments.hpp"
+
+namespace libchar {
+namespace {
+
+using namespace welch_detail;
+
+struct Run {
+  std::uint64_t begin = 0, end = 0;
+};
+
+// Stretches without a missing sample.
+std::vector<Run> present_runs(std::span<const double> record) {
+  std::vector<Run> runs;
+  const std::uint64_t n = record.size();
+  for (std::uint64_t i = 0; i < n;) {
+    while (i < n && !std::isfinite(record[i])) ++i;
+    const std::uint64_t begin = i;
+    while (i < n && std::isfinite(record[i])) ++i;
+    if (i > begin) runs.push_back({begin, i});
+  }
+  return runs;
+}
+
+std::uint64_t usable_segments(const std::vector<Run>& runs, const Layout& layout) {
+  std::uint64_t count = 0;
+  for (const Run& run : runs) {
+    const std::uint64_t begin = (run.begin + layout.hop - 1) / layout.hop * layout.hop;
+    if (begin + layout.segment <= run.end)
+      count += (run.end - layout.segment - begin) / layout.hop + 1;
+  }
+  return count;
+}
+
+std::uint64_t longest(const std::vector<Run>& runs) {
+  std::uint64_t length = 0;
+  for (const Run& run : runs) length = std::max(length, run.end - run.begin);
+  return length;
+}
+
+// A quarter of the record as in [RV app. A], or what the caller asked for; halved until enough
+// segments are whole.
+std::uint64_t choose_segment(std::span<const double> record,
+                             const WelchOptions& options,
+                             std::vector<std::string>& notes) {
+  const std::uint64_t n = record.size();
+  const bool given = options.segment != 0;
+  const std::uint64_t wanted = given ? options.segment : std::max(kShortestSegment, n / 4);
+  std::uint64_t segment = std::min(wanted, n);
+  const std::vector<Run> runs = present_runs(record);
+  // Half-overlapping quarters are seven; with that many the dropped ones are not missed.
+  const std::uint64_t possible =
+      segment >= kShortestSegment ? layout_of(segment, options.overlap).count(n) : 0;
+  const std::uint64_t enough = given ? 1 : std::min<std::uint64_t>(possible, 7);
+  while (segment >= kShortestSegment &&
+         usable_segments(runs, layout_of(segment, options.overlap)) < enough)
+    segment /= 2;
+  if (segment < kShortestSegment) {
+    // Halving may step over a last chance: any run of eight.
+    if (usable_segments(runs, layout_of(kShortestSegment, options.overlap)) == 0)
+      throw Error({ErrorKind::numeric,
+                   "",
+                   "",
+                   fmt::format("a spectrum needs at least {} consecutive samples; the longest "
+                               "stretch without a missing one has {}",
+                               kShortestSegment,
+                               longest(runs)),
+                   "",
+                   ""});
+    segment = kShortestSegment;
+  }
+  if (segment < wanted)
+    notes.push_back(fmt::format("the segment was shortened from {} to {} samples: {}",
+                                wanted,
+                                segment,
+                                n < wanted ? "the record has no more"
+                                           : "too few longer ones are without a missing sample"));
+  return segment;
+}
+
+struct Group {
+  std::uint64_t index = 0;
+  std::vector<double> power;
+  std::vector<char> used;
+};
+
+// The segments [index * group, (index + 1) * group) of the record.
+Group sum_of_group(std::uint64_t index,
+                   std::span<const double> record,
+                   const Layout& layout,
+                   Periodogram& periodogram) {
+  Group out{index, std::vector<double>(layout.segment / 2 + 1, 0.0), {}};
+  const std::uint64_t last =
+      std::min<std::uint64_t>((index + 1) * layout.group, layout.count(record.size()));
+  for (std::uint64_t i = index * layout.group; i < last; ++i)
+    out.used.push_back(periodogram.add(record.data() + i * layout.hop, out.power.data()));
+  return out;
+}
+
+void take(const Group& group, Average& average) {
+  average.add_group(group.power);
+  for (const char used : group.used) average.note_segment(used != 0);
+}
+
+// Never more than the machine has: it would not be faster, and TBB would say so on stderr.
+std::uint64_t threads_of(const WelchOptions& options) {
+  const int most = tbb::info::default_concurrency();
+  return static_cast<std::uint64_t>(options.threads > 0 ? std::min(options.threads, most) : most);
+}
+
+}  // namespace
+
+Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options) {
+  check_options(options);
+  check_rate(rate_hz);
+  std::vector<std::string> notes;
+  const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
+  const std::vector<double> window = window_values(options.window, layout.segment);
+  const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
+  Average average(options, layout);
+
+  const int threads = static_cast<int>(std::min(groups, threads_of(options)));
+  if (threads <= 1) {
+    Periodogram periodogram(options, window);
+    for (std::uint64_t g = 0; g < groups; ++g)
+      take(sum_of_group(g, record, layout, periodogram), average);
+  } else {
+    tbb::enumerable_thread_specific<Periodogram> workers(
+        [&] { return Periodogram(options, window); });
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      std::uint64_t next = 0;
+      tbb::parallel_pipeline(
+          static_cast<std::size_t>(2 * threads),
+          tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
+                                                [&](tbb::flow_control& control) -> std::uint64_t {
+                                                  if (next == groups) control.stop();
+                                                  return next++;
+                                                }) &
+              tbb::make_filter<std::uint64_t, Group>(tbb::filter_mode::parallel,
+                                                     [&](std::uint64_t g) {
+                                                       return sum_of_group(
+                                                           g, record, layout, workers.local());
+                                                     }) &
+              tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
+                                            [&](const Group& group) { take(group, average); }));
+    });
+  }
+  Spectrum spectrum = average.spectrum(window, rate_hz);
+  spectrum.notes = std::move(notes);
+  if (spectrum.dropped > 0)
+    spectrum.notes.push_back(
+        fmt::format("{} of {} segments touch a missing sample and were dropped",
+                    spectrum.dropped,
+                    spectrum.dropped + spectrum.segments));
+  return spectrum;
+}
+
+}  // namespace libchar

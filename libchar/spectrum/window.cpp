@@ -1,0 +1,65 @@
+// Windows as sums of cosines: w_j = a0 - a1 cos(x) + a2 cos(2x) - a3 cos(3x) + a4 cos(4x), x = 2 pi
+// j / n (periodic). Hann: the usual; Blackman-Harris: F. J. Harris, Proc. IEEE 66, 1978, minimum
+// 4-term; flat top: G. D'Antona and A. Ferrero, Digital Signal Processing for Measurement Systems,
+// 2006 (the five terms used by MATLAB and SciPy).
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/spectrum/spectrum.hpp"
+
+namespace libchar {
+namespace {
+
+struct Row {
+  Window window;
+  std::string_view name;
+  std::array<double, 5> terms;
+};
+
+constexpr std::array<Row, 5> kWindows = {{
+    {Window::hann, "hann", {0.5, 0.5}},
+    {Window::rectangular, "rectangular", {1}},
+    {Window::blackman_harris, "blackman_harris", {0.35875, 0.48829, 0.14128, 0.01168}},
+    {Window::flat_top, "flat_top", {0.21557895, 0.41663158, 0.277263158, 0.083578947, 0.006947368}},
+    {Window::hann_nonzero, "hann_nonzero", {0.5, 0.5}},
+}};
+
+const Row& row_of(Window window) {
+  for (const Row& row : kWindows)
+    if (row.window == window) return row;
+  return kWindows[0];
+}
+
+}  // namespace
+
+std::string_view name_of(Window window) {
+  return row_of(window).name;
+}
+
+std::optional<Window> window_named(std::string_view name) {
+  for (const Row& row : kWindows)
+    if (row.name == name) return row.window;
+  return std::nullopt;
+}
+
+std::vector<double> window_values(Window window, std::size_t n) {
+  const std::array<double, 5>& terms = row_of(window).terms;
+  const bool symmetric = window == Window::hann_nonzero;
+  const std::size_t period = symmetric ? n + 1 : n, first = symmetric ? 1 : 0;
+  std::vector<double> w(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    // Folded to the first half of the period, so that the window is symmetric to the last bit.
+    const std::size_t position = std::min(j + first, period - (j + first));
+    const double x =
+        2 * std::numbers::pi * static_cast<double>(position) / static_cast<double>(period);
+    double value = terms[0], sign = -1;
+    for (std::size_t m = 1; m < terms.size() && terms[m] != 0; ++m, sign = -sign)
+      value += sign * terms[m] * std::cos(static_cast<double>(m) * x);
+    w[j] = value;
+  }
+  return w;
+}
+
+}  // namespace libchar

@@ -1,0 +1,132 @@
+#include "terminal.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace sensorchar {
+namespace {
+
+volatile std::sig_atomic_t g_stop_signal = 0;  // the one global: a signal handler has nowhere else to write
+
+void remember(int number) { g_stop_signal = number; }
+
+// Characters, not bytes: "°" takes one place on a terminal.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
+// Returns errno, 0 when everything was written.
+int write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(descriptor, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = remember;
+  ::sigemptyset(&action.sa_mask);
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    ::sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);  // nohup stays nohup
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int stop_signal() { return g_stop_signal; }
+
+void print(std::string_view text) {
+  const int status = write_all(STDOUT_FILENO, text);
+  if (status == EPIPE) throw StdoutClosed{};
+  if (status != 0) {
+    throw libchar::Error({libchar::ErrorKind::output, "E0510", "stdout",
+                          fmt::format("cannot write the result: {}", std::strerror(status)), "",
+                          "free some space, or send the output elsewhere"});
+  }
+}
+
+void say(std::string_view line) { write_all(STDERR_FILENO, std::string(line) + "\n"); }
+
+Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
+  const char* term = std::getenv("TERM");
+  const bool dumb = term == nullptr || std::strcmp(term, "dumb") == 0;
+  const char* no_color = std::getenv("NO_COLOR");
+  draws_ = ::isatty(STDERR_FILENO) == 1 && !dumb;
+  escapes_ = draws_ && (no_color == nullptr || *no_color == '\0');
+}
+
+Terminal::~Terminal() { clear(); }
+
+void Terminal::update(double fraction, std::string_view what) {
+  if (const int number = stop_signal(); number != 0) throw libchar::Cancelled(number);
+  if (!draws_ || quiet_) return;
+  const Clock::time_point now = Clock::now();
+  if (now - start_ < std::chrono::seconds(1) || now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  std::string line = libchar::printable(what, 60);
+  if (fraction >= 0) line += fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0));
+  const std::size_t places = width(line);
+  const std::string rest = escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
+  write_all(STDERR_FILENO, "\r" + line + rest);
+  shown_ = places;
+}
+
+void Terminal::clear() {
+  if (shown_ == 0) return;
+  write_all(STDERR_FILENO, escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
+  shown_ = 0;
+}
+
+void Terminal::warn(const libchar::Warnings& warnings, std::string_view file) {
+  if (quiet_) return;
+  clear();
+  for (const libchar::Warning& warning : warnings.list()) say(libchar::one_line(warning, file));
+}
+
+void Terminal::note(std::string_view line) {
+  if (quiet_) return;
+  clear();
+  say(line);
+}
+
+std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line(indent);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string blanks(widths[c] - width(row[c]), ' ');
+      if (c > 0) line += "  ";
+      line += c == 0 ? row[c] + blanks : blanks + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,60 @@
+#pragma once
+// What the program says to people: results to stdout, progress and messages to stderr, and how it is interrupted.
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/core/warnings.hpp"
+
+namespace sensorchar {
+
+/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, there is nobody left to talk to.
+struct StdoutClosed {};
+
+/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled; SIGPIPE and SIGXFSZ become
+/// ordinary write errors.
+void install_signal_handlers();
+
+/// Number of the signal that asked the program to stop, 0 when there is none.
+int stop_signal();
+
+/// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
+void print(std::string_view text);
+
+/// One message on stderr, a newline added. Lines coming from files must have gone through libchar::printable already.
+void say(std::string_view line);
+
+/// Progress on stderr: only on a terminal, after one second of work, at most ten times a second.
+class Terminal : public libchar::Progress {
+ public:
+  Terminal();
+  ~Terminal() override;
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  /// No progress and no warnings from now on; errors are still said.
+  void be_quiet() { quiet_ = true; }
+  bool quiet() const { return quiet_; }
+  /// Draws when it is time to. Throws Cancelled when a signal asked to stop.
+  void update(double fraction, std::string_view what) override;
+  /// Removes the progress line, so that other text can stand there.
+  void clear();
+  /// Says every warning on one line each (nothing when quiet).
+  void warn(const libchar::Warnings& warnings, std::string_view file);
+  /// A note for people on stderr (nothing when quiet).
+  void note(std::string_view line);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool draws_ = false, escapes_ = false, quiet_ = false;
+  std::size_t shown_ = 0;  ///< characters of the line now on the terminal
+  Clock::time_point start_, drawn_;
+};
+
+/// A table for people: columns aligned by width in characters, the first to the left and the others to the right.
+std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
+
+}  // namespace sensorchar

@@ -1,0 +1,19 @@
+#pragma once
+// The verbs, one file tools/VERB.cpp each, in the order of the help.
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+
+namespace sensorchar {
+
+void add_inspect(CLI::App& app, Session& session);
+void add_convert(CLI::App& app, Session& session);
+
+/// The table of verbs.
+inline void add_verbs(CLI::App& app, Session& session) {
+  add_inspect(app, session);
+  add_convert(app, session);
+}
+
+}  // namespace sensorchar
