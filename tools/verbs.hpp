@@ -8,11 +8,13 @@
 namespace sensorchar {
 
 void add_inspect(CLI::App& app, Session& session);
+void add_psd(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
 inline void add_verbs(CLI::App& app, Session& session) {
   add_inspect(app, session);
+  add_psd(app, session);
   add_convert(app, session);
 }
 
