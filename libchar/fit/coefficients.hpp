@@ -18,6 +18,9 @@ void report_coefficients(const BinProblem& problem,
 /// undetermined.
 void report_bounds(const TermSet& fitted, NoiseFit& fit);
 
+/// Widens sd and intervals for a further parameter that was fitted jointly (the low-pass corner).
+void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit);
+
 /// "bias instability B" for sentences.
 std::string people_name(Term term);
 

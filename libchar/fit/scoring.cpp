@@ -80,6 +80,16 @@ ScoringResult score(const BinProblem& problem,
       next = between(result.theta, goal, share);
       value = half_deviance(problem, next);
     }
+    if (result.iterations > 8 && share == 1) {
+      // Single coefficients bend the likelihood more than their expectation says: full steps may
+      // swing about the maximum for long.
+      const Mixture middle = between(result.theta, goal, 0.5);
+      const double at_middle = half_deviance(problem, middle);
+      if (at_middle < value) {
+        next = middle;
+        value = at_middle;
+      }
+    }
     const double gain = result.half_deviance - value;
     if (gain > 0) {
       result.theta = next;

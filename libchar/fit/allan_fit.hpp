@@ -1,0 +1,12 @@
+#pragma once
+// The covariance-weighted fit of the Allan curve: the second opinion.
+
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+/// Generalised least squares of the Allan variances with the model's own covariance, on the terms of `first` that have a value;
+/// compared with `first`. Nothing when the curve has too few points.
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first);
+
+}  // namespace libchar

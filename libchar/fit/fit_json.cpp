@@ -1,0 +1,78 @@
+#include "libchar/fit/fit_json.hpp"
+
+#include <cmath>
+
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+Json pair_of(const Interval& interval) { return Json::array({number(interval.low), number(interval.high)}); }
+
+Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) {
+  Json json;
+  json["value"] = number(term.value);
+  json["ci95"] = term.value ? pair_of(term.ci95) : Json(nullptr);
+  json["status"] = name_of(term.status);
+  json["upper95"] = number(term.upper95);
+  json["unit"] = term_unit(kTermNames[i].key, unit);
+  json["relative_sd"] = term.value ? number(term.relative_sd) : Json(nullptr);
+  json["interval"] = term.profile ? "profile_likelihood" : "log_wald";
+  json["likelihood_ratio"] = number(term.likelihood_ratio);
+  json["cramer_rao_relative_sd"] = number(term.bound);
+  json["seconds_for_10_percent"] = number(term.seconds_for_10_percent);
+  return json;
+}
+
+Json goodness_json(const Goodness& goodness) {
+  return {{"chi2", number(goodness.chi2)}, {"dof", number(goodness.dof)}, {"p", number(goodness.p)}};
+}
+
+Json second_json(const SecondOpinion& second) {
+  Json json = {{"method", "generalised least squares on the Allan variances"}};
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (second.value[i]) json[std::string(kTermNames[i].key)] = {{"value", number(second.value[i])}, {"sd", number(second.sd[i])}};
+  }
+  json["goodness"] = goodness_json(second.goodness);
+  json["agrees"] = second.agrees;
+  json["sentence"] = second.sentence;
+  return json;
+}
+
+}  // namespace
+
+Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals) {
+  Json json;
+  json["name"] = name;
+  json["unit"] = unit;
+  for (std::size_t i = 0; i < kTerms; ++i) json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
+  json["bandwidth"] = nullptr;
+  if (fit.bandwidth_hz) {
+    json["bandwidth"] = {{"value_hz", number(fit.bandwidth_hz)}, {"ci95_hz", fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr)}};
+  }
+  json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
+  json["goodness"] = goodness_json(fit.goodness);
+  json["remedies"] = Json::array();
+  for (const Remedy& remedy : fit.remedies) {
+    json["remedies"].push_back({{"kind", remedy.kind}, {"alarm", remedy.alarm}, {"action", remedy.action}, {"count", remedy.count}});
+  }
+  json["sentences"] = fit.sentences;
+  json["method"] = fit.method;
+  json["converged"] = fit.converged;
+  json["rate_hz"] = number(fit.rate_hz);
+  json["duration_s"] = number(fit.duration_s);
+  json["samples"] = fit.samples;
+  if (with_residuals) {
+    json["residuals"] = Json::array();
+    for (const FitResidual& r : fit.residuals) {
+      json["residuals"].push_back({{"frequency_hz", number(r.frequency_hz)}, {"measured", number(r.measured)}, {"model", number(r.model)}, {"dof", number(r.dof)}, {"z", number(r.z)}});
+    }
+  }
+  return json;
+}
+
+Json noise_fit_document(Json channels) { return {{"format", "noise-fit"}, {"version", 1}, {"channels", std::move(channels)}}; }
+
+}  // namespace libchar

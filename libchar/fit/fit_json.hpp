@@ -1,0 +1,18 @@
+#pragma once
+// A fit as JSON, one element of "channels" in `fit --json` and in report.json (design.md 6.3).
+
+#include <string>
+
+#include "libchar/core/json.hpp"
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+/// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…}, second_opinion, goodness.
+/// What is not known is null, never absent among those. Residuals only on request: they are long.
+Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals = false);
+
+/// {"format":"noise-fit","version":1,"channels":[…]}
+Json noise_fit_document(Json channels);
+
+}  // namespace libchar
