@@ -1,9 +1,422 @@
+// CSV as a source of rows: chunks of whole lines are read in order by whichever worker is free,
+// parsed side by side, hashed in order behind the parsing, and handed out in order. With one thread
+// everything happens inside next().
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/csv_dialect.hpp"
+#include "libchar/log/csv_feed.hpp"
+#include "libchar/log/csv_header.hpp"
+#include "libchar/log/csv_rows.hpp"
 #include "libchar/log/raw_rows.hpp"
 
 namespace libchar {
-std::unique_ptr<RowSource> open_csv(const std::string& path, const ReadOptions&) {
-  throw Error({ErrorKind::input, "E0000", path, "csv is not read yet", "", ""});
+namespace csv {
+namespace {
+
+class CsvSource final : public RowSource {
+ public:
+  CsvSource(const std::string& path, const ReadOptions& options)
+      : options_(options), feed_(path, options.block_bytes, options.hash) {
+    info_.file = path == "-" ? "standard input" : path;
+    info_.format = "csv";
+    const std::string_view head = feed_.head();
+    dialect_ = understand(head, feed_.whole(), options, info_);
+    head_bytes_ = dialect_.data_offset;
+    select_channels();
+    pending_ = std::exchange(info_.warnings, {});
+    feed_.start_at(dialect_.data_offset);
+    next_line_ = dialect_.first_data_line;
+    info_.bytes = feed_.size();
+    info_.first_line = next_line_;
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
+    const bool small =
+        feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    for (int i = 0; threads > 1 && !small && i < threads; ++i)
+      workers_.emplace_back([this] { work(); });
+    room_ = workers_.size() + 2;
+  }
+  CsvSource(const CsvSource&) = delete;
+  CsvSource& operator=(const CsvSource&) = delete;
+  ~CsvSource() override { stop(); }
+
+  const LogInfo& info() const override { return info_; }
+
+  bool next(RowBlock& block, Warnings& warnings) override {
+    warnings.merge(std::exchange(pending_, {}));
+    if (fault_) throw Error(*fault_);
+    while (take(current_)) {
+      account(warnings);
+      std::swap(block, current_.rows);
+      if (current_.fault) prepare_fault();
+      if (block.rows > 0) return true;
+      if (fault_) throw Error(*fault_);
+    }
+    return false;
+  }
+
+  void finish(Warnings& warnings) override {
+    if (finished_) return;
+    finished_ = true;
+    warnings.merge(std::exchange(pending_, {}));
+    if (missing_.count > 0) {
+      std::string message = "empty or NaN cells, taken as missing samples (";
+      std::size_t listed = 0;
+      for (std::size_t c = 0; c < missing_per_channel_.size(); ++c) {
+        if (missing_per_channel_[c] == 0) continue;
+        if (listed++ == 8) {
+          message += ", …";
+          break;
+        }
+        message += fmt::format(
+            "{}{} {}", listed == 1 ? "" : ", ", info_.channels[c].name, missing_per_channel_[c]);
+      }
+      add(warnings, "missing_cell", message + ")", missing_);
+    }
+    if (feed_.nul_tail() > 0)
+      warnings.add("nul_tail",
+                   fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
+                               feed_.nul_tail(),
+                               feed_.cut_bytes() > 0 ? " with the line they cut off" : ""),
+                   place_name(next_line_, 1));
+    if (inexact_ > 0)
+      info_.dialect.push_back(
+          fmt::format("{} integers beyond 2^53 rounded to the nearest double", inexact_));
+  }
+
+  std::string place(const RowBlock& block, std::size_t i, std::uint64_t) const override {
+    return place_name(line_of(block, i), 1);
+  }
+  std::string where(const RowBlock& block, std::size_t i, std::uint64_t) const override {
+    return dialect_.time_column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
+                                     : fmt::format("{}:{}", info_.file, line_of(block, i));
+  }
+  std::uint64_t bytes_read() const override { return consumed_; }
+  std::uint64_t bytes_total() const override { return feed_.size(); }
+
+  std::string sha256() override {
+    stop();
+    for (auto& [sequence, raw] : unhashed_) feed_.hash(raw);
+    unhashed_.clear();
+    return feed_.finish_hash();
+  }
+
+  const Account& total() const { return total_; }
+
+ private:
+  static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
+    return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  // The channels to read, in file order, and what to do with each column.
+  void select_channels() {
+    std::vector<std::size_t> value_columns;
+    for (std::size_t i = 0; i < dialect_.columns.size(); ++i)
+      if (static_cast<int>(i) != dialect_.time_column) value_columns.push_back(i);
+    if (value_columns.empty())
+      throw Error({ErrorKind::input,
+                   "E0310",
+                   info_.file,
+                   "there is a time column and nothing else",
+                   "",
+                   "--time-column none reads it as a channel"});
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < value_columns.size(); ++k) {
+      Column& column = dialect_.columns[value_columns[k]];
+      if (column.name.empty()) column.name = fmt::format("c{}", k);
+      names.push_back(column.name);
+    }
+    std::vector<bool> wanted(value_columns.size(), options_.channels.empty());
+    for (const std::string& name : options_.channels)
+      wanted[find_channel(name, names, value_columns)] = true;
+    plan_.dialect = &dialect_;
+    plan_.overflow_as_missing = options_.overflow_as_missing;
+    plan_.skip_repeated_header = options_.skip_repeated_header;
+    plan_.target.assign(dialect_.columns.size(), Plan::kSkip);
+    if (dialect_.time_column >= 0)
+      plan_.target[static_cast<std::size_t>(dialect_.time_column)] = Plan::kTime;
+    for (std::size_t k = 0; k < value_columns.size(); ++k) {
+      if (!wanted[k]) continue;
+      const Column& column = dialect_.columns[value_columns[k]];
+      plan_.target[value_columns[k]] = static_cast<int>(plan_.channels++);
+      info_.channels.push_back({column.name, column.unit, true});
+    }
+    missing_per_channel_.assign(plan_.channels, 0);
+    fractional_.assign(plan_.channels, 0);
+  }
+
+  std::size_t find_channel(const std::string& wanted,
+                           const std::vector<std::string>& names,
+                           const std::vector<std::size_t>& columns) const {
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (names[k] == wanted) return k;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (dialect_.columns[columns[k]].text == wanted) return k;
+    if (wanted.size() > 1 && wanted.size() < 8 && wanted[0] == 'c' &&
+        wanted.find_first_not_of("0123456789", 1) == std::string::npos) {
+      const auto k = static_cast<std::size_t>(std::stoul(wanted.substr(1)));
+      if (k < names.size()) return k;
+    }
+    if (dialect_.time_column >= 0 &&
+        dialect_.columns[static_cast<std::size_t>(dialect_.time_column)].name == wanted)
+      throw Error({ErrorKind::usage,
+                   "E0320",
+                   info_.file,
+                   "this is the time column, not a channel",
+                   wanted,
+                   "--time-column none reads it as a channel"});
+    const auto near = nearest(wanted, names);
+    throw Error({ErrorKind::usage,
+                 "E0320",
+                 info_.file,
+                 "there is no channel of this name",
+                 wanted,
+                 near ? "did you mean " + *near + "?" : "inspect lists the channels"});
+  }
+
+  void add(Warnings& warnings,
+           std::string_view code,
+           std::string_view message,
+           const Tally& tally,
+           std::uint64_t base = 0) const {
+    for (std::size_t i = 0; i < tally.spots.size(); ++i)
+      warnings.add(code, message, place_name(base + tally.spots[i].line, tally.spots[i].column), 1);
+    if (tally.count > tally.spots.size())
+      warnings.add(code, message, "", tally.count - tally.spots.size());
+  }
+
+  void account(Warnings& warnings) {
+    ParsedChunk& chunk = current_;
+    chunk.rows.first_line = next_line_;
+    chunk_line_ = next_line_;
+    add(warnings, "blank_line", "blank lines skipped", chunk.blank, next_line_);
+    add(warnings,
+        "comment_line",
+        "comment lines between the rows skipped",
+        chunk.comment,
+        next_line_);
+    add(warnings, "repeated_header", "repeated header lines skipped", chunk.repeated, next_line_);
+    add(warnings,
+        "mixed_line_ends",
+        "line ends of another kind than the first, accepted",
+        chunk.mixed_end,
+        next_line_);
+    add(warnings,
+        "infinite_value",
+        "infinities, taken as missing samples",
+        chunk.infinite,
+        next_line_);
+    add(warnings,
+        "number_out_of_range",
+        "numbers out of the range of a double, taken as missing samples",
+        chunk.overflow,
+        next_line_);
+    if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
+      cr_noted_ = true;
+      warnings.add("carriage_return_line_ends",
+                   "lines end in a lone carriage return (old Macintosh)",
+                   place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
+    }
+    for (const Spot& spot : chunk.missing.spots) missing_.add(next_line_ + spot.line, spot.column);
+    missing_.count += chunk.missing.count - chunk.missing.spots.size();
+    for (std::size_t c = 0; c < plan_.channels; ++c) {
+      missing_per_channel_[c] += chunk.missing_per_channel[c];
+      fractional_[c] |= chunk.fractional[c];
+      info_.channels[c].integer = fractional_[c] == 0;
+    }
+    inexact_ += chunk.inexact_integers;
+    next_line_ += chunk.lines;
+    consumed_ += chunk.account.bytes;
+    total_.add(chunk.account);
+  }
+
+  void prepare_fault() {
+    fault_ = current_.fault->fault;
+    fault_->where = at(info_.file,
+                       chunk_line_ + current_.fault->spot.line,
+                       current_.fault->spot.column,
+                       current_offset_ + current_.fault->byte);
+  }
+
+  bool take(ParsedChunk& chunk) {
+    return workers_.empty() ? take_inline(chunk) : take_from_workers(chunk);
+  }
+
+  bool take_inline(ParsedChunk& chunk) {
+    if (!feed_.next(raw_)) {
+      feed_.hash(raw_);
+      raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
+      return false;
+    }
+    parse_rows(raw_.text(), plan_, chunk);
+    feed_.hash(raw_);
+    raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
+    current_offset_ = raw_.offset;
+    return true;
+  }
+
+  struct Done {
+    ParsedChunk chunk;
+    std::uint64_t offset = 0;
+    bool end = false;
+    std::exception_ptr failure;
+  };
+
+  bool take_from_workers(ParsedChunk& chunk) {
+    std::unique_lock lock(mutex_);
+    if (ended_) return false;
+    spare_chunks_.push_back(std::move(chunk));
+    done_changed_.wait(lock, [&] { return done_.count(delivered_) > 0; });
+    auto node = done_.extract(delivered_);
+    ++delivered_;
+    room_changed_.notify_one();
+    Done& item = node.mapped();
+    if (item.end || item.failure) ended_ = true;
+    if (item.failure) std::rethrow_exception(item.failure);
+    if (item.end) return false;
+    chunk = std::move(item.chunk);
+    current_offset_ = item.offset;
+    return true;
+  }
+
+  void work() {
+    for (;;) {
+      RawChunk raw;
+      Done item;
+      std::uint64_t sequence = 0;
+      {
+        std::unique_lock lock(mutex_);
+        room_changed_.wait(
+            lock, [&] { return stop_ || exhausted_ || (!reading_ && read_ < delivered_ + room_); });
+        if (stop_ || exhausted_) return;
+        reading_ = true;  // one reader at a time, in file order
+        sequence = read_++;
+        if (!spare_raws_.empty()) {
+          raw = std::move(spare_raws_.back());
+          spare_raws_.pop_back();
+        }
+        if (!spare_chunks_.empty()) {
+          item.chunk = std::move(spare_chunks_.back());
+          spare_chunks_.pop_back();
+        }
+      }
+      try {
+        item.end = !feed_.next(raw);
+      } catch (...) {
+        item.failure = std::current_exception();
+      }
+      item.offset = raw.offset;
+      {
+        const std::lock_guard lock(mutex_);
+        reading_ = false;
+        exhausted_ = exhausted_ || item.end || item.failure;
+        room_changed_.notify_all();
+      }
+      if (!item.end && !item.failure) {
+        try {
+          parse_rows(raw.text(), plan_, item.chunk);
+        } catch (...) {
+          item.failure = std::current_exception();
+        }
+      }
+      {
+        const std::lock_guard lock(mutex_);
+        done_.emplace(sequence, std::move(item));
+        unhashed_.emplace(sequence, std::move(raw));
+        done_changed_.notify_one();
+      }
+      hash_in_order();
+    }
+  }
+
+  // Whoever comes by hashes what is next in line; nobody waits for it.
+  void hash_in_order() {
+    for (;;) {
+      RawChunk raw;
+      {
+        const std::lock_guard lock(mutex_);
+        if (hashing_ || unhashed_.empty() || unhashed_.begin()->first != hashed_) return;
+        hashing_ = true;
+        raw = std::move(unhashed_.begin()->second);
+        unhashed_.erase(unhashed_.begin());
+      }
+      feed_.hash(raw);
+      raw.hash_from = raw.hash_to = raw.nuls_after = 0;
+      const std::lock_guard lock(mutex_);
+      spare_raws_.push_back(std::move(raw));
+      ++hashed_;
+      hashing_ = false;
+    }
+  }
+
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+      room_changed_.notify_all();
+    }
+    for (std::thread& worker : workers_) worker.join();
+    workers_.clear();
+    ended_ = true;
+  }
+
+  ReadOptions options_;
+  LogInfo info_;
+  Dialect dialect_;
+  Plan plan_;
+  Feed feed_;
+  Warnings pending_;
+  RawChunk raw_;
+  ParsedChunk current_;
+  std::optional<Fault> fault_;
+  Tally missing_;
+  std::vector<std::uint64_t> missing_per_channel_;
+  std::vector<char> fractional_;
+  Account total_;
+  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0,
+                head_bytes_ = 0, inexact_ = 0;
+  bool cr_noted_ = false, finished_ = false, ended_ = false;
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable room_changed_, done_changed_;
+  std::map<std::uint64_t, Done> done_;
+  std::map<std::uint64_t, RawChunk> unhashed_;
+  std::vector<RawChunk> spare_raws_;
+  std::vector<ParsedChunk> spare_chunks_;
+  std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
+  std::size_t room_ = 2;
+  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false;
+};
+
+}  // namespace
+}  // namespace csv
+
+std::unique_ptr<RowSource> open_csv(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<csv::CsvSource>(path, options);
 }
-bool sniff_csv(const std::string&, std::string_view) { return false; }
+
+// Text is what CSV may be: no NUL byte in front, and a line end or nothing but printable bytes.
+bool sniff_csv(const std::string& path, std::string_view first_bytes) {
+  for (const std::string_view suffix : {".csv", ".tsv", ".txt", ".dat", ".CSV", ".TXT", ".DAT"})
+    if (path.size() > suffix.size() && path.substr(path.size() - suffix.size()) == suffix)
+      return true;
+  const std::string_view front = first_bytes.substr(0, 4096);
+  return !front.empty() && std::none_of(front.begin(), front.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f';
+  });
+}
+
 }  // namespace libchar

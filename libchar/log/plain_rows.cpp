@@ -72,6 +72,18 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t find_separators(std:
   return count;
 }
 
+// Constants of the vector code, as memory operands.
+struct alignas(16) Bytes {
+  std::uint8_t value[16];
+};
+consteval Bytes all(std::uint8_t byte) {
+  Bytes bytes{};
+  for (auto& b : bytes.value) b = byte;
+  return bytes;
+}
+constexpr Bytes kPoint = all('.'), kZero = all('0'), kNine = all(9);
+__m128i vector_of(const Bytes& bytes) { return _mm_load_si128(reinterpret_cast<const __m128i*>(bytes.value)); }
+
 struct Field {
   std::int64_t digits = 0;   // all digits as one integer
   std::uint32_t behind = 0;  // how many of them stand behind the point
@@ -81,9 +93,9 @@ struct Field {
 __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline Field read_field(const char* text, std::uint32_t length) {
   const __m128i raw = _mm_loadu_si128(reinterpret_cast<const __m128i*>(text));
   const std::uint32_t inside = _bzhi_u32(0xFFFF, length);
-  const std::uint32_t points = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(raw, _mm_set1_epi8('.')))) & inside;
-  const __m128i digit = _mm_sub_epi8(raw, _mm_set1_epi8('0'));
-  const auto is_digit = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, _mm_set1_epi8(9)), digit)));
+  const std::uint32_t points = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(raw, vector_of(kPoint)))) & inside;
+  const __m128i digit = _mm_sub_epi8(raw, vector_of(kZero));
+  const auto is_digit = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, vector_of(kNine)), digit)));
   Field field;
   // Branches that are never taken in a plain file are cheaper than one flag put together from four.
   if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside || (points & (points - 1)) != 0 || (is_digit & inside) == 0, 0)) return field;
@@ -127,32 +139,34 @@ __attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin
 /// the text for the very first) and stops[r * width].
 struct Column {
   const char* text;
-  const std::uint32_t* stops;
+  const std::uint32_t* stops;  // of all columns
   std::size_t width, index;
-  char separator;  // that must stand behind the field
-
-  std::size_t begin(std::size_t row) const {
-    const std::size_t field = row * width + index;
-    return field == 0 ? 0 : stops[field - 1] + std::size_t{1};
-  }
-  std::size_t stop(std::size_t row) const { return stops[row * width + index]; }
+  char delimiter;
 };
 
 /// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the first row that it refuses.
-template <class Take>
-__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last, Take take) {
-  for (std::size_t row = first; row < last; ++row) {
-    const std::size_t from = column.begin(row);
-    std::size_t to = column.stop(row);
-    if (column.text[to] != column.separator) return row;
-    if (column.separator == '\n') to -= static_cast<std::size_t>(to > from && column.text[to - 1] == '\r');
-    const char* const begin = column.text + from;
-    const char* const end = column.text + to;
+template <bool kLast, class Take>
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_fields(const Column column, std::size_t first, const std::size_t last, Take take) {
+  const char* const text = column.text;
+  const std::size_t width = column.width;
+  const char separator = kLast ? '\n' : column.delimiter;
+  const std::uint32_t* stop = column.stops + first * width + column.index;
+  for (std::size_t row = first; row < last; ++row, stop += width) {
+    const std::size_t from = stop == column.stops ? 0 : stop[-1] + std::size_t{1};
+    std::size_t to = *stop;
+    if (__builtin_expect(text[to] != separator, 0)) return row;
+    if (kLast) to -= static_cast<std::size_t>(to > from && text[to - 1] == '\r');
+    const char* const begin = text + from;
     // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
     const std::uint32_t negative = ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
-    if (!take(row, begin, end, negative, read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative))) return row;
+    if (__builtin_expect(!take(row, begin, text + to, negative, read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative)), 0)) return row;
   }
   return last;
+}
+
+template <class Take>
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last, Take take) {
+  return column.index + 1 == column.width ? take_fields<true>(column, first, last, take) : take_fields<false>(column, first, last, take);
 }
 
 __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Column& column, std::size_t first, std::size_t last, double* values) {
@@ -195,7 +209,7 @@ PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColu
     good = std::min(rows, first + kBatch);
     const std::size_t whole = good;
     for (std::size_t c = 0; c < width; ++c) {
-      const Column column{text.data(), scratch.data(), width, c, c + 1 == width ? '\n' : delimiter};
+      const Column column{text.data(), scratch.data(), width, c, delimiter};
       switch (columns[c].use) {
         case PlainColumn::Use::value: good = take_values(column, first, good, columns[c].values); break;
         case PlainColumn::Use::stamp: good = take_stamps(column, first, good, columns[c]); break;

@@ -27,11 +27,20 @@ class LogWriter {
   virtual ~LogWriter() = default;
   /// `columns[c]` holds the block of channel c; all of the same length. Missing samples are written as empty cells / NaN.
   virtual void write(std::span<const std::span<const double>> columns) = 0;
+  /// What only the end of reading knew better (the rate); before finish(). CSV has written its stamps by then and keeps them.
+  virtual void refine(const LogInfo& info) { static_cast<void>(info); }
   /// Completes and names the file (and its sidecar).
   virtual void finish() = 0;
+  /// The files written, the log first.
+  virtual std::vector<std::string> files() const = 0;
+  /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for them").
+  virtual std::vector<std::string> losses() const { return {}; }
 };
 
 /// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format or suffix.
 std::unique_ptr<LogWriter> open_log_writer(const std::string& path, const LogInfo& info, const WriteOptions& options = {});
+
+/// The format that `path` and `options` ask for: "csv", "npy" or "raw".
+std::string format_to_write(const std::string& path, const WriteOptions& options);
 
 }  // namespace libchar

@@ -1,0 +1,288 @@
+// The Allan family by differences of the phase x (cumulated rate), step m, tau = m dt, n terms
+// (NIST SP 1065, 5):
+//
+//   ADEV, OADEV   sum (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 tau^2 n)          i = 0, m, 2m, …  /
+//   every i HDEV, OHDEV   sum (x_{i+3m} - 3 x_{i+2m} + 3 x_{i+m} - x_i)^2 / (6 tau^2 n)   likewise
+//   MDEV          sum (x averaged over m points, then the second difference)^2 / (2 tau^2 n) =
+//   third difference of the sum W
+//                 of x, divided by m:  sum (W_{i+3m} - 3 W_{i+2m} + 3 W_{i+m} - W_i)^2 / (2 m^2
+//                 tau^2 n)
+//   TDEV          tau MDEV / sqrt(3)
+//   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
+//   ends by reflection about
+//                 the end point; that is, the rate is mirrored
+//
+// A term that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts,
+// added in order, so that the result does not depend on the number of threads.
+
+#include "libchar/allan/allan_deviation.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libchar/allan/anchored_phase.hpp"
+#include "libchar/allan/tau_grid.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kPiece = 65536;
+
+struct TypeFacts {
+  DeviationType type;
+  std::string_view name;
+  int order;    // of the difference
+  bool of_sum;  // of W instead of x
+  bool overlapping;
+  double divisor;  // sum of squares / (divisor tau^2 n)
+};
+constexpr TypeFacts kTypes[] = {{DeviationType::adev, "adev", 2, false, false, 2},
+                                {DeviationType::oadev, "oadev", 2, false, true, 2},
+                                {DeviationType::mdev, "mdev", 3, true, true, 2},
+                                {DeviationType::tdev, "tdev", 3, true, true, 2},
+                                {DeviationType::hdev, "hdev", 3, false, false, 6},
+                                {DeviationType::ohdev, "ohdev", 3, false, true, 6},
+                                {DeviationType::totdev, "totdev", 2, false, true, 2}};
+
+const TypeFacts& facts(DeviationType type) {
+  return kTypes[static_cast<std::size_t>(type)];
+}
+
+/// Starts [begin, end) on the grid of multiples of `stride`.
+struct Starts {
+  std::uint64_t begin, end, stride;
+  std::uint64_t count() const { return end > begin ? (end - begin + stride - 1) / stride : 0; }
+};
+
+/// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
+/// it sums.
+Starts starts_in(const Stretch& stretch, const TypeFacts& f, std::uint64_t m) {
+  const std::uint64_t stride = f.overlapping ? 1 : m;
+  const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
+  const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
+  return {(stretch.begin + stride - 1) / stride * stride, end, stride};
+}
+
+/// The record continued by mirrored copies of `reach` samples at both ends (phase: reflected about
+/// its end points).
+std::vector<double> continued(std::span<const double> x, std::uint64_t reach, DataKind kind) {
+  std::vector<double> all;
+  all.reserve(x.size() + 2 * reach);
+  if (kind == DataKind::rate) {
+    for (std::uint64_t j = reach; j-- > 0;) all.push_back(x[j]);
+    all.insert(all.end(), x.begin(), x.end());
+    for (std::uint64_t j = 0; j < reach; ++j) all.push_back(x[x.size() - 1 - j]);
+    return all;
+  }
+  const double last = x.back() - x[0];
+  for (std::uint64_t j = reach; j > 0; --j) all.push_back(-(x[j] - x[0]));
+  for (const double value : x) all.push_back(value - x[0]);
+  for (std::uint64_t j = 1; j <= reach; ++j)
+    all.push_back(last + (last - (x[x.size() - 1 - j] - x[0])));
+  return all;
+}
+
+struct Totals {
+  double sum = 0;
+  std::uint64_t terms = 0;
+};
+
+/// All terms with starts in the ranges, cut into pieces at multiples of kPiece and added in order.
+Totals total_over(const AnchoredPhase& phase,
+                  const TypeFacts& f,
+                  std::uint64_t m,
+                  const std::vector<Starts>& ranges) {
+  const std::uint64_t pieces = phase.points / kPiece + 1;
+  std::vector<Totals> part(pieces);
+  tbb::parallel_for(std::uint64_t{0}, pieces, [&](std::uint64_t piece) {
+    const std::uint64_t begin = piece * kPiece, end = begin + kPiece;
+    auto range = std::partition_point(
+        ranges.begin(), ranges.end(), [&](const Starts& r) { return r.end <= begin; });
+    for (; range != ranges.end() && range->begin < end; ++range) {
+      const std::uint64_t stride = range->stride;
+      const Starts cut = {std::max(range->begin, (begin + stride - 1) / stride * stride),
+                          std::min(range->end, end),
+                          stride};
+      if (cut.count() == 0) continue;
+      part[piece].terms += cut.count();
+      part[piece].sum += sum_of_squares(phase, f.order, f.of_sum, m, cut.begin, cut.end, stride);
+    }
+  });
+  Totals all;
+  for (const Totals& p : part) {
+    all.sum += p.sum;
+    all.terms += p.terms;
+  }
+  return all;
+}
+
+std::vector<Starts> ranges_of(const AnchoredPhase& phase,
+                              const TypeFacts& f,
+                              std::uint64_t m,
+                              std::uint64_t reach) {
+  if (f.type ==
+      DeviationType::totdev)  // centred on the inner points of the record within its continuation
+    return {{reach + 1 - m, phase.points - reach - 1 - m, 1}};
+  std::vector<Starts> ranges;
+  for (const Stretch& s : phase.stretches) {
+    const Starts r = starts_in(s, f, m);
+    if (r.count() > 0) ranges.push_back(r);
+  }
+  return ranges;
+}
+
+AllanPoint point_of(const Totals& total,
+                    const TypeFacts& f,
+                    std::uint64_t m,
+                    double dt_s,
+                    double scale,
+                    DataKind kind) {
+  AllanPoint point;
+  const double factor = static_cast<double>(m);
+  point.m = m;
+  point.tau_s = factor * dt_s;
+  point.terms = total.terms;
+  double step = kind == DataKind::rate ? factor : point.tau_s;
+  if (f.of_sum) step *= factor;
+  point.deviation = std::sqrt(total.sum / (f.divisor * static_cast<double>(total.terms))) / step;
+  point.deviation /= scale;
+  if (f.type == DeviationType::tdev) point.deviation *= point.tau_s / std::sqrt(3.0);
+  return point;
+}
+
+[[noreturn]] void too_short(const TypeFacts& f, std::uint64_t samples) {
+  const std::uint64_t needed = term_span(f.type, 1);
+  throw Error({ErrorKind::numeric,
+               "",
+               "",
+               std::string(f.name) + " needs at least " + std::to_string(needed) +
+                   " consecutive samples; none of its terms fits the " + std::to_string(samples) +
+                   " of this record",
+               "",
+               ""});
+}
+
+Stretch longest(std::span<const double> record) {
+  Stretch best;
+  std::uint64_t begin = 0;
+  for (std::uint64_t i = 0; i <= record.size(); ++i)
+    if (i == record.size() || !std::isfinite(record[i])) {
+      if (i - begin > best.end - best.begin) best = {begin, i};
+      begin = i + 1;
+    }
+  return best;
+}
+
+/// Total deviation of the longest gap-free stretch only: reflection has no meaning at a gap.
+std::span<const double> without_gaps(std::span<const double> record, AllanCurve& curve) {
+  const Stretch s = longest(record);
+  if (s.end - s.begin == record.size()) return record;
+  curve.notes.push_back("total deviation of the longest stretch without gaps only, samples " +
+                        std::to_string(s.begin) + " to " + std::to_string(s.end) + " of " +
+                        std::to_string(record.size()));
+  return record.subspan(s.begin, s.end - s.begin);
+}
+
+void note_empty(const std::vector<std::uint64_t>& empty, double dt_s, AllanCurve& curve) {
+  if (empty.empty()) return;
+  curve.notes.push_back("gaps leave no term at " + std::to_string(empty.size()) +
+                        " averaging times from " +
+                        significant(static_cast<double>(empty.front()) * dt_s, 4) + " s on");
+}
+
+void check(double dt_s, const AllanOptions& options) {
+  if (!(dt_s > 0) || !std::isfinite(dt_s))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "the sampling interval must be a positive number of seconds",
+                 shortest(dt_s),
+                 ""});
+  if (options.grid == TauGrid::list && options.taus_s.empty())
+    throw Error({ErrorKind::usage, "", "", "no averaging time is listed", "", ""});
+}
+
+void fill_points(const AnchoredPhase& phase,
+                 const TypeFacts& f,
+                 std::uint64_t reach,
+                 const std::vector<std::uint64_t>& factors,
+                 DataKind kind,
+                 AllanCurve& curve) {
+  std::vector<AllanPoint> points(factors.size());
+  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+    const std::uint64_t m = factors[k];
+    const Totals total = total_over(phase, f, m, ranges_of(phase, f, m, reach));
+    if (total.terms > 0) points[k] = point_of(total, f, m, curve.dt_s, phase.scale, kind);
+  });
+  std::vector<std::uint64_t> empty;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (points[k].terms > 0)
+      curve.points.push_back(points[k]);
+    else
+      empty.push_back(factors[k]);
+  note_empty(empty, curve.dt_s, curve);
+}
+
+AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summed) {
+  return kind == DataKind::rate ? anchored_phase_of_rate(record, summed)
+                                : anchored_phase_of_phase(record, summed);
+}
+
+}  // namespace
+
+std::string_view name_of(DeviationType type) {
+  return facts(type).name;
+}
+
+std::optional<DeviationType> deviation_type(std::string_view name) {
+  for (const TypeFacts& f : kTypes)
+    if (f.name == name) return f.type;
+  return std::nullopt;
+}
+
+AllanCurve allan_deviation(std::span<const double> record,
+                           double dt_s,
+                           const AllanOptions& options) {
+  check(dt_s, options);
+  const TypeFacts& f = facts(options.type);
+  const auto rate_samples = [&](std::uint64_t size) {
+    return options.data == DataKind::rate || size == 0 ? size : size - 1;
+  };
+  AllanCurve curve;
+  curve.type = options.type;
+  curve.dt_s = dt_s;
+  curve.samples = rate_samples(record.size());
+  curve.missing = static_cast<std::uint64_t>(
+      std::count_if(record.begin(), record.end(), [](double v) { return !std::isfinite(v); }));
+  const bool total = f.type == DeviationType::totdev;
+  const auto used = total ? without_gaps(record, curve) : record;
+  const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);
+  if (rate_samples(used.size()) < term_span(f.type, 1)) too_short(f, curve.samples);
+  const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    const AnchoredPhase phase =
+        total ? anchored(continued(used, reach, options.data), options.data, false)
+              : anchored(used, options.data, f.of_sum);
+    fill_points(phase, f, reach, factors, options.data, curve);
+  });
+  if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list)
+    too_short(f, curve.samples);
+  if (curve.points.empty())
+    throw Error({ErrorKind::numeric,
+                 "",
+                 "",
+                 "no averaging time that was asked for fits the record of " +
+                     significant(static_cast<double>(curve.samples) * dt_s, 4) + " s",
+                 "",
+                 ""});
+  return curve;
+}
+
+}  // namespace libchar

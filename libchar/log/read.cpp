@@ -1,0 +1,197 @@
+#include "libchar/log/read.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/quality.hpp"
+#include "libchar/log/raw_rows.hpp"
+#include "libchar/log/time_base.hpp"
+
+namespace libchar {
+namespace {
+
+std::string front_of(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0)
+    throw Error({ErrorKind::input,
+                 "E0101",
+                 path,
+                 std::string("cannot open: ") + std::strerror(errno),
+                 "",
+                 ""});
+  struct stat status {};
+  if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+    ::close(descriptor);
+    throw Error({ErrorKind::input, "E0101", path, "is a folder, a file was expected", "", ""});
+  }
+  std::string bytes(4096, '\0');
+  // Only of a regular file can the front be read twice.
+  const ssize_t n =
+      S_ISREG(status.st_mode) ? ::pread(descriptor, bytes.data(), bytes.size(), 0) : 0;
+  ::close(descriptor);
+  bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  return bytes;
+}
+
+bool has_suffix(std::string_view path, std::string_view suffixes) {
+  while (!suffixes.empty()) {
+    const std::size_t blank = suffixes.find(' ');
+    const std::string_view suffix = suffixes.substr(0, blank);
+    if (path.size() > suffix.size()) {
+      const std::string_view end = path.substr(path.size() - suffix.size());
+      if (std::equal(end.begin(), end.end(), suffix.begin(), [](char a, char b) {
+            return a == b || (a >= 'A' && a <= 'Z' && a - 'A' + 'a' == b);
+          }))
+        return true;
+    }
+    if (blank == std::string_view::npos) break;
+    suffixes.remove_prefix(blank + 1);
+  }
+  return false;
+}
+
+// The name decides before the content: a .csv that holds something else is told so by the CSV
+// reader.
+const Format& format_of(const std::string& path, const ReadOptions& options) {
+  const auto& table = formats();
+  const auto named = [&](std::string_view name) -> const Format* {
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const Format& f) { return f.name == name; });
+    return found == table.end() ? nullptr : &*found;
+  };
+  if (options.format != "auto") {
+    if (const Format* format = named(options.format)) return *format;
+    throw Error({ErrorKind::usage,
+                 "",
+                 path,
+                 "unknown log format",
+                 options.format,
+                 "use auto, csv, npy or raw"});
+  }
+  if (path == "-") return *named("csv");
+  const std::string front = front_of(path);
+  for (const Format& format : table)
+    if (has_suffix(path, format.suffixes)) return format;
+  for (const Format& format : table)
+    if (format.sniff(path, front)) return format;
+  throw Error({ErrorKind::input,
+               "E0102",
+               path,
+               "neither text nor an array file, and no sidecar describes it",
+               "",
+               "--format csv|npy|raw, or write FILE.json (docs: raw binary)"});
+}
+
+// Passes blocks on and remembers which channels had a value at all.
+struct Watch final : BlockSink {
+  explicit Watch(BlockSink& sink) : next(sink) {}
+  void begin(const LogInfo& so_far) override {
+    seen.assign(so_far.channels.size(), false);
+    next.begin(so_far);
+  }
+  void block(const SampleBlock& samples) override {
+    for (std::size_t c = 0; c < seen.size(); ++c)
+      for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
+        seen[c] = !std::isnan(samples.channels[c][i]);
+    next.block(samples);
+  }
+  BlockSink& next;
+  std::vector<bool> seen;
+};
+
+}  // namespace
+
+LogInfo read_log(const std::string& path,
+                 const ReadOptions& options,
+                 BlockSink& sink,
+                 Progress& progress) {
+  if (options.rate_hz && !(*options.rate_hz > 0 && std::isfinite(*options.rate_hz)))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "the rate must be a positive number of hertz",
+                 shortest(*options.rate_hz),
+                 ""});
+  const auto source = format_of(path, options).open(path, options);
+  Warnings warnings;
+  Watch watch(sink);
+  TimeGrid grid(*source, options, watch, warnings);
+  RowBlock block;
+  const std::string what = "reading " + path;
+  bool more = true;
+  while (more && source->next(block, warnings)) {
+    more = grid.push(block);
+    const std::uint64_t total = source->bytes_total();
+    progress.update(
+        total > 0 ? static_cast<double>(source->bytes_read()) / static_cast<double>(total) : -1,
+        what);
+  }
+  LogInfo known;
+  grid.finish(known);
+  source->finish(warnings);
+  LogInfo info = source->info();
+  info.rows = known.rows;
+  info.samples = known.samples;
+  if (known.rows == 0) throw Error({ErrorKind::input, "E0301", info.file, "no data rows", "", ""});
+  TimeBase time = info.time;
+  if (known.time.from_stamps || known.time.rate_hz > 0) {
+    time = known.time;
+    time.column = info.time.column;
+    time.unit = info.time.unit;
+    time.unit_guessed = info.time.unit_guessed;
+  }
+  info.time = time;
+  for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)
+    if (!watch.seen[c])
+      throw Error({ErrorKind::input,
+                   "E0318",
+                   info.file,
+                   "column " + info.channels[c].name + " has no finite value",
+                   "",
+                   "--channels reads only the columns named there"});
+  info.sha256 = source->sha256();
+  info.bytes = std::max(info.bytes, source->bytes_read());
+  info.warnings = std::move(warnings);
+  return info;
+}
+
+namespace {
+
+struct Collector final : BlockSink {
+  void begin(const LogInfo& so_far) override {
+    samples.resize(so_far.channels.size());
+    meters.resize(so_far.channels.size());
+  }
+  void block(const SampleBlock& block) override {
+    for (std::size_t c = 0; c < samples.size(); ++c) {
+      samples[c].insert(samples[c].end(), block.channels[c], block.channels[c] + block.rows);
+      meters[c].push({block.channels[c], block.rows});
+    }
+  }
+  std::vector<std::vector<double>> samples;
+  std::vector<QualityMeter> meters;
+};
+
+}  // namespace
+
+Recording read_recording(const std::string& path, const ReadOptions& options, Progress& progress) {
+  Collector collector;
+  Recording recording;
+  recording.info = read_log(path, options, collector, progress);
+  recording.samples = std::move(collector.samples);
+  for (std::size_t c = 0; c < recording.info.channels.size(); ++c)
+    quality_warnings(
+        recording.info.channels[c], collector.meters[c].finish(), recording.info.warnings);
+  return recording;
+}
+
+}  // namespace libchar
