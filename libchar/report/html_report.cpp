@@ -51,7 +51,7 @@ std::string head(const Characterization& result) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"referrer\" content=\"no-referrer\">\n"
       "<meta name=\"generator\" content=\"sensorchar {}\">\n<title>Sensor noise: {}</title>\n<style>{}</style>\n"
-      "<!--\nThe plots of this page are drawn by Chart.js, whose licence follows.\n\n{}-->\n</head>\n",
+      "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and @kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both follows.\n\n{}-->\n</head>\n",
       policy, version(), html_text(result.log.file), page_css(), html_comment(chart_js_licence()));
 }
 
