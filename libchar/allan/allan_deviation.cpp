@@ -17,6 +17,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -265,7 +266,8 @@ AllanCurve allan_deviation(std::span<const double> record,
   const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);
   if (rate_samples(used.size()) < term_span(f.type, 1)) too_short(f, curve.samples);
   const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.execute([&] {
     const AnchoredPhase phase =
         total ? anchored(continued(used, reach, options.data), options.data, false)

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/chi_square.hpp"
 #include "libchar/core/noise_terms.hpp"

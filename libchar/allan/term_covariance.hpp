@@ -1,0 +1,30 @@
+#pragma once
+// Covariance of two terms (second or third differences) of a deviation, for each noise of unit
+// coefficient.
+
+#include <array>
+#include <cstddef>
+
+#include "libchar/core/noise_terms.hpp"
+
+namespace libchar {
+
+inline constexpr std::size_t kRandomTerms =
+    4;  ///< white, flicker, walk, quantization; the ramp is deterministic
+
+/// One value per random term, by the index of Term.
+using PerTerm = std::array<double, kRandomTerms>;
+
+/// Covariance of d1 = (second difference of x at step m1)/m1 and d2 likewise with m2, their centres
+/// `lag` samples apart: delta2_m1 delta2_m2 s(lag) / (m1 m2), evaluated without cancellation
+/// between very different steps and far away.
+PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s);
+
+/// Same for the third difference (Hadamard): -delta6_m s(lag) / m^2.
+PerTerm hadamard_term_covariance(double m, double lag, double dt_s);
+
+/// Same for the second difference of the phase averaged over m points (modified Allan): delta6_m
+/// T(lag) / m^4.
+PerTerm modified_term_covariance(double m, double lag, double dt_s);
+
+}  // namespace libchar

@@ -1,0 +1,175 @@
+// The streaming curve against direct sums: values, counts, pieces, missing samples, extremes.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/error.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::vector<double> noise(std::size_t n, unsigned seed, double offset = 0, double drift = 0) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> y(n);
+  double walk = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    walk += 0.01 * normal(engine);
+    y[i] = offset + normal(engine) + walk + drift * double(i) / double(n);
+  }
+  return y;
+}
+
+AllanCurve pyramid_of(const std::vector<double>& y, std::size_t piece = 0, double dt = 0.5) {
+  AllanPyramid pyramid;
+  if (piece == 0) piece = y.size();
+  for (std::size_t i = 0; i < y.size(); i += piece)
+    pyramid.push(std::span(y).subspan(i, std::min(piece, y.size() - i)));
+  return pyramid.finish(dt);
+}
+
+struct Truth {
+  double deviation = 0;
+  std::uint64_t terms = 0;
+};
+
+/// Terms at every (m/4)-th start from the cumulated sum of the samples less the first, in long
+/// double.
+Truth direct(const std::vector<double>& y, std::uint64_t m) {
+  const std::uint64_t stride = m >= 8 ? m / 4 : 1;
+  std::vector<long double> x(y.size() + 1);
+  std::vector<std::uint64_t> missing(y.size() + 1);
+  double first = std::nan("");
+  for (const double v : y)
+    if (std::isnan(first) && std::isfinite(v)) first = v;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const bool good = std::isfinite(y[i]);
+    x[i + 1] = x[i] + (good ? static_cast<long double>(y[i]) - first : 0.0L);
+    missing[i + 1] = missing[i] + (good ? 0 : 1);
+  }
+  Truth t;
+  long double sum = 0;
+  for (std::uint64_t i = 0; i + 2 * m <= y.size(); i += stride) {
+    if (missing[i + 2 * m] != missing[i]) continue;
+    const long double d = (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
+    sum += d * d;
+    ++t.terms;
+  }
+  if (t.terms > 0)
+    t.deviation = static_cast<double>(std::sqrt(sum / (2.0L * static_cast<long double>(t.terms))) /
+                                      static_cast<long double>(m));
+  return t;
+}
+
+void check_against_direct(const std::vector<double>& y, double limit) {
+  const AllanCurve curve = pyramid_of(y);
+  std::size_t k = 0;
+  for (std::uint64_t m = 1; 2 * m <= y.size(); m *= 2) {
+    const Truth t = direct(y, m);
+    INFO("n " << y.size() << " m " << m);
+    if (t.terms == 0) continue;
+    REQUIRE(k < curve.points.size());
+    CHECK(curve.points[k].m == m);
+    CHECK(curve.points[k].terms == t.terms);
+    CHECK(std::fabs(curve.points[k].deviation - t.deviation) <= limit * t.deviation);
+    ++k;
+  }
+  CHECK(k == curve.points.size());
+}
+
+void check_same(const AllanCurve& a, const AllanCurve& b, double factor = 1) {
+  REQUIRE(a.points.size() == b.points.size());
+  for (std::size_t k = 0; k < a.points.size(); ++k) {
+    CHECK(a.points[k].deviation * factor == b.points[k].deviation);
+    CHECK(a.points[k].terms == b.points[k].terms);
+  }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "pyramid equals the stride-m/4 reference to 2e-13, at every length around the block size") {
+  for (const std::size_t n : {2UL,    3UL,    7UL,    8UL,     15UL,     16UL,    17UL,   63UL,
+                              64UL,   1000UL, 4095UL, 4096UL,  4097UL,   4102UL,  4103UL, 4104UL,
+                              8191UL, 8192UL, 8193UL, 12288UL, 100003UL, 524288UL})
+    check_against_direct(noise(n, unsigned(n)), 2e-13);
+}
+
+TEST_CASE("pyramid with offset and drift") {
+  check_against_direct(noise(200000, 1, 987654321.123456), 2e-13);
+  check_against_direct(noise(200000, 2, 9.81e3), 2e-13);
+  check_against_direct(noise(200000, 3, 0, 1e6), 1e-10);
+}
+
+TEST_CASE("pyramid does not see how the samples were pushed") {
+  auto y = noise(70001, 4, 100);
+  for (const std::size_t gap : {0UL, 5UL, 4095UL, 4096UL, 40000UL, 40001UL, 70000UL})
+    y[gap] = std::nan("");
+  const AllanCurve whole = pyramid_of(y);
+  for (const std::size_t piece : {1UL, 2UL, 7UL, 67UL, 4095UL, 4096UL, 4097UL, 65537UL})
+    check_same(whole, pyramid_of(y, piece));
+}
+
+TEST_CASE("pyramid drops exactly the terms that touch a missing sample") {
+  auto y = noise(50000, 5, 1000);
+  std::mt19937_64 engine(6);
+  check_against_direct(y, 2e-13);
+  y[0] = std::nan("");
+  check_against_direct(y, 2e-13);
+  y[20000] = std::numeric_limits<double>::infinity();
+  y[20001] = -std::numeric_limits<double>::infinity();
+  check_against_direct(y, 2e-13);
+  CHECK(pyramid_of(y).missing == 3);
+  CHECK_FALSE(
+      pyramid_of(y).notes.empty());  // m = 16384 spans 32768 samples: no room beside the gap
+  for (int i = 0; i < 500; ++i) y[engine() % y.size()] = std::nan("");
+  check_against_direct(y, 2e-13);
+  std::fill(y.begin(), y.begin() + 9000, std::nan(""));
+  check_against_direct(y, 2e-13);
+}
+
+TEST_CASE("pyramid scales bit-exactly by powers of two and survives extremes") {
+  auto y = noise(20000, 7, 3);
+  const AllanCurve base = pyramid_of(y);
+  for (const int k : {-980, -600, -30, 1, 400, 900}) {
+    auto scaled = y;
+    for (double& v : scaled) v = std::ldexp(v, k);
+    check_same(base, pyramid_of(scaled), std::ldexp(1.0, k));
+  }
+  for (double& v : y) v *= 1e-310;
+  const AllanCurve tiny = pyramid_of(y);
+  for (std::size_t k = 0; k < base.points.size(); ++k)
+    CHECK(tiny.points[k].deviation == Approx(base.points[k].deviation * 1e-310).epsilon(1e-5));
+  std::vector<double> spike(20000, 1.0);
+  spike[5000] = 1e300;
+  CHECK(pyramid_of(spike).points[0].deviation == Approx(1e300 / std::sqrt(19999.0)).epsilon(1e-12));
+  for (const double c : {0.0, 9.81, -1e9, 1e-310})
+    for (const auto& p : pyramid_of(std::vector<double>(20000, c)).points) CHECK(p.deviation == 0);
+}
+
+TEST_CASE("pyramid and full overlap share m = 1, 2, 4 and agree within their spread above") {
+  const auto y = noise(100000, 8);
+  const AllanCurve pyramid = pyramid_of(y), full = allan_deviation(y, 0.5);
+  REQUIRE(pyramid.points.size() == full.points.size());
+  CHECK(pyramid.stride_divisor == 4);
+  for (std::size_t k = 0; k < full.points.size(); ++k)
+    CHECK(pyramid.points[k].deviation ==
+          Approx(full.points[k].deviation).epsilon(k < 3 ? 1e-13 : 0.1));
+}
+
+TEST_CASE("pyramid can be asked before the end and refuses too short records") {
+  const auto y = noise(30000, 9);
+  AllanPyramid pyramid;
+  pyramid.push(std::span(y).first(10000));
+  check_same(pyramid.finish(0.5), pyramid_of({y.begin(), y.begin() + 10000}));
+  pyramid.push(std::span(y).subspan(10000));
+  check_same(pyramid.finish(0.5), pyramid_of(y));
+  CHECK_THROWS_AS(AllanPyramid().finish(1), Error);
+  CHECK_THROWS_AS(pyramid_of({1.0}), Error);
+  CHECK_THROWS_AS(pyramid_of({1.0, std::nan(""), 2.0}), Error);
+  CHECK(pyramid_of({1.0, 2.0}).points.size() == 1);
+}
