@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/text.hpp"
@@ -53,25 +54,45 @@ std::string spectrum_title(const Spectrum& s) {
   return sides;
 }
 
-std::string plot(const char* kind, std::size_t index, const std::string& title, const std::string& caption, const std::string& channel) {
+std::string spectrum_axis(const Spectrum& s) {
+  std::string scaling(key_of(s.scaling));
+  std::transform(scaling.begin(), scaling.end(), scaling.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
+  return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
+}
+
+struct PlotText {
+  std::string title, axis, unit, caption;  // `axis`: short, the title says it in full
+};
+
+std::string plot(const char* kind, std::size_t index, const PlotText& text, const std::string& channel) {
   return fmt::format(
-      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-title=\"{2}\">\n<h3>{3}</h3>\n"
-      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{2} of {4}\"></canvas></div>\n<figcaption>{5}</figcaption>\n</figure>\n",
-      kind, index, html_attribute(title), html_text(title), html_attribute(channel), html_text(caption));
+      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-axis=\"{2}\" data-unit=\"{3}\">\n<h3>{4}</h3>\n"
+      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{5} of {6}\"></canvas></div>\n<figcaption>{7}</figcaption>\n</figure>\n",
+      kind, index, html_attribute(text.axis), html_attribute(text.unit), html_text(text.title), html_attribute(text.title),
+      html_attribute(channel), html_text(text.caption));
 }
 
 std::string plots(const ChannelResult& c, std::size_t index) {
   const std::string& name = c.channel.name;
   std::string out = "<div class=\"plots\">\n";
-  if (!c.allan.points.empty()) {
-    out += plot("allan", index, deviation_title(c.allan.type),
-                "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer than 5 degrees of freedom make them "
-                "unreliable. Line: fitted model. Dashed: its terms; marked: where each coefficient is read off.",
+  // A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
+  const auto& points = c.allan.points;
+  if (std::any_of(points.begin(), points.end(), [](const AllanPoint& p) { return p.deviation > 0; })) {
+    const std::string title = deviation_title(c.allan.type);
+    out += plot("allan", index,
+                {title, std::string(name_of(c.allan.type)), c.channel.unit.empty() ? "U" : c.channel.unit,
+                 "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer than 5 degrees of freedom make them "
+                 "unreliable. Line: fitted model. Dashed: its terms; marked: where each coefficient is read off."},
                 name);
   }
-  if (!c.spectrum.frequency_hz.empty()) {
-    out += plot("spectrum", index, spectrum_title(c.spectrum),
-                "Blue: measured, averaged in logarithmic bins, with its 95 % interval. Line: fitted model. Dashed: its terms.", name);
+  const Spectrum& s = c.spectrum;
+  bool any = false;
+  for (std::size_t i = 0; i < s.value.size(); ++i) any = any || (s.frequency_hz[i] > 0 && s.value[i] > 0);
+  if (any) {
+    out += plot("spectrum", index,
+                {spectrum_title(s), spectrum_axis(s), spectrum_unit(s.scaling, c.channel.unit),
+                 "Blue: measured, averaged in logarithmic bins, with its 95 % interval. Line: fitted model. Dashed: its terms."},
+                name);
   }
   return out + "</div>\n";
 }
@@ -158,8 +179,10 @@ std::string trust(const ChannelResult& c, std::size_t index) {
   const NoiseFit& fit = *c.fit;
   std::string out = "<div class=\"halves\">\n<div>\n";
   if (!fit.residuals.empty()) {
-    out += plot("residuals", index, "Residuals of the fit",
-                "Each point: measured against model in one bin, as a standard normal deviate. They should scatter evenly, 95 % within the grey band.",
+    out += plot("residuals", index,
+                {"Residuals of the fit", "residual", "sd",
+                 "Each point: measured against model in one bin, as a standard normal deviate. They should scatter evenly, 95 % within "
+                 "the grey band."},
                 c.channel.name);
   }
   out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" + html_text(goodness_sentence(fit.goodness)) + "</p>\n";

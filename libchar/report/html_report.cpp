@@ -51,7 +51,7 @@ std::string head(const Characterization& result) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"referrer\" content=\"no-referrer\">\n"
       "<meta name=\"generator\" content=\"sensorchar {}\">\n<title>Sensor noise: {}</title>\n<style>{}</style>\n"
-      "<!--\nThe plots of this page are drawn by Chart.js, whose licence follows.\n\n{}-->\n</head>\n",
+      "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and @kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both follows.\n\n{}-->\n</head>\n",
       policy, version(), html_text(result.log.file), page_css(), html_comment(chart_js_licence()));
 }
 
@@ -186,9 +186,14 @@ std::string provenance(const Characterization& result) {
   return out + "</section>\n";
 }
 
-}  // namespace
+// In tables and on axes a unit stands in its usual spelling ("m/s²" for "m/s^2"); the data keep what the log says.
+ChannelResult in_usual_spelling(ChannelResult channel) {
+  const auto unit = find_unit(channel.channel.unit);
+  if (unit && unit->symbol != "1") channel.channel.unit = unit->symbol;
+  return channel;
+}
 
-std::string html_report(const Characterization& result) {
+std::string page_of(const Characterization& result, const std::string& data) {
   std::string out = head(result);
   out += "<body>\n<header>\n<h1>Sensor noise <span class=\"unit\">" + html_text(result.log.file) + "</span></h1>\n"
          "<button id=\"download\" type=\"button\" hidden>Download the numbers (JSON)</button>\n</header>\n"
@@ -197,9 +202,17 @@ std::string html_report(const Characterization& result) {
   for (std::size_t i = 0; i < result.channels.size(); ++i) out += channel_section(result.channels[i], result.log, i);
   out += provenance(result);
   out += "</main>\n<footer>Written by sensorchar " + std::string(version()) + ". Plots: Chart.js, MIT licence (in the source of this page).</footer>\n";
-  out += "<script id=\"report-data\" type=\"application/json\">" + json_in_script(json_without_times(result)) + "</script>\n";
+  out += "<script id=\"report-data\" type=\"application/json\">" + data + "</script>\n";
   out += "<script>" + std::string(chart_js()) + "</script>\n<script>" + std::string(page_js()) + "</script>\n</body>\n</html>\n";
   return out;
+}
+
+}  // namespace
+
+std::string html_report(const Characterization& result) {
+  Characterization shown = result;
+  for (ChannelResult& channel : shown.channels) channel = in_usual_spelling(std::move(channel));
+  return page_of(shown, json_in_script(json_without_times(result)));
 }
 
 }  // namespace libchar

@@ -168,10 +168,8 @@
   }
 
   // ---- the three plots ----
-  const unitOf = (channel) => channel.unit || "U";
-
-  function allanChart(index, title) {
-    const a = report.allan.channels[index], f = report.fit.channels[index], unit = unitOf(a);
+  function allanChart(index, axis, unit) {
+    const a = report.allan.channels[index], f = report.fit.channels[index];
     const marks = f.derived ? f.derived.read_off_points : [];
     const measured = points(a.tau_s, a.deviation);
     const tip = (p) => {
@@ -207,12 +205,12 @@
     const [yMin, yMax] = padded(measured.map((p) => p.y).concat(near.map((m) => m.deviation)), 2.2);
     return {
       type: "line", data: { datasets: sets }, plugins: [readOffLabels, whitePaper],
-      options: options(logAxis("averaging time τ, s", xMin, xMax), logAxis(title + ", " + unit, yMin, yMax)),
+      options: options(logAxis("averaging time τ, s", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
     };
   }
 
-  function spectrumChart(index, title) {
-    const s = report.spectrum.channels[index], unit = s.value_unit;
+  function spectrumChart(index, axis, unit) {
+    const s = report.spectrum.channels[index];
     const measured = points(s.frequency_hz, s.value);
     const tip = (p) => {
       const out = ["f = " + people(p.x, 5) + " Hz", "measured " + people(p.y, 4) + " " + unit];
@@ -228,7 +226,7 @@
     const [yMin, yMax] = padded(measured.map((p) => p.y), 2.5);
     return {
       type: "line", data: { datasets: sets }, plugins: [whitePaper],
-      options: options(logAxis("frequency, Hz", xMin, xMax), logAxis(title + ", " + unit, yMin, yMax)),
+      options: options(logAxis("frequency, Hz", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
     };
   }
 
@@ -263,7 +261,7 @@
   const charts = new Map();
   function draw(figure) {
     if (charts.has(figure)) return;
-    const config = MAKERS[figure.dataset.kind](Number(figure.dataset.channel), figure.dataset.title);
+    const config = MAKERS[figure.dataset.kind](Number(figure.dataset.channel), figure.dataset.axis, figure.dataset.unit);
     charts.set(figure, new Chart(figure.querySelector("canvas"), config));
   }
   const watch = new IntersectionObserver((entries) => {
@@ -279,8 +277,8 @@
   let opened = [];
   window.addEventListener("beforeprint", () => {
     figures.forEach(draw);
-    charts.forEach((chart, figure) => chart.resize(690, figure.dataset.kind === "residuals" ? 170 : 300));
-    opened = Array.from(document.querySelectorAll("details:not([open])"));
+    charts.forEach((chart, figure) => chart.resize(690, figure.dataset.kind === "residuals" ? 170 : 320));
+    opened = Array.from(document.querySelectorAll("#provenance details:not([open])"));
     opened.forEach((details) => { details.open = true; });
   });
   window.addEventListener("afterprint", () => {

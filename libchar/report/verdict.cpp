@@ -92,7 +92,7 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
     if (!explained(channel)) out.push_back(goodness_sentence(fit.goodness));
     if (fit.second_opinion && !fit.second_opinion->agrees) out.push_back("The Allan fit disagrees: " + fit.second_opinion->sentence);
   }
-  if (q.saturated > 0) out.push_back(fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));
+  if (q.saturated > 0 && q.suggestions.empty()) out.push_back(fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));
   // Fewer cost nothing worth mentioning here: terms that touch them are left out.
   if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
     out.push_back(fmt::format("{} samples ({} %) are missing.", people_count(q.missing), people(100 * static_cast<double>(q.missing) / all, 2)));

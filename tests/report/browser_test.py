@@ -109,7 +109,9 @@ def check_page(browser, page, plots=None):
     count = browser.run(PLOTS)
     expect(plots is None or count == plots, f"{page}: {count} plots instead of {plots}")
     first = browser.run(DRAWN)
-    expect(first > 0 or count == 0, f"{page}: no plot drawn in view")
+    if count:
+        browser.run("document.querySelector('figure.plot').scrollIntoView()")
+        expect(browser.until(DRAWN), f"{page}: no plot drawn in view")
     if count > 30:
         expect(first < count / 3, f"{page}: {first} of {count} plots were drawn at once")
     expect(browser.run(DRAW_ALL) == count, f"{page}: printing does not draw every plot")
@@ -121,7 +123,8 @@ def check_page(browser, page, plots=None):
     expect(browser.run("return performance.getEntriesByType('resource').length") == 0, f"{page}: resources were loaded")
     check_axes(browser, page)
     check_download(browser, page)
-    console, requests = browser.console(), [r for r in browser.requests() if r != address]
+    # chrome:// is the browser's own empty tab.
+    console, requests = browser.console(), [r for r in browser.requests() if r != address and not r.startswith("chrome://")]
     expect(not console, f"{page}: console says {console[:3]}")
     expect(all(r.startswith("blob:") for r in requests), f"{page}: requests {requests[:3]}")
     print(f"{page}: {count} plots, {first} at once, {page.stat().st_size / 1e6:.2f} MB")
@@ -130,7 +133,7 @@ def check_page(browser, page, plots=None):
 def check_axes(browser, page):
     """Sidedness on the axis, and no value that a logarithmic axis cannot hold."""
     titles = browser.run("return Object.values(Chart.instances).map((c) => c.options.scales.y.title.text)")
-    spectra = [t for t in titles if "spectral" in t or "spectrum" in t]
+    spectra = [t for t in titles if "Hz" in t]
     expect(all("ne-sided" in t or "wo-sided" in t for t in spectra), f"{page}: a spectrum without its sides: {spectra}")
     bad = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic')
       .flatMap((c) => c.data.datasets.flatMap((d) => d.data)).filter((p) => !(p.x > 0) || !(p.y > 0)).length""")
@@ -177,7 +180,7 @@ def main():
         folder = pathlib.Path(name)
         browser = Browser(folder / "profile")
         try:
-            for kind, plots in {"imu": 18, "hostile": 36, "many": 144, "empty": 2}.items():
+            for kind, plots in {"imu": 18, "hostile": 36, "many": 144, "empty": 1}.items():
                 subprocess.run([sys.argv[1], kind, str(folder / kind)], check=True)
                 check_page(browser, folder / kind / "report.html", plots)
             check_narrow(browser, folder / "imu/report.html")

@@ -47,6 +47,7 @@ TEST_CASE("html: the plotting library comes with its whole licence and both noti
   CHECK(count(page, "Chart.js Contributors") >= 1);
   CHECK(count(page, "Permission is hereby granted, free of charge") == 1);
   CHECK(count(page, "kurkle/color") >= 1);
+  CHECK(count(without_assets(page), "Jukka Kurkela") == 1);
   CHECK(chart_js().find("Chart.js v3.") != std::string_view::npos);
 }
 
