@@ -1,7 +1,10 @@
-// Generalised least squares on the Allan variances a = A theta + e with Cov(e) = C(theta), the model's exact covariance:
-//   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the fitted curve stands still
-// (accuracy.md 3-5). C is a quadratic form in theta: its matrices are computed once, by polarisation about the start. There is
-// no objective behind the reweighting, so that it may swing: damped by a half after 25 rounds.
+// Generalised least squares on the Allan variances a = A theta + e with Cov(e) = C(theta), the
+// model's exact covariance:
+//   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
+//   fitted curve stands still
+// (accuracy.md 3-5). C is a quadratic form in theta: its matrices are computed once, by
+// polarisation about the start. There is no objective behind the reweighting, so that it may swing:
+// damped by a half after 25 rounds.
 #include "libchar/fit/allan_fit.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +25,8 @@ namespace {
 /// C(theta) = sum_ab x_a x_b M_ab with x = theta / start.
 class CovarianceForm {
  public:
-  CovarianceForm(const AllanCurve& curve, const Mixture& start, const TermSet& terms) : start_(start) {
+  CovarianceForm(const AllanCurve& curve, const Mixture& start, const TermSet& terms)
+      : start_(start) {
     for (std::size_t a = 0; a < kTerms; ++a) {
       if (!terms[a]) continue;
       form_[a][a] = allan_covariance(curve, single(start, a));
@@ -57,11 +61,14 @@ class CovarianceForm {
   std::array<std::array<Eigen::MatrixXd, kTerms>, kTerms> form_;
 };
 
-/// The points that the terms can explain: below 150 time constants of a low-pass the curve is another one.
+/// The points that the terms can explain: below 150 time constants of a low-pass the curve is
+/// another one.
 AllanCurve usable(const AllanCurve& curve, const NoiseFit& first) {
   AllanCurve kept = curve;
   const double from_s = first.bandwidth_hz ? 150 / (2 * std::numbers::pi * *first.bandwidth_hz) : 0;
-  std::erase_if(kept.points, [&](const AllanPoint& point) { return !(point.deviation > 0) || point.terms == 0 || point.tau_s < from_s; });
+  std::erase_if(kept.points, [&](const AllanPoint& point) {
+    return !(point.deviation > 0) || point.terms == 0 || point.tau_s < from_s;
+  });
   return kept;
 }
 
@@ -81,7 +88,9 @@ std::optional<Solution> solve(const AllanCurve& curve, const Mixture& start) {
     const AllanPoint& point = curve.points[static_cast<std::size_t>(j)];
     variance[j] = point.deviation * point.deviation;
     for (std::size_t i = 0; i < kTerms; ++i) {
-      if (terms[i]) design(j, static_cast<Eigen::Index>(i)) = unit_allan_variance(static_cast<Term>(i), static_cast<double>(point.m), curve.dt_s);
+      if (terms[i])
+        design(j, static_cast<Eigen::Index>(i)) =
+            unit_allan_variance(static_cast<Term>(i), static_cast<double>(point.m), curve.dt_s);
     }
   }
   const CovarianceForm form(curve, start, terms);
@@ -100,8 +109,11 @@ std::optional<Solution> solve(const AllanCurve& curve, const Mixture& start) {
     if (round >= kDampAfter) {
       for (std::size_t i = 0; i < kTerms; ++i) next[i] = 0.5 * (next[i] + solution.theta[i]);
     }
-    const auto vector = [](const Mixture& theta) { return Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(theta.data()); };
-    const Eigen::VectorXd curve_now = design * vector(next), curve_before = design * vector(solution.theta);
+    const auto vector = [](const Mixture& theta) {
+      return Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(theta.data());
+    };
+    const Eigen::VectorXd curve_now = design * vector(next),
+                          curve_before = design * vector(solution.theta);
     if (!(curve_now.minCoeff() > 0)) return std::nullopt;
     const double moved = ((curve_now - curve_before).array() / curve_now.array()).abs().maxCoeff();
     solution.theta = next;
@@ -116,7 +128,9 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
   for (std::size_t i = 0; i < kTerms; ++i) {
     const Coefficient& term = first.term[i];
     if (!term.value) continue;
-    const double theta = solution.theta[i], sd_theta = std::sqrt(solution.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+    const double theta = solution.theta[i],
+                 sd_theta = std::sqrt(solution.covariance(static_cast<Eigen::Index>(i),
+                                                          static_cast<Eigen::Index>(i)));
     const double scale = 2 * std::max(*term.value, std::sqrt(theta));
     second.value[i] = std::sqrt(theta);
     second.sd[i] = sd_theta / scale;
@@ -124,8 +138,13 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
     const double apart = std::abs(theta - first.theta[i]) / std::hypot(sd_theta, first_sd_theta);
     if (term.status != Status::detected || apart <= 3) continue;
     second.agrees = false;
-    second.sentence += fmt::format("{}the Allan curve gives {:.4g} for {}, {:.1f} combined standard deviations from {:.4g}", second.sentence.empty() ? "" : "; ",
-                                   *second.value[i], people_name(static_cast<Term>(i)), apart, *term.value);
+    second.sentence += fmt::format(
+        "{}the Allan curve gives {:.4g} for {}, {:.1f} combined standard deviations from {:.4g}",
+        second.sentence.empty() ? "" : "; ",
+        *second.value[i],
+        people_name(static_cast<Term>(i)),
+        apart,
+        *term.value);
   }
   if (second.agrees) second.sentence = "agrees";
   if (!solution.settled) second.sentence += " (the reweighting did not settle in 50 rounds)";
@@ -142,7 +161,8 @@ std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const Noise
   if (!solution) return std::nullopt;
   SecondOpinion second;
   second.goodness.chi2 = solution->chi2;
-  second.goodness.dof = static_cast<double>(kept.points.size()) - static_cast<double>(count_of(only_positive(solution->theta)));
+  second.goodness.dof = static_cast<double>(kept.points.size()) -
+                        static_cast<double>(count_of(only_positive(solution->theta)));
   second.goodness.p = chi_square_tail(second.goodness.chi2, second.goodness.dof);
   compare(first, *solution, second);
   return second;

@@ -5,8 +5,8 @@
 
 namespace libchar {
 
-/// Generalised least squares of the Allan variances with the model's own covariance, on the terms of `first` that have a value;
-/// compared with `first`. Nothing when the curve has too few points.
+/// Generalised least squares of the Allan variances with the model's own covariance, on the terms
+/// of `first` that have a value; compared with `first`. Nothing when the curve has too few points.
 std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first);
 
 }  // namespace libchar

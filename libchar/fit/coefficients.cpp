@@ -33,8 +33,8 @@ Interval profile_interval(const BinProblem& problem,
 }
 
 /// Terms that were dropped but may be there (likelihood ratio above 1): without them the intervals
-/// of the others would pretend that the decision was certain (coverage 85 % instead of 95 % in scene
-/// a2 of the theory page).
+/// of the others would pretend that the decision was certain (coverage 85 % instead of 95 % in
+/// scene a2 of the theory page).
 struct Nuisance {
   TermSet terms{};
   Optimum best;
@@ -140,7 +140,8 @@ void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {
     if (!term.value || !(log_theta_sd[i] / 2 > term.relative_sd)) continue;
     term.relative_sd = log_theta_sd[i] / 2;
     const double spread = std::exp(kNormal95 * term.relative_sd);
-    term.ci95 = {std::min(term.ci95.low, *term.value / spread), std::max(term.ci95.high, *term.value * spread)};
+    term.ci95 = {std::min(term.ci95.low, *term.value / spread),
+                 std::max(term.ci95.high, *term.value * spread)};
     const double ratio = log_theta_sd[i] / std::sqrt(fit.covariance[i][i]);
     for (std::size_t j = 0; j < kTerms; ++j) {
       fit.covariance[i][j] *= ratio;

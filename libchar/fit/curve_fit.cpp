@@ -1,8 +1,9 @@
-// Fit of a curve alone: an Allan curve or a spectrum digitised from a data sheet or a paper. What is known of its scatter
-// decides the weights and what the intervals mean, and a sentence says so:
+// Fit of a curve alone: an Allan curve or a spectrum digitised from a data sheet or a paper. What
+// is known of its scatter decides the weights and what the intervals mean, and a sentence says so:
 //   relative_sd given       weights 1/sd^2, chi-square tells whether they were right;
-//   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted mixture, refined three times);
-//   neither                 equal relative errors, estimated from the scatter about the fit; neighbouring residuals that go the
+//   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted
+//   mixture, refined three times); neither                 equal relative errors, estimated from
+//   the scatter about the fit; neighbouring residuals that go the
 //                           same way count as fewer points, n (1-r)/(1+r).
 #include <fmt/format.h>
 
@@ -24,21 +25,34 @@
 namespace libchar {
 namespace {
 
-constexpr double kDigitised = 1e-6;  ///< relative scatter below which differences of fit mean nothing
+constexpr double kDigitised =
+    1e-6;  ///< relative scatter below which differences of fit mean nothing
 
-[[noreturn]] void refuse(const std::string& what, const std::string& got = "") { throw Error({ErrorKind::input, "", "", what, got, ""}); }
+[[noreturn]] void refuse(const std::string& what, const std::string& got = "") {
+  throw Error({ErrorKind::input, "", "", what, got, ""});
+}
 
 void check(const DigitisedCurve& curve) {
-  if (curve.x.size() != curve.y.size()) refuse(fmt::format("the curve has {} abscissae but {} values", curve.x.size(), curve.y.size()));
-  if (!curve.relative_sd.empty() && curve.relative_sd.size() != curve.x.size()) refuse("the curve needs as many relative standard deviations as points");
+  if (curve.x.size() != curve.y.size())
+    refuse(fmt::format("the curve has {} abscissae but {} values", curve.x.size(), curve.y.size()));
+  if (!curve.relative_sd.empty() && curve.relative_sd.size() != curve.x.size())
+    refuse("the curve needs as many relative standard deviations as points");
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    if (!(curve.x[i] > 0) || !std::isfinite(curve.x[i])) refuse(fmt::format("point {} of the curve: the abscissa must be positive", i + 1), fmt::format("{}", curve.x[i]));
-    if (!(curve.y[i] > 0) || !std::isfinite(curve.y[i])) refuse(fmt::format("point {} of the curve: the value must be positive", i + 1), fmt::format("{}", curve.y[i]));
-    if (!curve.relative_sd.empty() && !(curve.relative_sd[i] > 0)) refuse(fmt::format("point {} of the curve: the standard deviation must be positive", i + 1));
-    if (i > 0 && !(curve.x[i] > curve.x[i - 1])) refuse(fmt::format("point {} of the curve: the abscissae must ascend", i + 1), fmt::format("{}", curve.x[i]));
+    if (!(curve.x[i] > 0) || !std::isfinite(curve.x[i]))
+      refuse(fmt::format("point {} of the curve: the abscissa must be positive", i + 1),
+             fmt::format("{}", curve.x[i]));
+    if (!(curve.y[i] > 0) || !std::isfinite(curve.y[i]))
+      refuse(fmt::format("point {} of the curve: the value must be positive", i + 1),
+             fmt::format("{}", curve.y[i]));
+    if (!curve.relative_sd.empty() && !(curve.relative_sd[i] > 0))
+      refuse(fmt::format("point {} of the curve: the standard deviation must be positive", i + 1));
+    if (i > 0 && !(curve.x[i] > curve.x[i - 1]))
+      refuse(fmt::format("point {} of the curve: the abscissae must ascend", i + 1),
+             fmt::format("{}", curve.x[i]));
   }
   if (curve.rate_hz && !(*curve.rate_hz > 0)) refuse("the rate of a curve must be positive");
-  if (curve.duration_s && !(*curve.duration_s > 0)) refuse("the duration of a curve's record must be positive");
+  if (curve.duration_s && !(*curve.duration_s > 0))
+    refuse("the duration of a curve's record must be positive");
 }
 
 /// Expectation of unit theta at x, in the exact discrete form when the rate is known.
@@ -61,12 +75,14 @@ CurveProblem problem_of(const DigitisedCurve& curve) {
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto at = static_cast<std::size_t>(j);
     problem.value[j] = sides * (curve.root ? curve.y[at] * curve.y[at] : curve.y[at]);
-    for (std::size_t i = 0; i < kTerms; ++i) problem.unit(j, static_cast<Eigen::Index>(i)) = unit_at(curve, i, curve.x[at]);
+    for (std::size_t i = 0; i < kTerms; ++i)
+      problem.unit(j, static_cast<Eigen::Index>(i)) = unit_at(curve, i, curve.x[at]);
   }
   return problem;
 }
 
-/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the rate is known.
+/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the
+/// rate is known.
 TermSet offered_to(const DigitisedCurve& curve, const FitOptions& options) {
   TermSet terms = options.terms;
   terms[static_cast<std::size_t>(Term::quantization)] = curve.is_allan || curve.rate_hz.has_value();
@@ -93,9 +109,12 @@ Eigen::MatrixXd whitening_for(const DigitisedCurve& curve, const Mixture& theta)
   Eigen::MatrixXd covariance = allan_covariance(record, noise);
   const auto n = covariance.rows();
   Eigen::VectorXd level(n);
-  for (Eigen::Index j = 0; j < n; ++j) level[j] = allan_variance(noise, static_cast<double>(record.points[static_cast<std::size_t>(j)].m), record.dt_s);
+  for (Eigen::Index j = 0; j < n; ++j)
+    level[j] = allan_variance(
+        noise, static_cast<double>(record.points[static_cast<std::size_t>(j)].m), record.dt_s);
   covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
-  // Points read off a graph are a percent off; neighbours a fraction of an octave apart would be singular without that.
+  // Points read off a graph are a percent off; neighbours a fraction of an octave apart would be
+  // singular without that.
   covariance.diagonal().array() += 1e-4 + 0.01 * covariance.diagonal().array();
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   return factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
@@ -106,7 +125,8 @@ enum class Scatter { stated, from_duration, estimated };
 /// What turns a difference of sums of squares into 2 ln L.
 struct Judge {
   Scatter scatter = Scatter::estimated;
-  double points = 0;       ///< points, less for correlated residuals
+  double points = 0;       ///< points of the curve
+  double independent = 0;  ///< fewer when neighbouring residuals go together
   double floor = 0;        ///< of the sum of squares
   double ratio(double without, double with) const {
     if (scatter != Scatter::estimated) return without - with;
@@ -129,7 +149,10 @@ struct CurveDecision {
   Mixture ratio{};
 };
 
-CurveDecision decide(const CurveProblem& problem, const TermSet& offered, double threshold, const Judge& judge) {
+CurveDecision decide(const CurveProblem& problem,
+                     const TermSet& offered,
+                     double threshold,
+                     const Judge& judge) {
   CurveDecision decision{offered, solve_curve_thoroughly(problem, offered), {}};
   const auto without = [&](std::size_t i) {
     TermSet less = decision.kept;
@@ -158,12 +181,18 @@ CurveDecision decide(const CurveProblem& problem, const TermSet& offered, double
 }
 
 /// Largest theta of a dropped term that the points allow (one-sided 95 %).
-double upper_limit(const CurveProblem& problem, const CurveDecision& decision, std::size_t term, const Judge& judge) {
-  const double level = (problem.value / problem.unit.col(static_cast<Eigen::Index>(term))).minCoeff();
+double upper_limit(const CurveProblem& problem,
+                   const CurveDecision& decision,
+                   std::size_t term,
+                   const Judge& judge) {
+  const double level =
+      (problem.value / problem.unit.col(static_cast<Eigen::Index>(term))).minCoeff();
   const auto excess = [&](double theta) {
     Mixture start = decision.best.theta;
     start[term] = theta;
-    return judge.ratio(solve_curve(problem, decision.kept, &start).sum_of_squares, decision.best.sum_of_squares) - kOneSided95;
+    return judge.ratio(solve_curve(problem, decision.kept, &start).sum_of_squares,
+                       decision.best.sum_of_squares) -
+           kOneSided95;
   };
   double low = level * 1e-12, high = level;
   for (int i = 0; i < 40 && excess(high) < 0; ++i) high *= 4;
@@ -177,31 +206,47 @@ double upper_limit(const CurveProblem& problem, const CurveDecision& decision, s
 void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) {
   switch (judge.scatter) {
     case Scatter::stated:
-      fit.sentences.push_back("The intervals rest on the stated uncertainty of the points, taken as independent.");
+      fit.sentences.push_back(
+          "The intervals rest on the stated uncertainty of the points, taken as independent.");
       return;
     case Scatter::from_duration:
-      fit.sentences.push_back("The intervals rest on the stated record length: the exact covariance of overlapping Allan variances.");
+      fit.sentences.push_back(
+          "The intervals rest on the stated record length: the exact covariance of overlapping "
+          "Allan variances.");
       return;
     case Scatter::estimated:
-      fit.sentences.push_back(fmt::format(
-          "The curve states no uncertainty: it was taken as equal relative error at every point, {:.2g} % of the ordinate from the scatter about the fit. "
-          "The intervals say how well the drawn curve fixes the coefficients, not how well the record behind it did.", 100 * scatter));
+      fit.sentences.push_back(
+          fmt::format("The curve states no uncertainty: it was taken as equal relative error at "
+                      "every point, {:.2g} % of the ordinate from the scatter about the fit. "
+                      "The intervals say how well the drawn curve fixes the coefficients, not how "
+                      "well the record behind it did.",
+                      100 * scatter));
       return;
   }
 }
 
-void report(const DigitisedCurve& curve, const CurveProblem& problem, const CurveDecision& decision, const TermSet& offered, const Judge& judge, NoiseFit& fit) {
+void report(const DigitisedCurve& curve,
+            const CurveProblem& problem,
+            const CurveDecision& decision,
+            const TermSet& offered,
+            const Judge& judge,
+            double threshold,
+            NoiseFit& fit) {
   const CurveSolution& best = decision.best;
   const TermSet positive = only_positive(best.theta);
-  const double free_points = std::max(1.0, judge.points - static_cast<double>(count_of(positive)));
+  const double free_points =
+      std::max(1.0, judge.independent - static_cast<double>(count_of(positive)));
   double scale = 1;  // variance of the whitened residuals
   if (judge.scatter == Scatter::estimated) {
     scale = best.sum_of_squares / free_points;
   } else {
     scale = std::max(1.0, best.sum_of_squares / free_points);
   }
-  const double quantile = judge.scatter == Scatter::estimated ? boost::math::quantile(boost::math::students_t(free_points), 0.975) : 1.959963984540054;
-  const TermMatrix covariance = inverse_of(curve_information(problem, best.theta, positive), positive) * scale;
+  const double quantile = judge.scatter == Scatter::estimated
+                              ? boost::math::quantile(boost::math::students_t(free_points), 0.975)
+                              : 1.959963984540054;
+  const TermMatrix covariance =
+      inverse_of(curve_information(problem, best.theta, positive), positive) * scale;
   fit.theta = best.theta;
   fit.converged = best.converged;
   fit.iterations = best.iterations;
@@ -215,29 +260,45 @@ void report(const DigitisedCurve& curve, const CurveProblem& problem, const Curv
       continue;
     }
     const auto c = static_cast<Eigen::Index>(i);
-    term.status = Status::detected;
+    // Points that go together are fewer than they look: a term that needs all of them is not
+    // established.
+    const bool established = decision.ratio[i] * judge.independent / judge.points > threshold;
+    term.status = established ? Status::detected : Status::undetermined;
     term.value = std::sqrt(best.theta[i]);
     term.relative_sd = std::sqrt(covariance(c, c)) / (2 * best.theta[i]);
     const double spread = std::exp(quantile * term.relative_sd);
     term.ci95 = {*term.value / spread, *term.value * spread};
     for (std::size_t j = 0; j < kTerms; ++j) {
-      if (positive[j]) fit.covariance[i][j] = covariance(c, static_cast<Eigen::Index>(j)) / (best.theta[i] * best.theta[j]);
+      if (positive[j])
+        fit.covariance[i][j] =
+            covariance(c, static_cast<Eigen::Index>(j)) / (best.theta[i] * best.theta[j]);
     }
   }
   fit.goodness.chi2 = judge.scatter == Scatter::estimated ? free_points : best.sum_of_squares;
   fit.goodness.dof = free_points;
-  fit.goodness.p = judge.scatter == Scatter::estimated ? 1 : chi_square_tail(best.sum_of_squares, free_points);
+  fit.goodness.p =
+      judge.scatter == Scatter::estimated ? 1 : chi_square_tail(best.sum_of_squares, free_points);
   say_what_intervals_mean(judge, std::sqrt(best.sum_of_squares / free_points) / 2, fit);
   if (judge.scatter != Scatter::estimated && fit.goodness.p < 1e-3) {
-    fit.sentences.push_back(fmt::format("The points scatter {:.2g} times more about the model than their uncertainty says; the intervals are widened by that.", std::sqrt(scale)));
+    fit.sentences.push_back(
+        fmt::format("The points scatter {:.2g} times more about the model than their uncertainty "
+                    "says; the intervals are widened by that.",
+                    std::sqrt(scale)));
   }
-  const Eigen::ArrayXd z = curve_residuals(problem, best.theta) / std::sqrt(std::max(scale, std::numeric_limits<double>::min()));
+  const Eigen::ArrayXd z = curve_residuals(problem, best.theta) /
+                           std::sqrt(std::max(scale, std::numeric_limits<double>::min()));
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     double model = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) model += best.theta[i] > 0 ? best.theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
+    for (std::size_t i = 0; i < kTerms; ++i)
+      model +=
+          best.theta[i] > 0 ? best.theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
     const double measured = problem.value[j];
     const bool allan = curve.is_allan;
-    fit.residuals.push_back({curve.x[static_cast<std::size_t>(j)], allan ? std::sqrt(measured) : measured, allan ? std::sqrt(model) : model, 0, z[j]});
+    fit.residuals.push_back({curve.x[static_cast<std::size_t>(j)],
+                             allan ? std::sqrt(measured) : measured,
+                             allan ? std::sqrt(model) : model,
+                             0,
+                             z[j]});
   }
 }
 
@@ -247,16 +308,24 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   check(curve);
   const TermSet offered = offered_to(curve, options);
   if (curve.x.size() < count_of(offered)) {
-    throw Error({ErrorKind::numeric, "", "", fmt::format("{} points of the curve are fewer than the {} noise terms to fit", curve.x.size(), count_of(offered)), "", "digitise more points"});
+    throw Error({ErrorKind::numeric,
+                 "",
+                 "",
+                 fmt::format("{} points of the curve are fewer than the {} noise terms to fit",
+                             curve.x.size(),
+                             count_of(offered)),
+                 "",
+                 "digitise more points"});
   }
   CurveProblem problem = problem_of(curve);
   Judge judge;
-  judge.points = static_cast<double>(curve.x.size());
+  judge.points = judge.independent = static_cast<double>(curve.x.size());
   CurveSolution rough = solve_curve_thoroughly(problem, offered);
   if (!curve.relative_sd.empty()) {
     judge.scatter = Scatter::stated;
     problem.whitening = Eigen::MatrixXd::Zero(problem.size(), problem.size());
-    for (Eigen::Index j = 0; j < problem.size(); ++j) problem.whitening(j, j) = 1 / (2 * curve.relative_sd[static_cast<std::size_t>(j)]);
+    for (Eigen::Index j = 0; j < problem.size(); ++j)
+      problem.whitening(j, j) = 1 / (2 * curve.relative_sd[static_cast<std::size_t>(j)]);
   } else if (curve.duration_s && curve.is_allan) {
     judge.scatter = Scatter::from_duration;
     for (int round = 0; round < 3; ++round) {
@@ -264,7 +333,7 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
       rough = solve_curve_thoroughly(problem, offered);
     }
   } else {
-    judge.points = effective_points(curve_residuals(problem, rough.theta), count_of(offered));
+    judge.independent = effective_points(curve_residuals(problem, rough.theta), count_of(offered));
     judge.floor = judge.points * kDigitised * kDigitised;
   }
   const CurveDecision decision = decide(problem, offered, options.threshold, judge);
@@ -272,8 +341,11 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   fit.rate_hz = curve.rate_hz.value_or(0);
   fit.duration_s = curve.duration_s.value_or(0);
   fit.samples = curve.x.size();
-  fit.method = fmt::format("non-negative least squares on the logarithm of {} points, {}", curve.x.size(), curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
-  report(curve, problem, decision, offered, judge, fit);
+  fit.method = fmt::format(
+      "non-negative least squares on the logarithm of {} points, {}",
+      curve.x.size(),
+      curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
+  report(curve, problem, decision, offered, judge, options.threshold, fit);
   return fit;
 }
 

@@ -7,9 +7,15 @@
 namespace libchar {
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
-Json pair_of(const Interval& interval) { return Json::array({number(interval.low), number(interval.high)}); }
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+Json pair_of(const Interval& interval) {
+  return Json::array({number(interval.low), number(interval.high)});
+}
 
 Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) {
   Json json;
@@ -27,13 +33,16 @@ Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) 
 }
 
 Json goodness_json(const Goodness& goodness) {
-  return {{"chi2", number(goodness.chi2)}, {"dof", number(goodness.dof)}, {"p", number(goodness.p)}};
+  return {
+      {"chi2", number(goodness.chi2)}, {"dof", number(goodness.dof)}, {"p", number(goodness.p)}};
 }
 
 Json second_json(const SecondOpinion& second) {
   Json json = {{"method", "generalised least squares on the Allan variances"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (second.value[i]) json[std::string(kTermNames[i].key)] = {{"value", number(second.value[i])}, {"sd", number(second.sd[i])}};
+    if (second.value[i])
+      json[std::string(kTermNames[i].key)] = {{"value", number(second.value[i])},
+                                              {"sd", number(second.sd[i])}};
   }
   json["goodness"] = goodness_json(second.goodness);
   json["agrees"] = second.agrees;
@@ -43,20 +52,29 @@ Json second_json(const SecondOpinion& second) {
 
 }  // namespace
 
-Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals) {
+Json noise_fit_json(const std::string& name,
+                    const std::string& unit,
+                    const NoiseFit& fit,
+                    bool with_residuals) {
   Json json;
   json["name"] = name;
   json["unit"] = unit;
-  for (std::size_t i = 0; i < kTerms; ++i) json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
+  for (std::size_t i = 0; i < kTerms; ++i)
+    json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
   json["bandwidth"] = nullptr;
   if (fit.bandwidth_hz) {
-    json["bandwidth"] = {{"value_hz", number(fit.bandwidth_hz)}, {"ci95_hz", fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr)}};
+    json["bandwidth"] = {
+        {"value_hz", number(fit.bandwidth_hz)},
+        {"ci95_hz", fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr)}};
   }
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
   json["remedies"] = Json::array();
   for (const Remedy& remedy : fit.remedies) {
-    json["remedies"].push_back({{"kind", remedy.kind}, {"alarm", remedy.alarm}, {"action", remedy.action}, {"count", remedy.count}});
+    json["remedies"].push_back({{"kind", remedy.kind},
+                                {"alarm", remedy.alarm},
+                                {"action", remedy.action},
+                                {"count", remedy.count}});
   }
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;
@@ -67,12 +85,18 @@ Json noise_fit_json(const std::string& name, const std::string& unit, const Nois
   if (with_residuals) {
     json["residuals"] = Json::array();
     for (const FitResidual& r : fit.residuals) {
-      json["residuals"].push_back({{"frequency_hz", number(r.frequency_hz)}, {"measured", number(r.measured)}, {"model", number(r.model)}, {"dof", number(r.dof)}, {"z", number(r.z)}});
+      json["residuals"].push_back({{"frequency_hz", number(r.frequency_hz)},
+                                   {"measured", number(r.measured)},
+                                   {"model", number(r.model)},
+                                   {"dof", number(r.dof)},
+                                   {"z", number(r.z)}});
     }
   }
   return json;
 }
 
-Json noise_fit_document(Json channels) { return {{"format", "noise-fit"}, {"version", 1}, {"channels", std::move(channels)}}; }
+Json noise_fit_document(Json channels) {
+  return {{"format", "noise-fit"}, {"version", 1}, {"channels", std::move(channels)}};
+}
 
 }  // namespace libchar

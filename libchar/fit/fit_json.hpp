@@ -8,9 +8,13 @@
 
 namespace libchar {
 
-/// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…}, second_opinion, goodness.
-/// What is not known is null, never absent among those. Residuals only on request: they are long.
-Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals = false);
+/// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…},
+/// second_opinion, goodness. What is not known is null, never absent among those. Residuals only on
+/// request: they are long.
+Json noise_fit_json(const std::string& name,
+                    const std::string& unit,
+                    const NoiseFit& fit,
+                    bool with_residuals = false);
 
 /// {"format":"noise-fit","version":1,"channels":[…]}
 Json noise_fit_document(Json channels);

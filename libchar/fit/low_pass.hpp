@@ -8,7 +8,8 @@
 
 namespace libchar {
 
-/// Power gain at frequency f of y_t = a y_{t-1} + (1-a) x_t, a = exp(-2 pi corner / rate), and its derivative d ln gain / d ln corner.
+/// Power gain at frequency f of y_t = a y_{t-1} + (1-a) x_t, a = exp(-2 pi corner / rate), and its
+/// derivative d ln gain / d ln corner.
 struct LowPassGain {
   double gain = 1, log_slope = 0;
 };
@@ -22,11 +23,13 @@ std::vector<PowerBin> low_passed(std::vector<PowerBin> bins, double corner_hz, d
 /// Best corner with all offered terms free, and the joint fit.
 struct LowPassFit {
   double corner_hz = 0;
-  double log_sd = 0;           ///< of ln corner, joint covariance
+  double log_sd = 0;  ///< of ln corner, joint covariance
   double half_deviance = 0;
   Mixture theta{};
-  Mixture log_theta_sd{};      ///< joint covariance, positive terms
+  Mixture log_theta_sd{};  ///< joint covariance, positive terms
 };
-std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins, double rate_hz, const std::array<bool, kTerms>& terms);
+std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
+                                       double rate_hz,
+                                       const std::array<bool, kTerms>& terms);
 
 }  // namespace libchar

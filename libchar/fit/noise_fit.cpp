@@ -32,9 +32,10 @@ std::string_view name_of(Status status) {
 
 namespace {
 
-constexpr double kAlarmP = 1e-4;       ///< probability of a false alarm of the residuals' ends
-constexpr double kRemedyRatio = 15;    ///< 2 ln L a remedy with one parameter must gain to be taken (1e-4)
-constexpr std::size_t kLowest = 5;     ///< coefficients that a warm-up or a drift falls into
+constexpr double kAlarmP = 1e-4;  ///< probability of a false alarm of the residuals' ends
+constexpr double kRemedyRatio =
+    15;  ///< 2 ln L a remedy with one parameter must gain to be taken (1e-4)
+constexpr std::size_t kLowest = 5;  ///< coefficients that a warm-up or a drift falls into
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
@@ -50,18 +51,28 @@ struct Attempt {
 void require_enough(std::size_t bins, const TermSet& terms) {
   const std::size_t wanted = count_of(terms);
   if (wanted == 0) {
-    throw Error({ErrorKind::usage, "", "", "no noise term was asked for", "", "offer at least white noise"});
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "no noise term was asked for",
+                 "",
+                 "offer at least white noise"});
   }
   if (bins >= wanted) return;
-  throw Error({ErrorKind::numeric,
-               "",
-               "",
-               fmt::format("{} bins of the spectrum are fewer than the {} noise terms to fit", bins, wanted),
-               "",
-               "use a longer record"});
+  throw Error(
+      {ErrorKind::numeric,
+       "",
+       "",
+       fmt::format(
+           "{} bins of the spectrum are fewer than the {} noise terms to fit", bins, wanted),
+       "",
+       "use a longer record"});
 }
 
-Attempt attempt(std::vector<PowerBin> bins, double rate_hz, std::uint64_t samples, const FitOptions& options) {
+Attempt attempt(std::vector<PowerBin> bins,
+                double rate_hz,
+                std::uint64_t samples,
+                const FitOptions& options) {
   require_enough(bins.size(), options.terms);
   const BinProblem problem = bin_problem(bins);
   const Decision decision = decide(problem, options.terms, options.threshold);
@@ -82,7 +93,8 @@ Attempt attempt(std::vector<PowerBin> bins, double rate_hz, std::uint64_t sample
 Goodness goodness_between(const NoiseFit& fit, double low_hz, double high_hz) {
   std::vector<FitResidual> part;
   for (const FitResidual& residual : fit.residuals) {
-    if (residual.frequency_hz >= low_hz && residual.frequency_hz <= high_hz) part.push_back(residual);
+    if (residual.frequency_hz >= low_hz && residual.frequency_hz <= high_hz)
+      part.push_back(residual);
   }
   return goodness_of(part, 0);
 }
@@ -92,12 +104,17 @@ void answer_high_frequencies(Attempt& now) {
   const double rate_hz = now.fit.rate_hz;
   const Goodness top = goodness_between(now.fit, rate_hz / 16, rate_hz);
   if (!(top.p < kAlarmP)) return;
-  const std::string alarm = fmt::format("chi-square of the bins above {:.3g} Hz {:.0f} for {:.0f} degrees of freedom", rate_hz / 16, top.chi2, top.dof);
+  const std::string alarm =
+      fmt::format("chi-square of the bins above {:.3g} Hz {:.0f} for {:.0f} degrees of freedom",
+                  rate_hz / 16,
+                  top.chi2,
+                  top.dof);
 
   FitOptions with = now.options;
   with.terms[kQuantization] = true;
   std::optional<Attempt> quantized;
-  if (!now.options.terms[kQuantization]) quantized = attempt(now.bins, rate_hz, now.fit.samples, with);
+  if (!now.options.terms[kQuantization])
+    quantized = attempt(now.bins, rate_hz, now.fit.samples, with);
   const std::optional<LowPassFit> low_pass = fit_low_pass(now.bins, rate_hz, now.options.terms);
   const double gain_quantized = quantized ? 2 * (now.half_deviance - quantized->half_deviance) : 0;
   const double gain_low_pass = low_pass ? 2 * (now.half_deviance - low_pass->half_deviance) : 0;
@@ -105,15 +122,28 @@ void answer_high_frequencies(Attempt& now) {
 
   if (gain_quantized >= gain_low_pass) {
     now = std::move(*quantized);
-    now.fit.remedies.push_back({"quantization", alarm, fmt::format("quantization noise added to the model; 2 ln L rises by {:.0f}", gain_quantized), 1});
+    now.fit.remedies.push_back(
+        {"quantization",
+         alarm,
+         fmt::format("quantization noise added to the model; 2 ln L rises by {:.0f}",
+                     gain_quantized),
+         1});
     return;
   }
-  now = attempt(low_passed(now.bins, low_pass->corner_hz, rate_hz), rate_hz, now.fit.samples, now.options);
+  now = attempt(
+      low_passed(now.bins, low_pass->corner_hz, rate_hz), rate_hz, now.fit.samples, now.options);
   now.fit.bandwidth_hz = low_pass->corner_hz;
   const double spread = std::exp(1.959963984540054 * low_pass->log_sd);
   now.fit.bandwidth_ci95 = Interval{low_pass->corner_hz / spread, low_pass->corner_hz * spread};
   widen_for_joint_parameter(low_pass->log_theta_sd, now.fit);
-  now.fit.remedies.push_back({"bandwidth", alarm, fmt::format("first-order low-pass with corner {:.4g} Hz added to the model; 2 ln L rises by {:.0f}", low_pass->corner_hz, gain_low_pass), 1});
+  now.fit.remedies.push_back(
+      {"bandwidth",
+       alarm,
+       fmt::format(
+           "first-order low-pass with corner {:.4g} Hz added to the model; 2 ln L rises by {:.0f}",
+           low_pass->corner_hz,
+           gain_low_pass),
+       1});
 }
 
 std::vector<PowerBin> without_lowest(const std::vector<PowerBin>& bins, double duration_s) {
@@ -125,7 +155,8 @@ std::vector<PowerBin> without_lowest(const std::vector<PowerBin>& bins, double d
   return kept;
 }
 
-/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are consistent.
+/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are
+/// consistent.
 double rejection(const Attempt& other, const NoiseFit& fit) {
   return 2 * (half_deviance(bin_problem(other.bins), fit.theta) - other.half_deviance);
 }
@@ -152,32 +183,49 @@ void answer_low_frequencies(Attempt& now) {
   if (rejects < limit && low.p > 1e-3 && gain < kRemedyRatio) return;
 
   const std::string alarm = fmt::format(
-      "the slowest {} coefficients do not follow the rest (2 ln L {:.1f}; with a ramp {:.1f})", kLowest - 1, rejects, gain);
-  const bool ramp_explains = ramp && gain > kRemedyRatio / 2 && rejection(dropped, ramp->fit) < 6 &&
-                             goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.01;
+      "the slowest {} coefficients do not follow the rest (2 ln L {:.1f}; with a ramp {:.1f})",
+      kLowest - 1,
+      rejects,
+      gain);
+  const bool ramp_explains =
+      ramp && gain > kRemedyRatio / 2 && rejection(dropped, ramp->fit) < 6 &&
+      goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.01;
   if (ramp_explains) {
     keep_remedies(ramp->fit, now.fit);
     now = std::move(*ramp);
-    now.fit.remedies.push_back({"ramp", alarm, fmt::format("rate ramp added to the model; 2 ln L rises by {:.0f}", gain), 1});
-    now.fit.sentences.push_back("The record drifts; a straight line was taken out of the random walk.");
+    now.fit.remedies.push_back(
+        {"ramp",
+         alarm,
+         fmt::format("rate ramp added to the model; 2 ln L rises by {:.0f}", gain),
+         1});
+    now.fit.sentences.push_back(
+        "The record drifts; a straight line was taken out of the random walk.");
     return;
   }
   const std::uint64_t count = now.bins.size() - dropped.bins.size();
   NoiseFit fit = dropped.fit;
   keep_remedies(fit, now.fit);
-  fit.remedies.push_back({"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  fit.sentences.push_back("The slowest part of the record (warm-up, temperature or drift) does not look like noise and was left out of the fit.");
+  fit.remedies.push_back(
+      {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
+  fit.sentences.push_back(
+      "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
+      "was left out of the fit.");
   now = {dropped.bins, dropped.options, std::move(fit), dropped.half_deviance};
 }
 
 void judge(NoiseFit& fit) {
   if (!(fit.goodness.p < 1e-3)) return;
-  const auto worst = std::max_element(fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
-    return std::abs(a.z) < std::abs(b.z);
-  });
-  fit.sentences.push_back(fmt::format(
-      "The model does not describe the record within its statistical accuracy (chi-square {:.0f} for {:.0f} degrees of freedom, worst near {:.3g} Hz): the intervals are those of the model and too narrow for the sensor.",
-      fit.goodness.chi2, fit.goodness.dof, worst->frequency_hz));
+  const auto worst = std::max_element(
+      fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
+        return std::abs(a.z) < std::abs(b.z);
+      });
+  fit.sentences.push_back(
+      fmt::format("The model does not describe the record within its statistical accuracy "
+                  "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {:.3g} Hz): the "
+                  "intervals are those of the model and too narrow for the sensor.",
+                  fit.goodness.chi2,
+                  fit.goodness.dof,
+                  worst->frequency_hz));
 }
 
 }  // namespace
@@ -193,12 +241,15 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
     answer_low_frequencies(now);
   }
   judge(now.fit);
-  static_cast<void>(allan);  // second opinion: waits for allan_covariance
-  //PENDING if (options.second_opinion && allan != nullptr) now.fit.second_opinion = second_opinion(*allan, now.fit);
+  if (options.second_opinion && allan != nullptr)
+    now.fit.second_opinion = second_opinion(*allan, now.fit);
   return std::move(now.fit);
 }
 
-NoiseFit fit_record(std::span<const double> record, double rate_hz, const AllanCurve* allan, const FitOptions& options) {
+NoiseFit fit_record(std::span<const double> record,
+                    double rate_hz,
+                    const AllanCurve* allan,
+                    const FitOptions& options) {
   std::vector<Remedy> remedies;
   std::vector<double> cleaned;
   std::span<const double> data = record;
@@ -215,13 +266,16 @@ NoiseFit fit_record(std::span<const double> record, double rate_hz, const AllanC
   }
   // One exact transform while it is cheap; a longer record goes by blocks.
   constexpr std::uint64_t kWhole = std::uint64_t{1} << 21U;
-  const std::uint64_t block = data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
+  const std::uint64_t block =
+      data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   binner.push(data);
   std::uint64_t clipped = 0;
-  const std::vector<PowerBin> bins = options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
+  const std::vector<PowerBin> bins =
+      options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
   if (clipped > 0) remedies.push_back(lines_remedy(clipped));
-  const auto missing = static_cast<std::uint64_t>(std::count_if(record.begin(), record.end(), [](double x) { return std::isnan(x); }));
+  const auto missing = static_cast<std::uint64_t>(
+      std::count_if(record.begin(), record.end(), [](double x) { return std::isnan(x); }));
   NoiseFit fit = fit_power_bins(bins, rate_hz, record.size() - missing, allan, options);
   fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
   return fit;

@@ -10,8 +10,10 @@
 namespace libchar {
 
 double spike_alarm(std::uint64_t samples) {
-  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation of -1/2.
-  return std::max(3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
+  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation
+  // of -1/2.
+  return std::max(
+      3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
 }
 
 double kurtosis_of_differences(std::span<const double> record) {
@@ -28,13 +30,17 @@ double kurtosis_of_differences(std::span<const double> record) {
 }
 
 Remedy spikes_remedy(double kurtosis, double alarm, std::uint64_t replaced) {
-  return {"spikes", fmt::format("kurtosis of differences {:.3g} > {:.3g}", kurtosis, alarm),
-          fmt::format("{} samples replaced by the mean of their neighbours", replaced), replaced};
+  return {"spikes",
+          fmt::format("kurtosis of differences {:.3g} > {:.3g}", kurtosis, alarm),
+          fmt::format("{} samples replaced by the mean of their neighbours", replaced),
+          replaced};
 }
 
 Remedy lines_remedy(std::uint64_t clipped) {
-  return {"lines", "coefficients of the spectrum above 32 times the floor around them",
-          fmt::format("{} coefficients in and beside spectral lines left out", clipped), clipped};
+  return {"lines",
+          "coefficients of the spectrum above 32 times the floor around them",
+          fmt::format("{} coefficients in and beside spectral lines left out", clipped),
+          clipped};
 }
 
 }  // namespace libchar

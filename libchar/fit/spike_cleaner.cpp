@@ -1,6 +1,8 @@
-// Three-sample residual e_t = y_t - (y_{t-1} + y_{t+1})/2. A spike at t stands out in e_t with its full height and in the
-// neighbours with half of it; drift and slow noise cancel. Sample t is replaced by the mean of its neighbours when
-//   |e_t| > mad_limit * 1.4826 * median|e|   and   |e_t| > |e_{t+1}|   (|e_{t-1}| was settled before: cleaned, or smaller).
+// Three-sample residual e_t = y_t - (y_{t-1} + y_{t+1})/2. A spike at t stands out in e_t with its
+// full height and in the neighbours with half of it; drift and slow noise cancel. Sample t is
+// replaced by the mean of its neighbours when
+//   |e_t| > mad_limit * 1.4826 * median|e|   and   |e_t| > |e_{t+1}|   (|e_{t-1}| was settled
+//   before: cleaned, or smaller).
 // Under Gaussian noise 6 robust standard deviations are passed once in 5e8 samples.
 #include "libchar/fit/spike_cleaner.hpp"
 
@@ -14,7 +16,9 @@ namespace {
 
 constexpr double kMadToSd = 1.482602218505602;  // 1 / Phi^-1(3/4)
 
-double residual(double before, double at, double after) { return at - 0.5 * (before + after); }
+double residual(double before, double at, double after) {
+  return at - 0.5 * (before + after);
+}
 
 }  // namespace
 
@@ -32,7 +36,8 @@ double spike_limit(std::span<const double> record, double mad_limit) {
   return mad_limit * kMadToSd * *middle;
 }
 
-SpikeCleaner::SpikeCleaner(double mad_limit, std::size_t pilot) : mad_limit_(mad_limit), pilot_(pilot) {}
+SpikeCleaner::SpikeCleaner(double mad_limit, std::size_t pilot)
+    : mad_limit_(mad_limit), pilot_(pilot) {}
 
 SpikeCleaner SpikeCleaner::with_limit(double limit) {
   SpikeCleaner cleaner(0, 0);
@@ -69,7 +74,8 @@ void SpikeCleaner::release(bool last) {
   for (; t + 2 < held_.size() || (last && t < held_.size()); ++t) {
     if (limit_ > 0 && t + 1 < held_.size()) {
       const double e = std::abs(residual(held_[t - 1], held_[t], held_[t + 1]));
-      const double next = t + 2 < held_.size() ? std::abs(residual(held_[t], held_[t + 1], held_[t + 2])) : 0.0;
+      const double next =
+          t + 2 < held_.size() ? std::abs(residual(held_[t], held_[t + 1], held_[t + 2])) : 0.0;
       if (e > limit_ && !(next >= e)) {
         held_[t] = 0.5 * (held_[t - 1] + held_[t + 1]);
         ++count_;
@@ -77,14 +83,17 @@ void SpikeCleaner::release(bool last) {
     }
     ready_.push_back(held_[t]);
   }
-  if (t > 1) held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(std::min(t - 1, held_.size())));
+  if (t > 1)
+    held_.erase(held_.begin(),
+                held_.begin() + static_cast<std::ptrdiff_t>(std::min(t - 1, held_.size())));
 }
 
 std::uint64_t clean_spikes(std::span<double> record, double mad_limit) {
   SpikeCleaner cleaner = SpikeCleaner::with_limit(spike_limit(record, mad_limit));
   std::size_t written = 0;
   const auto keep = [&](std::span<const double> cleaned) {
-    std::copy(cleaned.begin(), cleaned.end(), record.begin() + static_cast<std::ptrdiff_t>(written));
+    std::copy(
+        cleaned.begin(), cleaned.end(), record.begin() + static_cast<std::ptrdiff_t>(written));
     written += cleaned.size();
   };
   constexpr std::size_t kPiece = 8192;

@@ -7,8 +7,9 @@
 
 namespace libchar {
 
-/// Feeds on samples in pieces of any size and gives them back cleaned, two samples late, the same whatever the pieces.
-/// The limit comes from a pilot (the first samples are held back until it is full), or is given.
+/// Feeds on samples in pieces of any size and gives them back cleaned, two samples late, the same
+/// whatever the pieces. The limit comes from a pilot (the first samples are held back until it is
+/// full), or is given.
 class SpikeCleaner {
  public:
   explicit SpikeCleaner(double mad_limit = 6, std::size_t pilot = 16384);
@@ -27,14 +28,16 @@ class SpikeCleaner {
   void release(bool last);
   double mad_limit_;
   std::size_t pilot_;
-  double limit_ = -1;          ///< < 0: the pilot is still being filled
+  double limit_ = -1;  ///< < 0: the pilot is still being filled
   std::uint64_t count_ = 0;
-  bool has_before_ = false;    ///< held_[0] is the neighbour before the next sample, given out already
+  bool has_before_ =
+      false;  ///< held_[0] is the neighbour before the next sample, given out already
   std::vector<double> held_, ready_;
 };
 
-/// The limit for a record: `mad_limit` robust standard deviations of the three-sample residual, from at most 65536 places
-/// spread over the record; 0 when more than half of the residuals are equal (a coarse grid), where no limit makes sense.
+/// The limit for a record: `mad_limit` robust standard deviations of the three-sample residual,
+/// from at most 65536 places spread over the record; 0 when more than half of the residuals are
+/// equal (a coarse grid), where no limit makes sense.
 double spike_limit(std::span<const double> record, double mad_limit);
 
 }  // namespace libchar

@@ -1,5 +1,6 @@
-// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao bound, bias, coverage, false
-// terms, time. Usage: fit_bench [records per scene = 400] [scene letters = all] [block = 0 (whole record)]
+// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao
+// bound, bias, coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene
+// letters = all] [block = 0 (whole record)]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -43,12 +44,18 @@ struct Row {
   double fit_ms = 0, bins_ms = 0, worst_excess = 0, worst_ratio = 0, p_below = 0;
 };
 
-Mixture theta_of(const Scene& scene) { return {scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0}; }
+Mixture theta_of(const Scene& scene) {
+  return {scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0};
+}
 
-double milliseconds(Clock::time_point from) { return std::chrono::duration<double, std::milli>(Clock::now() - from).count(); }
+double milliseconds(Clock::time_point from) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
+}
 
 /// Excess of -lnL at the fit over the best of eight random starts.
-double excess_over_multistart(const std::vector<PowerBin>& bins, const NoiseFit& fit, test::Gaussian& gauss) {
+double excess_over_multistart(const std::vector<PowerBin>& bins,
+                              const NoiseFit& fit,
+                              test::Gaussian& gauss) {
   const BinProblem problem = bin_problem(bins);
   const double reached = half_deviance(problem, fit.theta);
   TermSet kept{};
@@ -56,7 +63,8 @@ double excess_over_multistart(const std::vector<PowerBin>& bins, const NoiseFit&
   double best = reached;
   for (int i = 0; i < 8; ++i) {
     Mixture start{};
-    for (std::size_t t = 0; t < kTerms; ++t) start[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
+    for (std::size_t t = 0; t < kTerms; ++t)
+      start[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
     best = std::min(best, score(problem, kept, &start, 1e-12).half_deviance);
   }
   return reached - best;
@@ -115,18 +123,42 @@ Row run(const Scene& scene, int records, std::uint64_t block) {
 void print(const Scene& scene, const Row& row) {
   const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
   const TermSet fitted = {true, scene.b > 0, scene.k > 0, false, false};
-  const auto bound = cramer_rao(theta_of(scene), scene.rate_hz, static_cast<double>(scene.samples), fitted);
+  const auto bound =
+      cramer_rao(theta_of(scene), scene.rate_hz, static_cast<double>(scene.samples), fitted);
   const double n = row.records;
   for (std::size_t i = 0; i < 3; ++i) {
     const Tally& t = row.term[i];
     if (truth[i] > 0) {
       const double crb = *bound[i] * truth[i];
-      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f}", scene.name, kTermNames[i].letter, 100 * *bound[i], crb * crb / (t.square / n),
-                 (t.sum / n - truth[i]) / crb, 100.0 * t.covered / n, 100.0 * t.detected / n, 100.0 * t.undetermined / n, t.reported ? 100.0 * t.reported_covered / t.reported : 0.0);
+      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f}",
+                 scene.name,
+                 kTermNames[i].letter,
+                 100 * *bound[i],
+                 crb * crb / (t.square / n),
+                 (t.sum / n - truth[i]) / crb,
+                 100.0 * t.covered / n,
+                 100.0 * t.detected / n,
+                 100.0 * t.undetermined / n,
+                 t.reported ? 100.0 * t.reported_covered / t.reported : 0.0);
     } else {
-      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14}", scene.name, kTermNames[i].letter, "absent", "", "", "", 100.0 * t.detected / n, 100.0 * t.undetermined / n, "");
+      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14}",
+                 scene.name,
+                 kTermNames[i].letter,
+                 "absent",
+                 "",
+                 "",
+                 "",
+                 100.0 * t.detected / n,
+                 100.0 * t.undetermined / n,
+                 "");
     }
-    if (i == 0) fmt::print(" {:7.1f} {:9.2e} {:8.3f} {:8.2f} {:7.1f}", 100.0 * row.at_optimum / n, row.worst_excess, row.fit_ms / n, row.bins_ms / n, 100 * row.p_below / n);
+    if (i == 0)
+      fmt::print(" {:7.1f} {:9.2e} {:8.3f} {:8.2f} {:7.1f}",
+                 100.0 * row.at_optimum / n,
+                 row.worst_excess,
+                 row.fit_ms / n,
+                 row.bins_ms / n,
+                 100 * row.p_below / n);
     fmt::print("\n");
   }
   std::fflush(stdout);
@@ -138,9 +170,13 @@ int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 400;
   const std::string chosen = argc > 2 ? argv[2] : "all";
   const std::uint64_t block = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 0;
-  fmt::print("records {}; block {}\n", records, block == 0 ? "whole record" : std::to_string(block));
-  fmt::print("         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  optimum  worst    ms/fit  ms/bins  p<.05\n");
+  fmt::print(
+      "records {}; block {}\n", records, block == 0 ? "whole record" : std::to_string(block));
+  fmt::print(
+      "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
+      "optimum  worst    ms/fit  ms/bins  p<.05\n");
   for (const Scene& scene : kScenes) {
-    if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos) print(scene, run(scene, records, block));
+    if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos)
+      print(scene, run(scene, records, block));
   }
 }

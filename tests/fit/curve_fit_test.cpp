@@ -1,0 +1,225 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "tests/support/noise.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::vector<double> numbers(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::vector<double> values;
+  for (double value = 0; in >> value;) values.push_back(value);
+  return values;
+}
+
+double rms_log10(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(std::log10(a[i] / b[i]), 2);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+double rms_log10(const NoiseFit& fit) {
+  std::vector<double> measured, model;
+  for (const FitResidual& r : fit.residuals) {
+    measured.push_back(r.measured);
+    model.push_back(r.model);
+  }
+  return rms_log10(measured, model);
+}
+
+DigitisedCurve allan_of(const Mixture& theta, std::optional<double> rate_hz) {
+  DigitisedCurve curve;
+  curve.rate_hz = rate_hz;
+  for (double tau = 0.01; tau < 2e4; tau *= 2) {
+    double variance = rate_hz ? allan_variance(theta, tau * *rate_hz, 1 / *rate_hz) : 0;
+    for (std::size_t i = 0; !rate_hz && i < kTerms; ++i)
+      variance += theta[i] * allan_asymptote(static_cast<Term>(i), tau);
+    curve.x.push_back(tau);
+    curve.y.push_back(std::sqrt(variance));
+  }
+  return curve;
+}
+
+}  // namespace
+
+TEST_CASE("a noise-free Allan curve gives its coefficients back to nine digits") {
+  const Mixture theta = {25e-6, 1e-6, 1e-8, 4e-10, 1e-14};
+  for (const auto rate : {std::optional<double>{}, std::optional<double>{200.0}}) {
+    const NoiseFit fit = fit_curve(allan_of(theta, rate));
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      INFO(kTermNames[i].key);
+      REQUIRE(fit.term[i].value);
+      CHECK(*fit.term[i].value == Approx(std::sqrt(theta[i])).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("terms that a noise-free curve does not have are not detected") {
+  const NoiseFit fit = fit_curve(allan_of({25e-6, 0, 1e-8, 0, 0}, 100.0));
+  CHECK(fit[Term::white].value.value() == Approx(5e-3).epsilon(1e-9));
+  CHECK(fit[Term::walk].value.value() == Approx(1e-4).epsilon(1e-9));
+  for (const Term absent : {Term::flicker, Term::quantization, Term::ramp}) {
+    CHECK(fit[absent].status == Status::not_detected);
+    CHECK_FALSE(fit[absent].value);
+    CHECK(fit[absent].upper95.value() >= 0);
+  }
+}
+
+TEST_CASE("one- and two-sided spectra, densities and roots, give the same coefficients") {
+  const Mixture theta = {1e-6, 1e-4, 25e-6, 0, 0};
+  for (const bool root : {false, true}) {
+    for (const Sides sides : {Sides::one, Sides::two}) {
+      for (const bool known : {false, true}) {
+        DigitisedCurve curve;
+        curve.is_allan = false;
+        curve.root = root;
+        curve.sides = sides;
+        if (known) curve.rate_hz = 200;
+        for (double f = 1e-3; f < 90; f *= 1.5) {
+          double density = known ? spectrum(theta, f, 1 / 200.0) : 0;
+          for (std::size_t i = 0; !known && i < 3; ++i)
+            density += theta[i] * spectrum_asymptote(static_cast<Term>(i), f, 1);
+          if (sides == Sides::one) density *= 2;
+          curve.x.push_back(f);
+          curve.y.push_back(root ? std::sqrt(density) : density);
+        }
+        const NoiseFit fit = fit_curve(curve);
+        CHECK(fit[Term::white].value.value() == Approx(1e-3).epsilon(1e-9));
+        CHECK(fit[Term::flicker].value.value() == Approx(1e-2).epsilon(1e-9));
+        CHECK(fit[Term::walk].value.value() == Approx(5e-3).epsilon(1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("scaling a curve scales the coefficients") {
+  DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 0}, std::nullopt);
+  test::Gaussian gauss(3);
+  for (double& y : curve.y) y *= std::exp(0.02 * gauss());
+  const NoiseFit one = fit_curve(curve);
+  for (double& y : curve.y) y *= 1e6;
+  const NoiseFit million = fit_curve(curve);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    REQUIRE(one.term[i].status == million.term[i].status);
+    if (one.term[i].value)
+      CHECK(*million.term[i].value == Approx(1e6 * *one.term[i].value).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("stated uncertainties: intervals cover, wrong ones are said to be wrong") {
+  test::Gaussian gauss(5);
+  int covered = 0, total = 0;
+  for (int round = 0; round < 200; ++round) {
+    DigitisedCurve curve = allan_of({25e-6, 4e-6, 1e-8, 0, 0}, std::nullopt);
+    for (double& y : curve.y) {
+      y *= std::exp(0.03 * gauss());
+      curve.relative_sd.push_back(0.03);
+    }
+    const NoiseFit fit = fit_curve(curve);
+    const std::array<double, 3> truth = {5e-3, 2e-3, 1e-4};
+    for (std::size_t i = 0; i < 3; ++i) {
+      REQUIRE(fit.term[i].value);
+      ++total;
+      covered += fit.term[i].ci95.low <= truth[i] && truth[i] <= fit.term[i].ci95.high ? 1 : 0;
+    }
+  }
+  CHECK(covered > 0.92 * total);
+  CHECK(covered < 0.985 * total);
+  DigitisedCurve wrong = allan_of({25e-6, 4e-6, 1e-8, 0, 0}, std::nullopt);
+  for (double& y : wrong.y) {
+    y *= std::exp(0.2 * gauss());
+    wrong.relative_sd.push_back(0.01);
+  }
+  CHECK(fit_curve(wrong).goodness.p < 1e-6);
+}
+
+TEST_CASE("bad curves are refused in a sentence") {
+  DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 0}, std::nullopt);
+  DigitisedCurve broken = curve;
+  broken.y[3] = -1;
+  CHECK_THROWS_AS(fit_curve(broken), Error);
+  broken = curve;
+  std::swap(broken.x[1], broken.x[2]);
+  CHECK_THROWS_AS(fit_curve(broken), Error);
+  broken = curve;
+  broken.x.resize(3);
+  broken.y.resize(3);
+  CHECK_THROWS_AS(fit_curve(broken), Error);
+  broken = curve;
+  broken.y.pop_back();
+  CHECK_THROWS_AS(fit_curve(broken), Error);
+}
+
+TEST_CASE("six real IMUs: no worse than the fit that imu_utils drew through the same points") {
+  NEEDS_SHARED("oracle/allan/imu_utils_mit");
+  const auto file = [](const std::string& name) {
+    return numbers(test::shared("oracle/allan/imu_utils_mit/data_" + name + ".txt"));
+  };
+  for (const std::string imu : {"16448", "A3", "BMI160", "N3", "gx4", "xsens"}) {
+    for (const std::string kind : {"acc", "gyr"}) {
+      for (const std::string axis : {"x", "y", "z"}) {
+        DigitisedCurve curve;
+        curve.x = file(imu + "_" + kind + "_t");
+        curve.y = file(imu + "_" + kind + "_" + axis);
+        const std::vector<double> theirs = file(imu + "_sim_" + kind + "_" + axis);
+        REQUIRE(theirs.size() == curve.y.size());
+        FitOptions all;
+        all.threshold = 0;
+        const double ours = rms_log10(fit_curve(curve, all)), before = rms_log10(curve.y, theirs),
+                     decided = rms_log10(fit_curve(curve));
+        INFO(imu << " " << kind << " " << axis << ": all terms " << ours << ", decided " << decided
+                 << ", imu_utils " << before);
+        CHECK(ours <= before * (1 + 1e-6));
+        CHECK(decided <= before * 1.03);
+      }
+    }
+  }
+}
+
+TEST_CASE("published Allan curves of two IMUs are fitted, with and without the record length") {
+  NEEDS_SHARED("data/avarcurve_navchip_published.csv");
+  const std::map<std::string, std::pair<double, double>> logs = {{"navchip", {250, 3105250}},
+                                                                 {"ln200", {400, 8640000}}};
+  for (const auto& [name, log] : logs) {
+    std::ifstream in(test::shared("data/avarcurve_" + name + "_published.csv"));
+    std::map<std::string, DigitisedCurve> curves;
+    std::string line;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      std::istringstream row(line);
+      std::string channel, cell;
+      std::getline(row, channel, ',');
+      std::vector<double> values;
+      while (std::getline(row, cell, ',')) values.push_back(std::stod(cell));
+      curves[channel].x.push_back(values[0]);
+      curves[channel].y.push_back(values[2]);
+    }
+    REQUIRE(curves.size() == 6);
+    for (auto& [channel, curve] : curves) {
+      curve.rate_hz = log.first;
+      const NoiseFit alone = fit_curve(curve);
+      curve.duration_s = log.second / log.first;
+      const NoiseFit weighted = fit_curve(curve);
+      std::ostringstream text;
+      for (const NoiseFit* fit : {&alone, &weighted}) {
+        for (const Coefficient& c : fit->term)
+          text << c.value.value_or(0) << " +- " << 100 * c.relative_sd << " %  ";
+        text << "rms " << rms_log10(*fit) << " p " << fit->goodness.p << "\n";
+      }
+      UNSCOPED_INFO(name << " " << channel << "\n" << text.str());
+      CHECK(alone.converged);
+      CHECK(weighted.converged);
+      CHECK(rms_log10(alone) < 0.13);
+      CHECK(alone[Term::white].value.has_value());
+    }
+  }
+}
