@@ -5,7 +5,8 @@
 namespace libchar {
 namespace {
 
-// The recording reached an end of its range when runs of samples stand there; which end, its extremes say.
+// The recording reached an end of its range when runs of samples stand there; which end, its
+// extremes say.
 void set_saturation(SensorModel& model, const ChannelQuality& quality) {
   if (quality.saturated == 0 || quality.samples == 0) return;
   model.saturation_low = quality.minimum;
@@ -22,7 +23,10 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
 
 }  // namespace
 
-SensorModel sensor_model_from(const Channel& channel, const LogInfo& log, const ChannelQuality& quality, const NoiseFit& fit,
+SensorModel sensor_model_from(const Channel& channel,
+                              const LogInfo& log,
+                              const ChannelQuality& quality,
+                              const NoiseFit& fit,
                               const AllanCurve& allan) {
   SensorModel model;
   model.channel = channel.name;
@@ -40,7 +44,8 @@ SensorModel sensor_model_from(const Channel& channel, const LogInfo& log, const 
   model.recording_sha256 = log.sha256;
   model.duration_s = fit.duration_s;
   model.remarks = fit.sentences;
-  for (const Remedy& remedy : fit.remedies) model.remarks.push_back(remedy.kind + ": " + remedy.action);
+  for (const Remedy& remedy : fit.remedies)
+    model.remarks.push_back(remedy.kind + ": " + remedy.action);
   return model;
 }
 

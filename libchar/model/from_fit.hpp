@@ -9,9 +9,12 @@
 
 namespace libchar {
 
-/// Everything of the fit that a simulation needs, and where it came from. `allan` gives the range of averaging times that the
-/// recording covers; it may be without points.
-SensorModel sensor_model_from(const Channel& channel, const LogInfo& log, const ChannelQuality& quality, const NoiseFit& fit,
+/// Everything of the fit that a simulation needs, and where it came from. `allan` gives the range
+/// of averaging times that the recording covers; it may be without points.
+SensorModel sensor_model_from(const Channel& channel,
+                              const LogInfo& log,
+                              const ChannelQuality& quality,
+                              const NoiseFit& fit,
                               const AllanCurve& allan);
 
 }  // namespace libchar

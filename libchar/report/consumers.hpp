@@ -1,6 +1,7 @@
 #pragma once
-// Which number goes where: the same coefficients in the units and under the names of the programs and papers that ask for
-// them (shared/reference/exports.md 1-2). Only Q, K and B are exchanged; everything else follows by the formula shown.
+// Which number goes where: the same coefficients in the units and under the names of the programs
+// and papers that ask for them (shared/reference/exports.md 1-2). Only Q, K and B are exchanged;
+// everything else follows by the formula shown.
 
 #include <string>
 #include <vector>
@@ -17,7 +18,10 @@ struct ConsumerRow {
   std::string unit;
 };
 
-/// Rows for a channel of known quantity; for other channels those that need no convention. Empty without white noise.
-std::vector<ConsumerRow> consumer_rows(const NoiseFit& fit, const std::string& unit, double rate_hz);
+/// Rows for a channel of known quantity; for other channels those that need no convention. Empty
+/// without white noise.
+std::vector<ConsumerRow> consumer_rows(const NoiseFit& fit,
+                                       const std::string& unit,
+                                       double rate_hz);
 
 }  // namespace libchar

@@ -13,17 +13,35 @@ namespace libchar {
 namespace {
 
 // An empty cell says "not known"; a spreadsheet makes text of "nan".
-std::string cell(double value) { return std::isfinite(value) ? shortest(value) : ""; }
-std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ""; }
+std::string cell(double value) {
+  return std::isfinite(value) ? shortest(value) : "";
+}
+std::string cell(const std::optional<double>& value) {
+  return value ? cell(*value) : "";
+}
 
-void add_allan(std::string& out, const ChannelResult& c, const std::string& name, const std::string& unit) {
+void add_allan(std::string& out,
+               const ChannelResult& c,
+               const std::string& name,
+               const std::string& unit) {
   for (const AllanPoint& p : c.allan.points) {
     const bool known = p.edf > 0;
     const auto bound = [&](double value) { return known ? cell(value) : std::string(); };
-    out += fmt::format("{},{},{},s,{},{},{},{},{},{},{},{},{}\n",
-                       name_of(c.allan.type), name, unit, cell(p.tau_s), cell(p.deviation),
-                       bound(p.ci68.low), bound(p.ci68.high), bound(p.ci95.low), bound(p.ci95.high), bound(p.edf), p.terms,
-                       c.fit ? cell(model_deviation(*c.fit, c.allan.type, static_cast<double>(p.m), c.allan.dt_s)) : "");
+    out += fmt::format(
+        "{},{},{},s,{},{},{},{},{},{},{},{},{}\n",
+        name_of(c.allan.type),
+        name,
+        unit,
+        cell(p.tau_s),
+        cell(p.deviation),
+        bound(p.ci68.low),
+        bound(p.ci68.high),
+        bound(p.ci95.low),
+        bound(p.ci95.high),
+        bound(p.edf),
+        p.terms,
+        c.fit ? cell(model_deviation(*c.fit, c.allan.type, static_cast<double>(p.m), c.allan.dt_s))
+              : "");
   }
 }
 
@@ -39,8 +57,16 @@ void add_spectrum(std::string& out, const ChannelResult& c, const std::string& n
       in95 = spectrum_interval(s, i, 0.95);
     }
     out += fmt::format("{},{},{},Hz,{},{},{},{},{},{},{},,{}\n",
-                       curve, name, unit, cell(s.frequency_hz[i]), cell(s.value[i]),
-                       cell(in68.first), cell(in68.second), cell(in95.first), cell(in95.second), dof > 0 ? cell(dof) : "",
+                       curve,
+                       name,
+                       unit,
+                       cell(s.frequency_hz[i]),
+                       cell(s.value[i]),
+                       cell(in68.first),
+                       cell(in68.second),
+                       cell(in95.first),
+                       cell(in95.second),
+                       dof > 0 ? cell(dof) : "",
                        c.fit ? cell(model_spectrum(*c.fit, s, s.frequency_hz[i])) : "");
   }
 }

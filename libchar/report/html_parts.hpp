@@ -1,5 +1,6 @@
 #pragma once
-// The parts of the page (html_report.cpp puts them together). Every text that reaches the page goes through escape.hpp.
+// The parts of the page (html_report.cpp puts them together). Every text that reaches the page goes
+// through escape.hpp.
 
 #include <string>
 #include <string_view>
@@ -9,7 +10,8 @@
 
 namespace libchar {
 
-/// The section of one channel: plots, numbers, trust, data quality, units for consumers, points of the curve.
+/// The section of one channel: plots, numbers, trust, data quality, units for consumers, points of
+/// the curve.
 std::string channel_section(const ChannelResult& channel, const LogInfo& log, std::size_t index);
 
 /// A table row of cells, each escaped as text; the first is a row header.

@@ -12,7 +12,8 @@ Json fit_channel_json(const Channel& channel, const NoiseFit& fit);
 Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 
-/// The whole document without "measured": all that a page shows, and the same bytes for the same characterization.
+/// The whole document without "measured": all that a page shows, and the same bytes for the same
+/// characterization.
 Json json_without_times(const Characterization& result);
 
 }  // namespace libchar

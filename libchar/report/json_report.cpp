@@ -11,7 +11,9 @@
 namespace libchar {
 namespace {
 
-Json frame(std::string_view format) { return {{"format", format}, {"version", 1}}; }
+Json frame(std::string_view format) {
+  return {{"format", format}, {"version", 1}};
+}
 
 Json read_off_json(const ChannelResult& channel) {
   Json out = Json::array();
@@ -62,7 +64,10 @@ Json fit_or_reason(const ChannelResult& channel, double rate_hz) {
   }
   Json out = {{"name", json_text(channel.channel.name)}, {"unit", json_text(channel.channel.unit)}};
   for (const TermName& term : kTermNames) {
-    out[std::string(term.key)] = {{"value", nullptr}, {"ci95", nullptr}, {"status", name_of(Status::not_fitted)}, {"upper95", nullptr}};
+    out[std::string(term.key)] = {{"value", nullptr},
+                                  {"ci95", nullptr},
+                                  {"status", name_of(Status::not_fitted)},
+                                  {"upper95", nullptr}};
   }
   out["second_opinion"] = nullptr;
   out["goodness"] = nullptr;
@@ -86,7 +91,8 @@ Json json_without_times(const Characterization& result) {
   }
   out["recording"] = recording_json(log, qualities);
 
-  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = frame("noise-fit"), quality = Json::object();
+  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = frame("noise-fit"),
+       quality = Json::object();
   const bool any = !result.channels.empty();
   allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
   spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);

@@ -1,5 +1,6 @@
 #pragma once
-// What a fitted mixture predicts for the curves of the report, and the points at which its coefficients are read off.
+// What a fitted mixture predicts for the curves of the report, and the points at which its
+// coefficients are read off.
 
 #include <array>
 #include <optional>
@@ -10,18 +11,25 @@
 
 namespace libchar {
 
-/// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing for types other than the
-/// (overlapping) Allan deviation, whose curves are the only ones we have in exact form.
-std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, double m, double dt_s);
+/// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing
+/// for types other than the (overlapping) Allan deviation, whose curves are the only ones we have
+/// in exact form.
+std::optional<double> model_deviation(const NoiseFit& fit,
+                                      DeviationType type,
+                                      double m,
+                                      double dt_s);
 
-/// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for a vanishing model.
-std::optional<double> model_spectrum(const NoiseFit& fit, const Spectrum& spectrum, double frequency_hz);
+/// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for
+/// a vanishing model.
+std::optional<double> model_spectrum(const NoiseFit& fit,
+                                     const Spectrum& spectrum,
+                                     double frequency_hz);
 
 /// A two-sided density in the sides and scaling of `spectrum`.
 double scaled_density(const Spectrum& spectrum, double two_sided_density);
 
-/// Fraction of the power of white noise at frequency f that a first-order low-pass (sampled) lets through:
-/// (1-r)^2 / (1 - 2 r cos(2 pi f dt) + r^2), r = exp(-2 pi fc dt).
+/// Fraction of the power of white noise at frequency f that a first-order low-pass (sampled) lets
+/// through: (1-r)^2 / (1 - 2 r cos(2 pi f dt) + r^2), r = exp(-2 pi fc dt).
 double low_pass_power(double bandwidth_hz, double frequency_hz, double dt_s);
 
 /// Point at which a coefficient is read off the Allan curve [RV Fig. 1.9].
@@ -33,7 +41,8 @@ struct ReadOff {
 };
 std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve);
 
-/// A term's asymptote on logarithmic axes: a straight line between two points, a decade beyond the curve on both sides.
+/// A term's asymptote on logarithmic axes: a straight line between two points, a decade beyond the
+/// curve on both sides.
 struct Asymptote {
   Term term = Term::white;
   std::array<double, 2> x{}, y{};

@@ -1,4 +1,5 @@
-// The JSON pieces that the verbs share; the keys are those of design.md 6.3, which may grow and never change.
+// The JSON pieces that the verbs share; the keys are those of design.md 6.3, which may grow and
+// never change.
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,19 @@
 namespace libchar {
 namespace {
 
-// JSON has no infinity: a bound that does not exist is null, and the status or the degrees of freedom beside it say why.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+// JSON has no infinity: a bound that does not exist is null, and the status or the degrees of
+// freedom beside it say why.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
 
-Json interval(const Interval& i) { return Json::array({number(i.low), number(i.high)}); }
+Json interval(const Interval& i) {
+  return Json::array({number(i.low), number(i.high)});
+}
 
 Json strings(const std::vector<std::string>& texts) {
   Json out = Json::array();
@@ -34,18 +42,22 @@ Json named(const Channel& channel) {
 Json asymptotes_json(const std::vector<Asymptote>& lines) {
   Json out = Json::object();
   for (const Asymptote& a : lines) {
-    out[std::string(kTermNames[static_cast<std::size_t>(a.term)].key)] = {{a.x[0], a.y[0]}, {a.x[1], a.y[1]}};
+    out[std::string(kTermNames[static_cast<std::size_t>(a.term)].key)] = {{a.x[0], a.y[0]},
+                                                                          {a.x[1], a.y[1]}};
   }
   return out;
 }
 
-Json frame(std::string_view format) { return {{"format", format}, {"version", 1}}; }
+Json frame(std::string_view format) {
+  return {{"format", format}, {"version", 1}};
+}
 
 }  // namespace
 
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit) {
   Json out = named(channel);
-  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "ci68", "reliable"}) out[key] = Json::array();
+  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "ci68", "reliable"})
+    out[key] = Json::array();
   Json model = Json::array();
   for (const AllanPoint& p : curve.points) {
     const bool known = p.edf > 0;
@@ -57,7 +69,9 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const N
     out["m"].push_back(p.m);
     out["ci68"].push_back(known ? interval(p.ci68) : Json(nullptr));
     out["reliable"].push_back(p.reliable);
-    if (fit != nullptr) model.push_back(number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
+    if (fit != nullptr)
+      model.push_back(
+          number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
   }
   if (fit != nullptr && !curve.points.empty()) {
     out["model"] = model;
@@ -96,7 +110,8 @@ Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, con
     } else {
       out["ci95"].push_back(nullptr);
     }
-    if (fit != nullptr) model.push_back(number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
+    if (fit != nullptr)
+      model.push_back(number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
   }
   if (fit != nullptr && !spectrum.frequency_hz.empty()) {
     out["model"] = model;
@@ -151,7 +166,8 @@ Json second_opinion_json(const SecondOpinion& opinion) {
   Json out = Json::object();
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (!opinion.value[t]) continue;
-    out[std::string(kTermNames[t].key)] = {{"value", number(opinion.value[t])}, {"sd", number(opinion.sd[t])}};
+    out[std::string(kTermNames[t].key)] = {{"value", number(opinion.value[t])},
+                                           {"sd", number(opinion.sd[t])}};
   }
   out["goodness"] = goodness_json(opinion.goodness);
   out["agrees"] = opinion.agrees;
@@ -162,13 +178,20 @@ Json second_opinion_json(const SecondOpinion& opinion) {
 Json remedies_json(const std::vector<Remedy>& remedies) {
   Json out = Json::array();
   for (const Remedy& r : remedies) {
-    out.push_back({{"kind", r.kind}, {"alarm", json_text(r.alarm)}, {"action", json_text(r.action)}, {"count", r.count}});
+    out.push_back({{"kind", r.kind},
+                   {"alarm", json_text(r.alarm)},
+                   {"action", json_text(r.action)},
+                   {"count", r.count}});
   }
   return out;
 }
 
 Json residuals_json(const std::vector<FitResidual>& residuals) {
-  Json out = {{"frequency_hz", Json::array()}, {"measured", Json::array()}, {"model", Json::array()}, {"dof", Json::array()}, {"z", Json::array()}};
+  Json out = {{"frequency_hz", Json::array()},
+              {"measured", Json::array()},
+              {"model", Json::array()},
+              {"dof", Json::array()},
+              {"z", Json::array()}};
   for (const FitResidual& r : residuals) {
     out["frequency_hz"].push_back(number(r.frequency_hz));
     out["measured"].push_back(number(r.measured));
@@ -186,10 +209,12 @@ Json fit_channel_json(const Channel& channel, const NoiseFit& fit) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     out[std::string(kTermNames[t].key)] = coefficient_json(fit.term[t], t, channel.unit);
   }
-  out["second_opinion"] = fit.second_opinion ? second_opinion_json(*fit.second_opinion) : Json(nullptr);
+  out["second_opinion"] =
+      fit.second_opinion ? second_opinion_json(*fit.second_opinion) : Json(nullptr);
   out["goodness"] = goodness_json(fit.goodness);
   out["bandwidth_hz"] = number(fit.bandwidth_hz);
-  if (fit.bandwidth_hz) out["bandwidth_ci95"] = fit.bandwidth_ci95 ? interval(*fit.bandwidth_ci95) : Json(nullptr);
+  if (fit.bandwidth_hz)
+    out["bandwidth_ci95"] = fit.bandwidth_ci95 ? interval(*fit.bandwidth_ci95) : Json(nullptr);
   out["remedies"] = remedies_json(fit.remedies);
   out["sentences"] = strings(fit.sentences);
   out["method"] = json_text(fit.method);
@@ -232,7 +257,10 @@ Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
 }
 
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities) {
-  Json out = {{"file", json_text(log.file)}, {"sha256", log.sha256}, {"rows", log.rows}, {"channels", Json::array()}};
+  Json out = {{"file", json_text(log.file)},
+              {"sha256", log.sha256},
+              {"rows", log.rows},
+              {"channels", Json::array()}};
   for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i) {
     out["channels"].push_back(quality_channel_json(log.channels[i], qualities[i]));
   }
@@ -256,7 +284,8 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
   return out;
 }
 
-Json inspect_json(const std::vector<LogInfo>& logs, const std::vector<std::vector<ChannelQuality>>& qualities) {
+Json inspect_json(const std::vector<LogInfo>& logs,
+                  const std::vector<std::vector<ChannelQuality>>& qualities) {
   Json out = frame("inspect");
   out["recordings"] = Json::array();
   for (std::size_t i = 0; i < std::min(logs.size(), qualities.size()); ++i) {
@@ -265,16 +294,21 @@ Json inspect_json(const std::vector<LogInfo>& logs, const std::vector<std::vecto
   return out;
 }
 
-void add_provenance(Json& document, const std::vector<std::string>& command, const std::vector<LogInfo>& logs) {
+void add_provenance(Json& document,
+                    const std::vector<std::string>& command,
+                    const std::vector<LogInfo>& logs) {
   document["tool"] = {{"name", "sensorchar"}, {"version", version()}};
   document["command"] = strings(command);
   document["input"] = Json::array();
   document["warnings"] = Json::array();
   for (const LogInfo& log : logs) {
-    document["input"].push_back({{"path", json_text(log.file)}, {"sha256", log.sha256}, {"bytes", log.bytes}});
+    document["input"].push_back(
+        {{"path", json_text(log.file)}, {"sha256", log.sha256}, {"bytes", log.bytes}});
     for (const Warning& w : log.warnings.list()) {
-      document["warnings"].push_back(
-          {{"code", w.code}, {"message", json_text(w.message)}, {"count", w.count}, {"where", strings(w.places)}});
+      document["warnings"].push_back({{"code", w.code},
+                                      {"message", json_text(w.message)},
+                                      {"count", w.count},
+                                      {"where", strings(w.places)}});
     }
   }
 }

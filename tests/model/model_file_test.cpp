@@ -76,7 +76,8 @@ TEST_CASE("model file: numbers are numbers to YAML 1.1 readers too") {
   // YAML 1.1 float: a point is compulsory, and an exponent carries a sign.
   const std::regex number_1_1(R"([-+]?([0-9][0-9_]*)\.[0-9]*([eE][-+][0-9]+)?)");
   const std::regex looks_numeric(R"([-+]?[0-9.]+([eE][-+]?[0-9]+)?)");
-  const std::regex value(R"((value|upper95|rate_hz|mean|resolution|duration_s|bandwidth_hz): ([^ #\n]+))");
+  const std::regex value(
+      R"((value|upper95|rate_hz|mean|resolution|duration_s|bandwidth_hz): ([^ #\n]+))");
   std::size_t seen = 0;
   for (std::sregex_iterator it(text.begin(), text.end(), value), end; it != end; ++it) {
     const std::string word = (*it)[2];

@@ -34,7 +34,15 @@ std::string without_assets(std::string page) {
 
 TEST_CASE("html: asks for nothing from anywhere") {
   const std::string page = without_assets(html_report(test::synthetic_imu()));
-  for (const char* word : {"src=", "href=\"http", "@import", "url(", "<link", "<iframe", "<img", " style=\"", " onclick"}) {
+  for (const char* word : {"src=",
+                           "href=\"http",
+                           "@import",
+                           "url(",
+                           "<link",
+                           "<iframe",
+                           "<img",
+                           " style=\"",
+                           " onclick"}) {
     INFO(word);
     CHECK(count(page, word) == 0);
   }
@@ -75,7 +83,13 @@ TEST_CASE("html: every number of a channel stands in a table too") {
   CHECK(count(page, "One-sided power spectral density</h3>") == result.channels.size());
   CHECK(count(page, result.log.sha256) >= 1);
   CHECK(count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it
-  for (const char* word : {"deg/√h", "deg/h", "µg/√Hz", "gyroscope_noise_density", "IEEE 952", "not detected", "undetermined"}) {
+  for (const char* word : {"deg/√h",
+                           "deg/h",
+                           "µg/√Hz",
+                           "gyroscope_noise_density",
+                           "IEEE 952",
+                           "not detected",
+                           "undetermined"}) {
     INFO(word);
     CHECK(count(page, word) > 0);
   }
@@ -94,8 +108,10 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     return;
   }
   const test::TemporaryFolder folder;
-  for (const auto& [name, result] : {std::pair{"plain.html", test::synthetic_imu()}, std::pair{"hostile.html", test::hostile()}}) {
-    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its own.
+  for (const auto& [name, result] : {std::pair{"plain.html", test::synthetic_imu()},
+                                     std::pair{"hostile.html", test::hostile()}}) {
+    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its
+    // own.
     const std::string path = (folder / name).string(), log = path + ".log";
     write_whole_file(path, without_assets(html_report(result)));
     const int code = std::system(("xmllint --html --noout '" + path + "' 2>'" + log + "'").c_str());
@@ -103,7 +119,13 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     std::string complaints;
     std::istringstream lines(test::slurp(log));
     for (std::string line; std::getline(lines, line);) {
-      if (line.find("error :") != std::string::npos && !std::regex_search(line, std::regex("Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) invalid"))) complaints += line + "\n";
+      if (line.find("error :") != std::string::npos &&
+          !std::regex_search(
+              line,
+              std::regex(
+                  "Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) "
+                  "invalid")))
+        complaints += line + "\n";
     }
     CHECK(complaints.empty());
     CHECK(code >= 0);

@@ -1,4 +1,5 @@
-// make_report KIND FOLDER: writes a report of a synthetic characterization for the browser test (browser_test.py).
+// make_report KIND FOLDER: writes a report of a synthetic characterization for the browser test
+// (browser_test.py).
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -20,11 +21,14 @@ int main(int argc, char** argv) {
                                           : test::synthetic_imu();
     std::filesystem::create_directories(folder);
     libchar::write_whole_file(folder + "/report.html", libchar::html_report(result), true);
-    libchar::write_whole_file(folder + "/report.json", libchar::dump_json(libchar::json_report(result)), true);
+    libchar::write_whole_file(
+        folder + "/report.json", libchar::dump_json(libchar::json_report(result)), true);
     libchar::write_whole_file(folder + "/curves.csv", libchar::csv_curves(result), true);
     if (const auto& c = result.channels[0]; c.fit) {
       libchar::write_whole_file(folder + "/model.sensor.yaml",
-                                libchar::model_yaml(libchar::sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan)), true);
+                                libchar::model_yaml(libchar::sensor_model_from(
+                                    c.channel, result.log, c.quality, *c.fit, c.allan)),
+                                true);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_report: %s\n", error.what());

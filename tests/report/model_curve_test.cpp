@@ -38,7 +38,8 @@ TEST_CASE("Allan curve of white noise behind a low-pass: the published ratios (a
 }
 
 TEST_CASE("the low-pass in the spectrum and in the Allan curve are the same filter") {
-  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled density
+  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled
+  // density
   const double dt_s = 0.01, bandwidth_hz = 13;
   double sum = 0;
   const int steps = 20000;
@@ -47,7 +48,8 @@ TEST_CASE("the low-pass in the spectrum and in the Allan curve are the same filt
     sum += low_pass_power(bandwidth_hz, f, dt_s) * 2 * s * s;
   }
   const double variance = 2 * sum / steps / (2 * dt_s);
-  const double deviation = *model_deviation(white_behind_low_pass(bandwidth_hz), DeviationType::oadev, 1, dt_s);
+  const double deviation =
+      *model_deviation(white_behind_low_pass(bandwidth_hz), DeviationType::oadev, 1, dt_s);
   CHECK(deviation * deviation == Approx(variance).epsilon(1e-9));
 }
 
@@ -66,7 +68,8 @@ TEST_CASE("read-off points: Q at 1 s, 0.664 B, K at 3 s, only for what is there"
   CHECK(read_off_points(*without.fit, without.allan).size() == 2);
 }
 
-TEST_CASE("densities: one-sided is twice two-sided, roots are roots, powers carry the noise bandwidth") {
+TEST_CASE(
+    "densities: one-sided is twice two-sided, roots are roots, powers carry the noise bandwidth") {
   Spectrum s;
   s.enbw_hz = 0.25;
   CHECK(scaled_density(s, 3.0) == 6.0);

@@ -22,9 +22,12 @@ std::vector<std::vector<std::string>> rows_of(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (quoted) {
-      if (c != '"') rows.back().back() += c;
-      else if (i + 1 < text.size() && text[i + 1] == '"') rows.back().back() += text[++i];
-      else quoted = false;
+      if (c != '"')
+        rows.back().back() += c;
+      else if (i + 1 < text.size() && text[i + 1] == '"')
+        rows.back().back() += text[++i];
+      else
+        quoted = false;
     } else if (c == '"') {
       quoted = true;
     } else if (c == ',') {
@@ -54,7 +57,17 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   CHECK(report["version"] == 1);
   CHECK(keys_of(report).back() == "measured");
   CHECK(report["measured"]["seconds"] == 1.25);
-  for (const char* key : {"tool", "command", "config", "input", "warnings", "recording", "allan", "spectrum", "fit", "quality"}) CHECK(report.contains(key));
+  for (const char* key : {"tool",
+                          "command",
+                          "config",
+                          "input",
+                          "warnings",
+                          "recording",
+                          "allan",
+                          "spectrum",
+                          "fit",
+                          "quality"})
+    CHECK(report.contains(key));
   CHECK(report["input"][0]["sha256"] == result.log.sha256);
   CHECK(report["input"][0]["bytes"] == result.log.bytes);
   CHECK(report["warnings"][0]["code"] == "gap");
@@ -66,14 +79,16 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   CHECK(allan["type"] == "oadev");
   const Json& curve = allan["channels"][0];
   const std::size_t n = result.channels[0].allan.points.size();
-  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "model"}) CHECK(curve[key].size() == n);
+  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "model"})
+    CHECK(curve[key].size() == n);
   CHECK(curve["ci95"][3].size() == 2);
 
   const Json& spectrum = report["spectrum"];
   CHECK(spectrum["format"] == "spectrum");
   CHECK(spectrum["sides"] == "one");
   CHECK(spectrum["scaling"] == "psd");
-  for (const char* key : {"frequency_hz", "value", "dof"}) CHECK(spectrum["channels"][0][key].size() == 320);
+  for (const char* key : {"frequency_hz", "value", "dof"})
+    CHECK(spectrum["channels"][0][key].size() == 320);
 
   const Json& fit = report["fit"];
   CHECK(fit["format"] == "noise-fit");
@@ -87,7 +102,9 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   for (const char* key : {"chi2", "dof", "p"}) CHECK(gyr_z["goodness"].contains(key));
 }
 
-TEST_CASE("report.json: every number reads back to the same double, and the text is valid JSON for every input") {
+TEST_CASE(
+    "report.json: every number reads back to the same double, and the text is valid JSON for every "
+    "input") {
   const auto result = test::synthetic_imu();
   const Json back = parse_json(dump_json(json_report(result)), "report.json");
   for (std::size_t c = 0; c < result.channels.size(); ++c) {
@@ -95,7 +112,8 @@ TEST_CASE("report.json: every number reads back to the same double, and the text
     for (std::size_t i = 0; i < points.size(); ++i) {
       CHECK(back["allan"]["channels"][c]["deviation"][i].get<double>() == points[i].deviation);
     }
-    CHECK(back["fit"]["channels"][c]["white_noise"]["value"].get<double>() == *result.channels[c].fit->term[0].value);
+    CHECK(back["fit"]["channels"][c]["white_noise"]["value"].get<double>() ==
+          *result.channels[c].fit->term[0].value);
   }
   CHECK_NOTHROW(parse_json(dump_json(json_report(test::hostile())), "report.json"));
   CHECK_NOTHROW(parse_json(dump_json(json_report(test::barely_anything())), "report.json"));
@@ -114,9 +132,22 @@ TEST_CASE("report.json: null stands only where a status says why") {
 TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   const auto result = test::synthetic_imu();
   const auto rows = rows_of(csv_curves(result));
-  CHECK(rows[0] == std::vector<std::string>{"curve", "channel", "unit", "x_unit", "x", "value", "low68", "high68", "low95", "high95", "dof", "terms", "model"});
+  CHECK(rows[0] == std::vector<std::string>{"curve",
+                                            "channel",
+                                            "unit",
+                                            "x_unit",
+                                            "x",
+                                            "value",
+                                            "low68",
+                                            "high68",
+                                            "low95",
+                                            "high95",
+                                            "dof",
+                                            "terms",
+                                            "model"});
   std::size_t expected = 1;
-  for (const ChannelResult& c : result.channels) expected += c.allan.points.size() + c.spectrum.value.size();
+  for (const ChannelResult& c : result.channels)
+    expected += c.allan.points.size() + c.spectrum.value.size();
   CHECK(rows.size() == expected);
   for (const auto& row : rows) REQUIRE(row.size() == 13);
   const auto& points = result.channels[0].allan.points;
@@ -126,7 +157,8 @@ TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   }
   CHECK(rows[points.size() + 1][0] == "psd_one_sided");
   CHECK(rows[points.size() + 1][2] == "(deg/s)²/Hz");
-  const double low = *parse_double(rows[points.size() + 1][8]), high = *parse_double(rows[points.size() + 1][9]);
+  const double low = *parse_double(rows[points.size() + 1][8]),
+               high = *parse_double(rows[points.size() + 1][9]);
   CHECK(low < result.channels[0].spectrum.value[0]);
   CHECK(high > result.channels[0].spectrum.value[0]);
 }
@@ -163,7 +195,8 @@ TEST_CASE("which number goes where: the formulas of exports.md on its own figure
   fit.term[2].value = 1.9393e-5;
   fit.term[2].ci95 = {1.93929e-5, 1.93931e-5};
   std::map<std::string, std::string> value;
-  for (const ConsumerRow& row : consumer_rows(fit, "rad/s", 200)) value[row.consumer + "/" + row.key] = row.value;
+  for (const ConsumerRow& row : consumer_rows(fit, "rad/s", 200))
+    value[row.consumer + "/" + row.key] = row.value;
   CHECK(value["Kalibr, EuRoC, OpenVINS/gyroscope_noise_density"] == "1.69680×10⁻⁴");
   CHECK(value["VINS-Mono, VINS-Fusion/gyr_n"] == "0.00339360");
   CHECK(value["VINS-Mono, VINS-Fusion/gyr_w"] == "2.74258×10⁻⁴");
@@ -186,7 +219,8 @@ TEST_CASE("verdict: says what is fine, what is not, and where") {
   CHECK(verdict_of(result).find("acc_z") != std::string::npos);
   result.channels.pop_back();
   CHECK(verdict_of(result).find("all 5 channels") != std::string::npos);
-  CHECK(verdict_of(test::barely_anything()).find("No fit was possible for gyr_x, gyr_y") != std::string::npos);
+  CHECK(verdict_of(test::barely_anything()).find("No fit was possible for gyr_x, gyr_y") !=
+        std::string::npos);
   result.channels.clear();
   CHECK(verdict_of(result) == "The recording holds no channel to characterize.");
 }

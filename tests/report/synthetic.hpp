@@ -1,5 +1,6 @@
 #pragma once
-// A characterization made from formulas and a seed instead of a recording: what a report has to be able to show.
+// A characterization made from formulas and a seed instead of a recording: what a report has to be
+// able to show.
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -77,7 +78,10 @@ inline Spectrum synthetic_spectrum(const Truth& t, std::mt19937_64& random) {
   return s;
 }
 
-inline Coefficient synthetic_coefficient(double truth, double relative_sd, double limit, std::mt19937_64& random) {
+inline Coefficient synthetic_coefficient(double truth,
+                                         double relative_sd,
+                                         double limit,
+                                         std::mt19937_64& random) {
   Coefficient c;
   c.bound = relative_sd;
   if (truth == 0) {
@@ -130,7 +134,10 @@ inline NoiseFit synthetic_fit(const Truth& t, std::mt19937_64& random) {
   return fit;
 }
 
-inline ChannelResult synthetic_channel(const std::string& name, const std::string& unit, const Truth& t, std::uint64_t seed) {
+inline ChannelResult synthetic_channel(const std::string& name,
+                                       const std::string& unit,
+                                       const Truth& t,
+                                       std::uint64_t seed) {
   std::mt19937_64 random(seed);
   ChannelResult c;
   c.channel = {name, unit, false};
@@ -150,8 +157,8 @@ inline ChannelResult synthetic_channel(const std::string& name, const std::strin
   return c;
 }
 
-/// A log of three gyroscope and three accelerometer axes; the last gyroscope axis shows no random walk, the last
-/// accelerometer axis is troubled.
+/// A log of three gyroscope and three accelerometer axes; the last gyroscope axis shows no random
+/// walk, the last accelerometer axis is troubled.
 inline Characterization synthetic_imu() {
   Characterization result;
   LogInfo& log = result.log;
@@ -170,7 +177,8 @@ inline Characterization synthetic_imu() {
   log.time.gaps = 2;
   log.time.missing_samples = 37;
   log.warnings.add("gap", "grid points without a row are kept as missing", "line 4211", 37);
-  log.warnings.add("duplicate_timestamp", "rows with the stamp of the row before are dropped", "line 90112", 1);
+  log.warnings.add(
+      "duplicate_timestamp", "rows with the stamp of the row before are dropped", "line 90112", 1);
   log.guesses = {"time unit: us, from the magnitude of the stamps"};
   log.dialect = {"delimiter ,", "header in line 1", "units in square brackets"};
   const Truth gyro, accelerometer{2e-3, 3e-4, 2e-5, 200, 200000};
@@ -186,9 +194,13 @@ inline Characterization synthetic_imu() {
   bad.fit->goodness = {412.0, 125, 3e-33};
   bad.fit->second_opinion->agrees = false;
   bad.fit->second_opinion->sentence = "White noise differs by 6.1 combined sd.";
-  bad.fit->remedies.push_back({"spikes", "kurtosis of differences 29.8 > 3.2", "212 samples replaced by the mean of their neighbours", 212});
+  bad.fit->remedies.push_back({"spikes",
+                               "kurtosis of differences 29.8 > 3.2",
+                               "212 samples replaced by the mean of their neighbours",
+                               212});
   bad.fit->term[1].status = Status::undetermined;
-  bad.fit->sentences = {"The record cannot tell bias instability from random walk: record 4 × as long."};
+  bad.fit->sentences = {
+      "The record cannot tell bias instability from random walk: record 4 × as long."};
   bad.fit->bandwidth_hz = 62.0;
   bad.fit->bandwidth_ci95 = Interval{60.5, 63.6};
   bad.lines = {{50.0, 2.1e-3, 340, 0.02}, {100.0, 4e-4, 21, 0.02}};
@@ -197,7 +209,8 @@ inline Characterization synthetic_imu() {
   bad.quality.difference_kurtosis = 29.8;
   bad.quality.suggestions = {"14 samples stand at 19.6133: widen the range"};
   for (ChannelResult& c : result.channels) c.quality.missing = 37;
-  result.settings = {{"allan", {{"type", "oadev"}, {"grid", "octave"}}}, {"spectrum", {{"window", "hann"}, {"segment", 50000}, {"overlap", 0.5}}}};
+  result.settings = {{"allan", {{"type", "oadev"}, {"grid", "octave"}}},
+                     {"spectrum", {{"window", "hann"}, {"segment", 50000}, {"overlap", 0.5}}}};
   result.command = {"sensorchar", "characterize", "recordings/imu_2h.csv", "-o", "out dir"};
   result.seconds = 1.25;
   return result;
@@ -212,7 +225,9 @@ inline const std::vector<std::string>& hostile_names() {
                                                  "<!--<script>",
                                                  "]]><svg onload=window.broken=3>",
                                                  "=HYPERLINK(\"x\")",
-                                                 "a\xE2\x80\xAE" "b\xE2\x80\xA8" "c",
+                                                 "a\xE2\x80\xAE"
+                                                 "b\xE2\x80\xA8"
+                                                 "c",
                                                  "bad\xFF\x01utf8",
                                                  "&lt;b&gt;",
                                                  "{{constructor}} ${x} `y`",
@@ -249,7 +264,8 @@ inline Characterization many_channels(std::size_t count) {
   Characterization result = synthetic_imu();
   result.channels.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    result.channels.push_back(synthetic_channel("thermistor_" + std::to_string(i), "degC", {}, 100 + i));
+    result.channels.push_back(
+        synthetic_channel("thermistor_" + std::to_string(i), "degC", {}, 100 + i));
   }
   return result;
 }
@@ -265,7 +281,8 @@ inline Characterization barely_anything() {
   result.channels[0].allan.points.clear();
   result.channels[0].spectrum = {};
   result.channels[1].allan.points.resize(1);
-  result.channels[1].allan.points[0] = {1, 0.005, 0, 4, 0, {}, {}, false};  // constant data: a deviation of zero, no edf
+  result.channels[1].allan.points[0] = {
+      1, 0.005, 0, 4, 0, {}, {}, false};  // constant data: a deviation of zero, no edf
   result.channels[1].channel.unit = "";
   result.channels[1].spectrum.value[3] = 0;
   result.log.time.from_stamps = false;
