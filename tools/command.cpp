@@ -203,6 +203,8 @@ int run(CLI::App& app, Session& session) {
       throw Error({ErrorKind::input, "E0301", session.warned_files.front(), "has warnings, and --strict was given", "", "leave out --strict to accept what the warnings say"});
     return code;
   } catch (const Error& error) {
+    // An error after a signal is its consequence: the input of a pipe ended early.
+    if (stop_signal() != 0) return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
     return fail(error.what(), exit_code(error.fault().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);

@@ -84,11 +84,14 @@ TEST_CASE("a reader that goes away is no failure") {
 
 TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
   const test::TemporaryFolder folder;
-  const std::string script = R"("$0" convert - -o "$1" < "$2" & pid=$!; exec 3> "$2"; echo x >&3; sleep 0.3; kill -TERM $pid; exec 3>&-; wait $pid)";
+  // With data the reading succeeds and writing must still not happen; without, the reading fails because it was stopped.
+  const std::string script = R"("$0" convert - -o "$1" < "$2" & pid=$!; exec 3> "$2"; printf "$3" >&3; sleep 0.3; kill -TERM $pid; exec 3>&-; wait $pid)";
   const std::string fifo = (folder / "pipe").string();
   const std::string out = (folder / "out.npy").string();
-  const auto ran = test::run_words({"bash", "-c", "mkfifo \"$2\"; " + script, SENSORCHAR_PROGRAM, out, fifo});
-  INFO(ran.err);
-  CHECK(ran.code == 143);
-  CHECK_FALSE(std::filesystem::exists(out));
+  for (const char* data : {"x\\n", "x\\n1\\n2\\n"}) {
+    const auto ran = test::run_words({"bash", "-c", "rm -f \"$2\"; mkfifo \"$2\"; " + script, SENSORCHAR_PROGRAM, out, fifo, data});
+    INFO(ran.err);
+    CHECK(ran.code == 143);
+    CHECK_FALSE(std::filesystem::exists(out));
+  }
 }
