@@ -96,6 +96,7 @@ void run_convert(Session& session, ConvertOptions& options) {
   if (session.strict && !info.warnings.empty()) return;
   libchar::LogWriter& writer = sink->writer();
   writer.refine(info);
+  session.terminal.update(1, "writing " + options.output);  // the last chance to be stopped
   writer.finish();
   const std::vector<std::string> losses = writer.losses();
   for (const std::string& loss : losses) session.terminal.note("not kept: " + libchar::printable(loss));

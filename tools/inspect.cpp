@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -20,18 +21,24 @@ struct InspectOptions {
   bool json = false;
 };
 
+// Enough digits to see a thousandth of the noise beside a large offset.
+std::string beside_noise(double value, double noise) {
+  const double ratio = noise > 0 ? std::abs(value) / noise : 1;
+  return libchar::significant(value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
+}
+
 std::vector<std::string> channel_row(const libchar::Channel& channel, const libchar::ChannelQuality& q) {
-  const auto digits = [](double value, int count) { return libchar::significant(value, count); };
+  const double noise = q.standard_deviation;
   return {libchar::printable(channel.name, 40),
           channel.unit.empty() ? "-" : libchar::printable(channel.unit, 20),
           std::to_string(q.missing),
-          digits(q.mean, 7),
-          digits(q.standard_deviation, 4),
-          digits(q.minimum, 6),
-          digits(q.maximum, 6),
-          q.resolution ? digits(*q.resolution, 4) : "-",
+          beside_noise(q.mean, noise),
+          libchar::significant(noise, 4),
+          beside_noise(q.minimum, noise),
+          beside_noise(q.maximum, noise),
+          q.resolution ? libchar::significant(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          digits(q.difference_kurtosis, 3)};
+          libchar::significant(q.difference_kurtosis, 3)};
 }
 
 std::string channel_table(const libchar::Inspection& inspection) {
