@@ -10,6 +10,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -63,6 +64,7 @@ class CsvSource final : public RowSource {
       if (block.rows > 0) return true;
       if (fault_) throw Error(*fault_);
     }
+    reached_end_ = true;
     return false;
   }
 
@@ -70,6 +72,7 @@ class CsvSource final : public RowSource {
     if (finished_) return;
     finished_ = true;
     stop();
+    if (reached_end_) check_account();
     for (std::size_t c = 0; c < plan_.channels; ++c)
       if (rows_ > 0 && words_per_channel_[c] == rows_)
         throw Error({ErrorKind::input,
@@ -121,11 +124,19 @@ class CsvSource final : public RowSource {
     return feed_.finish_hash();
   }
 
-  const Account& total() const { return total_; }
-
  private:
   static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
+  // this reader.
+  void check_account() const {
+    const std::uint64_t bytes =
+        dialect_.data_offset + total_.bytes + feed_.nul_tail() + feed_.cut_bytes();
+    if (!total_.balanced() || bytes != feed_.bytes_read() ||
+        total_.cells != rows_ * plan_.target.size())
+      throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
 
   // The channels to read, in file order, and what to do with each column.
@@ -398,7 +409,7 @@ class CsvSource final : public RowSource {
   Account total_;
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
                 inexact_ = 0;
-  bool cr_noted_ = false, finished_ = false, ended_ = false;
+  bool cr_noted_ = false, finished_ = false, ended_ = false, reached_end_ = false;
 
   std::vector<std::thread> workers_;
   std::mutex mutex_;

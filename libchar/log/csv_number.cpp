@@ -176,7 +176,7 @@ StampFault read_stamp(std::string_view text,
   std::size_t i = negative || text[0] == '+' ? 1 : 0;
   Uint128 w = 0;
   int q = 0;
-  bool any = false, fraction = false;
+  bool any = false, fraction = false, lost = false;
   for (; i < text.size(); ++i) {
     if (text[i] == point && !fraction) {
       fraction = true;
@@ -189,6 +189,7 @@ StampFault read_stamp(std::string_view text,
         q -= fraction;
       } else {
         q += !fraction;
+        lost = lost || text[i] != '0';
       }
     } else {
       break;
@@ -218,7 +219,7 @@ StampFault read_stamp(std::string_view text,
   }
   if (q < 0) {
     Uint128 divisor = 1;
-    bool sticky = false;
+    bool sticky = lost;
     for (; q < -30; ++q) {
       sticky = sticky || w % 10 != 0;
       w /= 10;

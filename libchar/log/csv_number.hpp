@@ -99,7 +99,8 @@ inline bool divide_by_power_of_ten(std::uint64_t w, int n, double& out) {
   return true;
 }
 
-inline constexpr std::array<std::int64_t, 10> kNanoseconds = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+inline constexpr std::array<std::int64_t, 10> kNanoseconds = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
 
 inline bool is_digit(char c) {
   return static_cast<unsigned char>(c - '0') < 10;
@@ -119,10 +120,12 @@ inline std::uint64_t value_of_eight(std::uint64_t digits) {
          32U;
 }
 
-inline constexpr std::array<std::uint64_t, 8> kShift = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
+inline constexpr std::array<std::uint64_t, 8> kShift = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
 
-/// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past its end. Eight bytes are
-/// looked at together; how many of them are digits decides a shift, not a branch.
+/// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past
+/// its end. Eight bytes are looked at together; how many of them are digits decides a shift, not a
+/// branch.
 inline const char* read_digits(const char* p, std::uint64_t& w) {
   for (;;) {
     const std::uint64_t digits = load8(p) ^ 0x3030303030303030U;
@@ -160,7 +163,8 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
     digits += p - fraction;
   }
   if (*first == '0' && !integer) {
-    // Leading zeros are no significant digits: up to eight of them behind the mark are taken off in one go.
+    // Leading zeros are no significant digits: up to eight of them behind the mark are taken off in
+    // one go.
     const std::uint64_t zeros = load8(first + 2) ^ 0x3030303030303030U;
     if (first[1] == point) digits -= 1 + (zeros == 0 ? 8 : std::countr_zero(zeros) / 8);
     digits = digits < 1 ? 1 : digits;
@@ -191,11 +195,13 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
     magnitude = q < 0 ? static_cast<double>(w) / kPowerOfTen[static_cast<std::size_t>(-q)]
                       : static_cast<double>(w) * kPowerOfTen[static_cast<std::size_t>(q)];
   }
-  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (static_cast<std::uint64_t>(negative) << 63U));
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) |
+                                (static_cast<std::uint64_t>(negative) << 63U));
   return p;
 }
 
-/// The same for a time stamp in a unit of 10^unit_digits ns: whole nanoseconds, or nullptr for the slow way (`read_stamp`).
+/// The same for a time stamp in a unit of 10^unit_digits ns: whole nanoseconds, or nullptr for the
+/// slow way (`read_stamp`).
 inline const char* quick_stamp(const char* p, char point, int unit_digits, std::int64_t& stamp) {
   const bool negative = *p == '-';
   p += negative;
@@ -213,7 +219,8 @@ inline const char* quick_stamp(const char* p, char point, int unit_digits, std::
   }
   std::int64_t ns = 0;
   if (digits > 19 || w > INT64_MAX || scale < 0 || scale > 9 ||
-      __builtin_mul_overflow(static_cast<std::int64_t>(w), kNanoseconds[static_cast<std::size_t>(scale)], &ns))
+      __builtin_mul_overflow(
+          static_cast<std::int64_t>(w), kNanoseconds[static_cast<std::size_t>(scale)], &ns))
     return nullptr;
   stamp = negative ? -ns : ns;
   return p;

@@ -93,10 +93,12 @@ class RowParser {
       out_.rows.line_offset[i] = static_cast<std::uint32_t>(i);
   }
 
-  // Rows of plain numbers between delimiters, with the file's line end: nearly all of a file. Stops in front of the first
-  // row that is anything else, of which it has changed nothing but scratch.
+  // Rows of plain numbers between delimiters, with the file's line end: nearly all of a file. Stops
+  // in front of the first row that is anything else, of which it has changed nothing but scratch.
   const char* quick_rows(const char* p) {
-    if (dialect_.delimiter == ' ' || dialect_.line_end == LineEnd::cr || dialect_.line_end == LineEnd::none) return p;
+    if (dialect_.delimiter == ' ' || dialect_.line_end == LineEnd::cr ||
+        dialect_.line_end == LineEnd::none)
+      return p;
     const std::size_t before = rows_;
     const int* const target = plan_.target.data();
     const std::size_t last = plan_.target.size() - 1;
@@ -133,7 +135,8 @@ class RowParser {
       if (q == nullptr || (crlf ? *q != '\r' || q[1] != '\n' : *q != '\n') || q >= end) break;
       p = q + (crlf ? 2 : 1);
       ++rows_;
-      if (lines_listed_) out_.rows.line_offset.push_back(static_cast<std::uint32_t>(line_ + (rows_ - before - 1)));
+      if (lines_listed_)
+        out_.rows.line_offset.push_back(static_cast<std::uint32_t>(line_ + (rows_ - before - 1)));
     }
     quick_rows_ += rows_ - before;
     line_ += rows_ - before;
@@ -144,11 +147,17 @@ class RowParser {
   const char* quick_text(const char* p, std::size_t column, bool stamp) {
     const char* const start = p;
     while (p < end_ && *p != dialect_.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
-    if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField)) return nullptr;
-    if (column == 0 && (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start))) return nullptr;
+    if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
+      return nullptr;
+    if (column == 0 &&
+        (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start)))
+      return nullptr;
     std::size_t offset = 0;
-    if (stamp && read_stamp({start, static_cast<std::size_t>(p - start)}, dialect_.decimal, dialect_.time_unit_ns,
-                            out_.rows.time_ns[rows_], offset) != StampFault::none)
+    if (stamp && read_stamp({start, static_cast<std::size_t>(p - start)},
+                            dialect_.decimal,
+                            dialect_.time_unit_ns,
+                            out_.rows.time_ns[rows_],
+                            offset) != StampFault::none)
       return nullptr;
     return p;
   }

@@ -1,6 +1,7 @@
-// Speed of reading CSV: the parser alone, the whole of read_log with a sink that does nothing, and what they are measured
-// against (memcpy of the bytes, a plain std::from_chars loop), on 7 columns of numbers written in several ways.
-//   csv_bench [megabytes]
+// Speed of reading CSV: the parser alone, the whole of read_log with a sink that does nothing, and
+// what they are measured against (memcpy of the bytes, a plain std::from_chars loop), on 7 columns
+// of numbers written in several ways.
+//   csv_bench [megabytes [block_bytes]]
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -24,11 +25,15 @@ using namespace libchar;
 
 namespace {
 
-double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wall() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 double cpu() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -42,10 +47,14 @@ std::string make(const std::string& style, std::size_t bytes) {
     text += fmt::format("{:.3f}", static_cast<double>(row) * 0.005);
     for (int c = 0; c < 6; ++c) {
       const double x = noise(random) + (c == 5 ? 9.81 : 0);
-      if (style == "shortest") text += fmt::format(",{}", x);
-      else if (style == "%.9g") text += fmt::format(",{:.9g}", x);
-      else if (style == "%.6f") text += fmt::format(",{:.6f}", x);
-      else text += fmt::format(",{}", std::lround(x * 16384));
+      if (style == "shortest")
+        text += fmt::format(",{}", x);
+      else if (style == "%.9g")
+        text += fmt::format(",{:.9g}", x);
+      else if (style == "%.6f")
+        text += fmt::format(",{:.6f}", x);
+      else
+        text += fmt::format(",{}", std::lround(x * 16384));
     }
     text += '\n';
   }
@@ -87,8 +96,24 @@ double plain_loop(const std::string& text) {
 
 int main(int count, char** arguments) {
   const std::size_t megabytes = count > 1 ? static_cast<std::size_t>(std::atoi(arguments[1])) : 100;
-  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "style", "memcpy", "from_chars", "parse_rows", "read_log", "read_log", "no hash", "parse/");
-  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "", "GB/s", "MB/s core", "MB/s core", "MB/s wall", "MB/s cpu", "MB/s cpu", "from_ch.");
+  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
+             "style",
+             "memcpy",
+             "from_chars",
+             "parse_rows",
+             "read_log",
+             "read_log",
+             "no hash",
+             "parse/");
+  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
+             "",
+             "GB/s",
+             "MB/s core",
+             "MB/s core",
+             "MB/s wall",
+             "MB/s cpu",
+             "MB/s cpu",
+             "from_ch.");
   volatile double keep = 0;
   for (const std::string style : {"shortest", "%.9g", "%.6f", "counts"}) {
     const std::string text = make(style, megabytes << 20U);
@@ -98,8 +123,10 @@ int main(int count, char** arguments) {
     const double plain = best_of(3, [&] { keep = plain_loop(text); });
 
     ReadOptions options;
+    if (count > 2) options.block_bytes = static_cast<std::size_t>(std::atoi(arguments[2]));
     LogInfo info;
-    const csv::Dialect dialect = csv::understand(std::string_view(text).substr(0, 1U << 20U), false, options, info);
+    const csv::Dialect dialect =
+        csv::understand(std::string_view(text).substr(0, 1U << 20U), false, options, info);
     csv::Plan plan;
     plan.dialect = &dialect;
     plan.target = {csv::Plan::kTime, 0, 1, 2, 3, 4, 5};
@@ -136,8 +163,15 @@ int main(int count, char** arguments) {
       read_log(path, options, sink);
     });
     ::close(file);
-    fmt::print("{:<10} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n", style, size / copying * 1e-9, size / plain * 1e-6,
-               size / parsing * 1e-6, size / walls * 1e-6, size / cpus * 1e-6, size / unhashed * 1e-6, plain / parsing);
+    fmt::print("{:<10} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n",
+               style,
+               size / copying * 1e-9,
+               size / plain * 1e-6,
+               size / parsing * 1e-6,
+               size / walls * 1e-6,
+               size / cpus * 1e-6,
+               size / unhashed * 1e-6,
+               plain / parsing);
   }
 
   std::mt19937_64 random(1);
@@ -147,12 +181,15 @@ int main(int count, char** arguments) {
     x[i] = noise(random);
     grid[i] = std::round(x[i] / 0.05) * 0.05;
   }
-  for (const auto& [name, data] : {std::pair<const char*, const std::vector<double>&>{"continuous", x}, {"on a grid", grid}}) {
+  for (const auto& [name, data] :
+       {std::pair<const char*, const std::vector<double>&>{"continuous", x}, {"on a grid", grid}}) {
     const double seconds = best_of(3, [&, &samples = data] {
       QualityMeter meter;
       meter.push(samples);
       keep = meter.finish().mean;
     });
-    fmt::print("quality meter, {} samples: {:.2f} ns/sample\n", name, seconds / static_cast<double>(x.size()) * 1e9);
+    fmt::print("quality meter, {} samples: {:.2f} ns/sample\n",
+               name,
+               seconds / static_cast<double>(x.size()) * 1e9);
   }
 }
