@@ -82,9 +82,15 @@ std::string say_unknown(const CLI::App& app) {
 
 // A word in the place of the verb that is none: its nearest verb, or what to do with a file.
 void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
-  if (command.size() < 2 || command[1].starts_with('-')) return;
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  if (command.size() < 2) throw Error({ErrorKind::usage, "E0203", app.get_name(), fmt::format("which verb? one of {}", fmt::join(verbs, ", ")), "", fmt::format("{} --help", app.get_name())});
+  if (command[1].starts_with('-')) {
+    static const std::vector<std::string> kOwn = {"--help", "--version", "-h"};
+    if (std::find(kOwn.begin(), kOwn.end(), command[1]) != kOwn.end()) return;
+    const auto near = libchar::nearest(command[1], kOwn);
+    throw Error({ErrorKind::usage, "E0204", app.get_name(), "unknown option in front of the verb", command[1], near ? fmt::format("did you mean {}?", *near) : "options stand behind the verb"});
+  }
   if (std::find(verbs.begin(), verbs.end(), command[1]) != verbs.end()) return;
   struct stat status {};
   std::string hint = fmt::format("the verbs are {}", fmt::join(verbs, ", "));
@@ -197,6 +203,8 @@ int run(CLI::App& app, Session& session) {
       throw Error({ErrorKind::input, "E0301", session.warned_files.front(), "has warnings, and --strict was given", "", "leave out --strict to accept what the warnings say"});
     return code;
   } catch (const Error& error) {
+    // An error after a signal is its consequence: the input of a pipe ended early.
+    if (stop_signal() != 0) return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
     return fail(error.what(), exit_code(error.fault().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);

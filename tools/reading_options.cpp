@@ -73,12 +73,31 @@ std::string shell_word(std::string_view word) {
   return quoted + "'";
 }
 
-std::string pinned_options(const libchar::LogInfo& info) {
-  std::string text;
-  const libchar::TimeBase& time = info.time;
-  if (!time.column.empty()) text += " --time-column " + shell_word(time.column);
-  if (!time.column.empty() && !time.unit.empty()) text += " --time-unit " + time.unit;
-  return text;
+std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info) {
+  const libchar::ReadOptions usual;
+  std::string flags;
+  const auto word = [&](const char* flag, const std::string& value, const std::string& default_value) {
+    if (value != default_value) flags += fmt::format(" {} {}", flag, shell_word(value));
+  };
+  const auto number = [&](const char* flag, const std::optional<double>& value, const char* unit) {
+    if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
+  };
+  for (const std::string& channel : options.channels) word("-c", channel, "");
+  number("--from", options.from_s, "s");
+  number("--to", options.to_s, "s");
+  number("--rate", options.rate_hz, "Hz");
+  const bool guessed = info.time.unit_guessed && !info.time.column.empty();
+  word("--time-column", guessed ? info.time.column : options.time_column, usual.time_column);
+  word("--time-unit", guessed ? info.time.unit : options.time_unit, usual.time_unit);
+  word("--format", options.format, usual.format);
+  word("--delimiter", options.delimiter, usual.delimiter);
+  word("--decimal", options.decimal, usual.decimal);
+  word("--header", options.header, usual.header);
+  word("--encoding", options.encoding, usual.encoding);
+  if (options.skip_rows != 0) flags += fmt::format(" --skip-rows {}", options.skip_rows);
+  if (options.overflow_as_missing) flags += " --overflow nan";
+  if (options.skip_repeated_header) flags += " --repeated-header skip";
+  return flags;
 }
 
 }  // namespace sensorchar

@@ -10,8 +10,8 @@ namespace sensorchar {
 /// and `session` must live until the verb has run.
 void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options);
 
-/// The flags that pin what was guessed of a log ("--time-column t --time-unit us --rate 200Hz"), quoted for a shell.
-std::string pinned_options(const libchar::LogInfo& info);
+/// The flags that read this log the same way again, what was guessed of it pinned (" --time-column t --time-unit us").
+std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info);
 
 /// A word quoted for a POSIX shell when it has to be.
 std::string shell_word(std::string_view word);

@@ -8,12 +8,16 @@
 namespace sensorchar {
 
 void add_inspect(CLI::App& app, Session& session);
+void add_characterize(CLI::App& app, Session& session);
+void add_allan(CLI::App& app, Session& session);
 void add_psd(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
 inline void add_verbs(CLI::App& app, Session& session) {
   add_inspect(app, session);
+  add_characterize(app, session);
+  add_allan(app, session);
   add_psd(app, session);
   add_convert(app, session);
 }

@@ -74,6 +74,7 @@ double chi_square_cdf(double x, double dof) {
 }
 
 double chi_square_tail(double x, double dof) {
+  if (!(dof > 0)) return 1;
   if (dof > kHuge) return huge_tail(x, dof, 1);
   return x <= 0 ? 1 : boost::math::gamma_q(dof / 2, x / 2, Policy());
 }

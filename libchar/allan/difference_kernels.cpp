@@ -1,5 +1,9 @@
 #include "libchar/allan/difference_kernels.hpp"
 
+#include <cstring>
+
+#include "libchar/allan/lanes.hpp"
+
 namespace libchar {
 namespace {
 
@@ -22,24 +26,22 @@ template <int kOrder>
 
 template <int kOrder>
 [[gnu::always_inline]] inline double contiguous(const DifferenceRun& run) {
-  const double* const a = run.at[0];
-  const double* const b = run.at[1];
-  const double* const c = run.at[2];
-  const double* const e = run.at[3];
   const double c0 = run.c[0], c1 = run.c[1], c2 = run.c[2];
   double lane[kLanes] = {};
-  double u[kLanes];
-  for (std::uint64_t k = 0; k < kLanes; ++k) u[k] = static_cast<double>(k);
+  Four sum[2] = {}, u[2] = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   const std::uint64_t whole = run.count / kLanes * kLanes;
   for (std::uint64_t t = 0; t < whole; t += kLanes)
-    for (std::uint64_t k = 0; k < kLanes; ++k) {
-      const double high = c[t + k] - b[t + k];
-      double d = high - (b[t + k] - a[t + k]);
-      if constexpr (kOrder == 3) d = ((e[t + k] - c[t + k]) - high) - d;
-      d += c0 + u[k] * (c1 + u[k] * c2);
-      u[k] += kLanes;
-      lane[k] += d * d;
+    for (std::uint64_t h = 0; h < 2; ++h) {
+      const std::uint64_t at = t + 4 * h;
+      const Four middle = LIBCHAR_FOUR_AT(run.at[1] + at), third = LIBCHAR_FOUR_AT(run.at[2] + at);
+      const Four high = third - middle;
+      Four d = high - (middle - LIBCHAR_FOUR_AT(run.at[0] + at));
+      if constexpr (kOrder == 3) d = ((LIBCHAR_FOUR_AT(run.at[3] + at) - third) - high) - d;
+      d += c0 + u[h] * (c1 + u[h] * c2);
+      u[h] += static_cast<double>(kLanes);
+      sum[h] += d * d;
     }
+  std::memcpy(lane, sum, sizeof lane);
   for (std::uint64_t t = whole; t < run.count; ++t) lane[t % kLanes] += squared<kOrder>(run, t);
   return fold(lane);
 }
@@ -55,13 +57,11 @@ template <int kOrder>
 
 }  // namespace
 
-__attribute__((target_clones("avx2", "default"))) double squared_second_differences(
-    const DifferenceRun& run) {
+LIBCHAR_CLONES double squared_second_differences(const DifferenceRun& run) {
   return any_stride<2>(run);
 }
 
-__attribute__((target_clones("avx2", "default"))) double squared_third_differences(
-    const DifferenceRun& run) {
+LIBCHAR_CLONES double squared_third_differences(const DifferenceRun& run) {
   return any_stride<3>(run);
 }
 

@@ -1,6 +1,8 @@
 #include "libchar/allan/pyramid_kernels.hpp"
 
-#define LIBCHAR_CLONES __attribute__((target_clones("avx2", "default")))
+#include <cstring>
+
+#include "libchar/allan/lanes.hpp"
 
 namespace libchar {
 namespace {
@@ -21,17 +23,31 @@ double fold(const double (&lane)[kLanes]) {
   return ((z[4] - z[0]) + (z[6] - z[2])) + ((z[5] - z[1]) + (z[7] - z[3]));
 }
 
+// The same for four starts at once.
+#define FOUR_OF_ONE(z) (LIBCHAR_FOUR_AT((z) + 1) - LIBCHAR_FOUR_AT(z))
+#define FOUR_OF_TWO(z)                               \
+  ((LIBCHAR_FOUR_AT((z) + 2) - LIBCHAR_FOUR_AT(z)) + \
+   (LIBCHAR_FOUR_AT((z) + 3) - LIBCHAR_FOUR_AT((z) + 1)))
+#define FOUR_OF_FOUR(z)                                      \
+  (((LIBCHAR_FOUR_AT((z) + 4) - LIBCHAR_FOUR_AT(z)) +        \
+    (LIBCHAR_FOUR_AT((z) + 6) - LIBCHAR_FOUR_AT((z) + 2))) + \
+   ((LIBCHAR_FOUR_AT((z) + 5) - LIBCHAR_FOUR_AT((z) + 1)) +  \
+    (LIBCHAR_FOUR_AT((z) + 7) - LIBCHAR_FOUR_AT((z) + 3))))
+
 }  // namespace
 
 LIBCHAR_CLONES double squares_of_four(const double* z, std::size_t n) {
   if (n < 8) return 0;
   double lane[kLanes] = {};
   const std::size_t terms = n - 7, whole = terms / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const double d = of_four(z + i + k);
-      lane[k] += d * d;
-    }
+  Four low = {}, high = {};
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    const Four d = FOUR_OF_FOUR(z + i), e = FOUR_OF_FOUR(z + i + 4);
+    low += d * d;
+    high += e * e;
+  }
+  std::memcpy(lane, &low, sizeof low);
+  std::memcpy(lane + 4, &high, sizeof high);
   for (std::size_t i = whole; i < terms; ++i) {
     const double d = of_four(z + i);
     lane[i % kLanes] += d * d;
@@ -42,14 +58,19 @@ LIBCHAR_CLONES double squares_of_four(const double* z, std::size_t n) {
 LIBCHAR_CLONES void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
   double one[kLanes] = {}, two[kLanes] = {}, four[kLanes] = {};
   const std::size_t whole = n >= 8 ? (n - 7) / kLanes * kLanes : 0;
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const double* const p = z + i + k;
-      const double a = of_one(p), b = of_two(p), c = of_four(p);
-      one[k] += a * a;
-      two[k] += b * b;
-      four[k] += c * c;
+  Four sum[6] = {};
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    for (std::size_t h = 0; h < 2; ++h) {
+      const double* const p = z + i + 4 * h;
+      const Four a = FOUR_OF_ONE(p), b = FOUR_OF_TWO(p), c = FOUR_OF_FOUR(p);
+      sum[h] += a * a;
+      sum[2 + h] += b * b;
+      sum[4 + h] += c * c;
     }
+  }
+  std::memcpy(one, &sum[0], sizeof one);
+  std::memcpy(two, &sum[2], sizeof two);
+  std::memcpy(four, &sum[4], sizeof four);
   for (std::size_t i = whole; i + 1 < n; ++i) {
     const double a = of_one(z + i);
     one[i % kLanes] += a * a;
@@ -72,10 +93,15 @@ LIBCHAR_CLONES void sum_pairs(const double* z, std::size_t pairs, double origin,
 }
 
 LIBCHAR_CLONES bool all_finite(const double* z, std::size_t n) {
-  double lane[kLanes] = {};  // x - x is 0 for a number, NaN for NaN and infinity
+  Four sum[2] = {};  // x - x is 0 for a number, NaN for NaN and infinity
   const std::size_t whole = n / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) lane[k] += z[i + k] - z[i + k];
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Four v = LIBCHAR_FOUR_AT(z + i + 4 * h);
+      sum[h] += v - v;
+    }
+  double lane[kLanes];
+  std::memcpy(lane, sum, sizeof lane);
   for (std::size_t i = whole; i < n; ++i) lane[i % kLanes] += z[i] - z[i];
   return fold(lane) == 0;
 }

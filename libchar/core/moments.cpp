@@ -2,43 +2,96 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace libchar {
 namespace {
 
-constexpr int kLanes = 8;  // independent partial sums: the compiler may use any vector width without changing a bit
+constexpr int kLanes = 8;  // independent partial sums: any vector width gives the same bits
+using Four = double __attribute__((vector_size(32)));  // four of the lanes
+using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
+#define LIBCHAR_CLONES __attribute__((target_clones("avx2", "default")))
 
 double fold(const double (&lane)[kLanes]) {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+LIBCHAR_CLONES double shifted_sum(const double* x, int n, double shift) {
+  Four sum[2] = {};
+  const int whole = n - n % kLanes;
+  for (int i = 0; i < whole; i += kLanes)
+    for (int h = 0; h < 2; ++h) {
+      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      sum[h] += v - shift;
+    }
+  double lane[kLanes];
+  std::memcpy(lane, sum, sizeof lane);
+  for (int i = whole; i < n; ++i) lane[i % kLanes] += x[i] - shift;
+  return fold(lane);
+}
+
+/// Sums of the first four powers of (x - shift) - offset.
+LIBCHAR_CLONES void power_sums(const double* x, int n, double shift, double offset, double out[4]) {
+  Four sum[4][2] = {};
+  const int whole = n - n % kLanes;
+  for (int i = 0; i < whole; i += kLanes)
+    for (int h = 0; h < 2; ++h) {
+      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      const Four d = (v - shift) - offset, d2 = d * d;
+      sum[0][h] += d;
+      sum[1][h] += d2;
+      sum[2][h] += d2 * d;
+      sum[3][h] += d2 * d2;
+    }
+  double lane[4][kLanes];
+  std::memcpy(lane, sum, sizeof lane);
+  for (int i = whole; i < n; ++i) {
+    const double d = (x[i] - shift) - offset, d2 = d * d;
+    lane[0][i % kLanes] += d;
+    lane[1][i % kLanes] += d2;
+    lane[2][i % kLanes] += d2 * d;
+    lane[3][i % kLanes] += d2 * d2;
+  }
+  for (int k = 0; k < 4; ++k) out[k] = fold(lane[k]);
+}
+
+/// Extremes of n values (a multiple of eight); false when one of them is NaN.
+LIBCHAR_CLONES bool extremes(const double* x, int n, double& minimum, double& maximum) {
+  Four low[2] = {{minimum, minimum, minimum, minimum}, {minimum, minimum, minimum, minimum}};
+  Four high[2] = {{maximum, maximum, maximum, maximum}, {maximum, maximum, maximum, maximum}};
+  Four seen[2] = {};
+  for (int i = 0; i < n; i += kLanes)
+    for (int h = 0; h < 2; ++h) {
+      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      low[h] = v < low[h] ? v : low[h];
+      high[h] = v > high[h] ? v : high[h];
+      seen[h] = v == v ? seen[h] : v;  // keeps a NaN once it has come by
+    }
+  for (int h = 0; h < 2; ++h)
+    for (int k = 0; k < 4; ++k)
+      if (std::isnan(seen[h][k])) return false;
+  for (int h = 0; h < 2; ++h)
+    for (int k = 0; k < 4; ++k) {
+      minimum = std::min(minimum, low[h][k]);
+      maximum = std::max(maximum, high[h][k]);
+    }
+  return true;
 }
 
 }  // namespace
 
 Moments::Central Moments::of_block(const double* x, int n) {
   const double shift = x[0];
-  double sum[kLanes] = {};
-  for (int i = 0; i + kLanes <= n; i += kLanes)
-    for (int k = 0; k < kLanes; ++k) sum[k] += x[i + k] - shift;
-  for (int i = n - n % kLanes; i < n; ++i) sum[i % kLanes] += x[i] - shift;
   Central c;
   c.n = n;
-  const double offset = fold(sum) / n;
+  const double offset = shifted_sum(x, n, shift) / n;
   c.mean = shift + offset;
-  double s1[kLanes] = {}, s2[kLanes] = {}, s3[kLanes] = {}, s4[kLanes] = {};
-  const auto add = [&](double value, int k) {
-    const double d = (value - shift) - offset, d2 = d * d;
-    s1[k] += d;
-    s2[k] += d2;
-    s3[k] += d2 * d;
-    s4[k] += d2 * d2;
-  };
-  for (int i = 0; i + kLanes <= n; i += kLanes)
-    for (int k = 0; k < kLanes; ++k) add(x[i + k], k);
-  for (int i = n - n % kLanes; i < n; ++i) add(x[i], i % kLanes);
-  const double e = fold(s1);  // what rounding left of the sum of deviations (Chan's corrected two-pass formula)
-  c.m2 = std::max(0.0, fold(s2) - e * e / n);
-  c.m3 = fold(s3);
-  c.m4 = fold(s4);
+  double s[4] = {};
+  power_sums(x, n, shift, offset, s);
+  // s[0]: what rounding left of the sum of deviations (Chan's corrected two-pass formula).
+  c.m2 = std::max(0.0, s[1] - s[0] * s[0] / n);
+  c.m3 = s[2];
+  c.m4 = s[3];
   return c;
 }
 
@@ -57,14 +110,26 @@ Moments::Central Moments::merged(const Central& a, const Central& b) {
 }
 
 void Moments::push(std::span<const double> samples) {
-  for (const double x : samples) {
-    if (std::isnan(x)) {
-      ++missing_;
+  const double* x = samples.data();
+  const double* const end = x + samples.size();
+  while (x != end) {
+    // A whole block without NaN is taken where it lies; the blocks are the same as when filled one
+    // by one.
+    if (pending_count_ == 0 && end - x >= kBlock && extremes(x, kBlock, minimum_, maximum_)) {
+      done_ = merged(done_, of_block(x, kBlock));
+      x += kBlock;
       continue;
     }
-    minimum_ = std::min(minimum_, x);
-    maximum_ = std::max(maximum_, x);
-    pending_[pending_count_++] = x;
+    do {
+      const double value = *x++;
+      if (std::isnan(value)) {
+        ++missing_;
+        continue;
+      }
+      minimum_ = std::min(minimum_, value);
+      maximum_ = std::max(maximum_, value);
+      pending_[pending_count_++] = value;
+    } while (x != end && pending_count_ != kBlock);
     if (pending_count_ == kBlock) {
       done_ = merged(done_, of_block(pending_, kBlock));
       pending_count_ = 0;
@@ -76,14 +141,22 @@ Moments::Central Moments::total() const {
   return pending_count_ == 0 ? done_ : merged(done_, of_block(pending_, pending_count_));
 }
 
-std::uint64_t Moments::count() const { return static_cast<std::uint64_t>(done_.n) + static_cast<std::uint64_t>(pending_count_); }
-std::uint64_t Moments::missing() const { return missing_; }
-double Moments::mean() const { return total().mean; }
+std::uint64_t Moments::count() const {
+  return static_cast<std::uint64_t>(done_.n) + static_cast<std::uint64_t>(pending_count_);
+}
+std::uint64_t Moments::missing() const {
+  return missing_;
+}
+double Moments::mean() const {
+  return total().mean;
+}
 double Moments::variance() const {
   const Central c = total();
   return c.n < 2 ? 0.0 : c.m2 / (c.n - 1);
 }
-double Moments::standard_deviation() const { return std::sqrt(variance()); }
+double Moments::standard_deviation() const {
+  return std::sqrt(variance());
+}
 double Moments::skewness() const {
   const Central c = total();
   return c.m2 > 0 ? std::sqrt(c.n) * c.m3 / std::pow(c.m2, 1.5) : 0.0;
@@ -92,7 +165,11 @@ double Moments::kurtosis() const {
   const Central c = total();
   return c.m2 > 0 ? c.n * c.m4 / (c.m2 * c.m2) : 0.0;
 }
-double Moments::minimum() const { return minimum_; }
-double Moments::maximum() const { return maximum_; }
+double Moments::minimum() const {
+  return minimum_;
+}
+double Moments::maximum() const {
+  return maximum_;
+}
 
 }  // namespace libchar

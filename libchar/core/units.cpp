@@ -25,16 +25,16 @@ struct Row {
 const std::array kUnits = {
     Row{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
     Row{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
-    Row{"deg/s", Quantity::angular_rate, kDegree, "deg/s|°/s|dps|degs-1|deg/sec|degree/s|degrees/s|degs^-1"},
+    Row{"deg/s", Quantity::angular_rate, kDegree, "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
     Row{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
-    Row{"deg/h", Quantity::angular_rate, kDegree / 3600, "deg/h|°/h|dph|deg/hr|degh^-1"},
+    Row{"deg/h", Quantity::angular_rate, kDegree / 3600, "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
     Row{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
-    Row{"m/s²", Quantity::acceleration, 1, "m/s²|m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
-    Row{"mm/s²", Quantity::acceleration, 1e-3, "mm/s²|mm/s2|mm/s^2"},
+    Row{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
+    Row{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
     Row{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
     Row{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
     Row{"µg", Quantity::acceleration, 1e-6 * kGravity, "µg|ug|μg"},
-    Row{"Gal", Quantity::acceleration, 1e-2, "gal|cm/s²|cm/s2|cm/s^2"},
+    Row{"Gal", Quantity::acceleration, 1e-2, "gal|cm/s2|cm/s^2"},
     Row{"T", Quantity::magnetic_field, 1, "t|tesla"},
     Row{"mT", Quantity::magnetic_field, 1e-3, "mt"},
     Row{"µT", Quantity::magnetic_field, 1e-6, "µt|ut|μt|utesla"},
@@ -64,24 +64,40 @@ const std::array kUnits = {
     Row{"MHz", Quantity::frequency, 1e6, "mhz"},
     Row{"ppm", Quantity::concentration, 1e-6, "ppm"},
     Row{"ppb", Quantity::concentration, 1e-9, "ppb"},
-    Row{"µg/m³", Quantity::concentration, 1, "µg/m³|ug/m3|μg/m³|ug/m^3"},
+    Row{"µg/m³", Quantity::concentration, 1, "µg/m3|ug/m3|μg/m3|ug/m^3"},
     Row{"%", Quantity::ratio, 1e-2, "%|percent|%rh"},
     Row{"1", Quantity::ratio, 1, "1|-|none"},
 };
 
-// Lower case, blanks, '*' and '·' dropped: "rad s^-1" and "Rad·s^-1" are the same.
+// Signs outside ASCII at the front of `text` and what they stand for.
+std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::string_view text) {
+  static constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
+      {"·", ""}, {"⋅", ""}, {"⁻", "-"}, {"−", "-"}, {"¹", "1"}, {"²", "2"}, {"³", "3"}};
+  for (const auto& sign : kSigns)
+    if (text.starts_with(sign.first)) return sign;
+  return std::nullopt;
+}
+
+// Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹" and "rad*s-1" are the same.
 std::string normal(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == ' ' || c == '*') continue;
-    if (text.substr(i, 2) == "·") {
-      ++i;
+    if (const auto plain = plain_sign(text.substr(i))) {
+      out += plain->second;
+      i += plain->first.size() - 1;
       continue;
     }
     out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   return out;
+}
+
+// "MT" is no millitesla and "mHz" no megahertz: a factor of 1e9 is not guessed.
+bool mistakes_prefix(std::string_view text, std::string_view symbol) {
+  const bool word = symbol == "min" || symbol.starts_with("m/") || text.starts_with("Milli");
+  return !word && ((text.front() == 'M' && symbol.front() == 'm') || (text.front() == 'm' && symbol.front() == 'M'));
 }
 
 bool listed(std::string_view spellings, std::string_view wanted) {
@@ -119,7 +135,7 @@ std::optional<Unit> find_unit(std::string_view text) {
   // capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
   for (const Row& row : kUnits)
-    if (listed(row.spellings, wanted)) return Unit{row.symbol, row.quantity, row.to_si};
+    if (listed(row.spellings, wanted) && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol)) return Unit{row.symbol, row.quantity, row.to_si};
   return with_factor(text);
 }
 

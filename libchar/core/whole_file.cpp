@@ -40,6 +40,7 @@ void WholeFile::fail(std::string_view doing) const {
 }
 
 WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
+  if (path_.empty()) throw Error({ErrorKind::output, "E0502", "", "an output file needs a name", "", ""});
   if (is_special(path_)) {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail("open for writing");

@@ -7,6 +7,7 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
+
 namespace libchar {
 
 double normal_deviate(double energy_ratio, double dof) {
@@ -24,11 +25,6 @@ double normal_deviate(double energy_ratio, double dof) {
   }
   const double tail = cdf(chi, x);
   return tail > 1e-300 ? -std::sqrt(2.0) * boost::math::erfc_inv(2 * tail) : -kFar;
-}
-
-double chi_square_tail(double chi2, double dof) {
-  if (!(dof > 0)) return 1;
-  return cdf(complement(boost::math::chi_squared(dof), chi2));
 }
 
 std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins,
@@ -52,7 +48,7 @@ Goodness goodness_of(std::span<const FitResidual> residuals, std::size_t fitted)
   Goodness goodness;
   for (const FitResidual& residual : residuals) goodness.chi2 += residual.z * residual.z;
   goodness.dof = std::max(0.0, static_cast<double>(residuals.size()) - static_cast<double>(fitted));
-  goodness.p = chi_square_tail(goodness.chi2, goodness.dof);
+  goodness.p = goodness.dof > 0 ? chi_square_tail(goodness.chi2, goodness.dof) : 1;
   return goodness;
 }
 

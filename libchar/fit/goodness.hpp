@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "libchar/allan/chi_square.hpp"
 #include "libchar/fit/noise_fit.hpp"
 
 namespace libchar {
@@ -11,9 +12,6 @@ namespace libchar {
 /// The residual of a gamma bin as a standard normal deviate, Phi^-1(P(chi2_nu <= nu u)): exact for
 /// every nu.
 double normal_deviate(double energy_ratio, double dof);
-
-/// P(chi2_dof > chi2).
-double chi_square_tail(double chi2, double dof);
 
 std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins,
                                       const Mixture& theta,

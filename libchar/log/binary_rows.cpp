@@ -170,7 +170,7 @@ class BinaryRows final : public RowSource {
     return bytes_.data();
   }
 
-  std::string where(const BinaryColumn& column, std::uint64_t row) const {
+  std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
     return fmt::format("row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
   }
 
@@ -195,7 +195,7 @@ class BinaryRows final : public RowSource {
     if (odd == 0) return;
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (std::isfinite(out[i])) continue;
-      if (std::isinf(out[i])) warnings.add("infinite_value", "infinite values count as missing", where(column, next_row_ + i));
+      if (std::isinf(out[i])) warnings.add("infinite_value", "infinite values count as missing", place_of(column, next_row_ + i));
       out[i] = kMissing;
     }
   }
@@ -238,7 +238,7 @@ class BinaryRows final : public RowSource {
     const std::byte* first = locate(column, block.rows);
     const auto stride = static_cast<std::size_t>(column.stride);
     const auto refuse = [&](std::size_t i, double got) {
-      throw Error({ErrorKind::input, "E0315", fmt::format("{} {}", file_->path(), where(column, next_row_ + i)), "a time stamp does not fit 64-bit nanoseconds", shortest(got), "is the time unit right? --time-unit"});
+      throw Error({ErrorKind::input, "E0315", fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)), "a time stamp does not fit 64-bit nanoseconds", shortest(got), "is the time unit right? --time-unit"});
     };
     if (!is_float(column.number.type)) {
       if (const auto bad = read_integers(first, stride, column.number, block.time_ns)) refuse(*bad, 1.8e19);
@@ -262,7 +262,7 @@ class BinaryRows final : public RowSource {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < block.rows; ++i) {
       if (!std::isfinite(stamps_[i])) {
-        warnings.add("missing_timestamp", "rows without a time stamp were left out", where(*time_, next_row_ + i));
+        warnings.add("missing_timestamp", "rows without a time stamp were left out", place_of(*time_, next_row_ + i));
         continue;
       }
       for (auto& samples : block.columns) samples[kept] = samples[i];

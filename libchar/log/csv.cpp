@@ -10,6 +10,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -33,7 +34,6 @@ class CsvSource final : public RowSource {
     info_.format = "csv";
     const std::string_view head = feed_.head();
     dialect_ = understand(head, feed_.whole(), options, info_);
-    head_bytes_ = dialect_.data_offset;
     select_channels();
     pending_ = std::exchange(info_.warnings, {});
     feed_.start_at(dialect_.data_offset);
@@ -64,12 +64,23 @@ class CsvSource final : public RowSource {
       if (block.rows > 0) return true;
       if (fault_) throw Error(*fault_);
     }
+    reached_end_ = true;
     return false;
   }
 
   void finish(Warnings& warnings) override {
     if (finished_) return;
     finished_ = true;
+    stop();
+    if (reached_end_) check_account();
+    for (std::size_t c = 0; c < plan_.channels; ++c)
+      if (rows_ > 0 && words_per_channel_[c] == rows_)
+        throw Error({ErrorKind::input,
+                     "E0318",
+                     info_.file,
+                     "column " + info_.channels[c].name + " has no finite value",
+                     "",
+                     "--channels reads only the columns named there"});
     warnings.merge(std::exchange(pending_, {}));
     if (missing_.count > 0) {
       std::string message = "empty or NaN cells, taken as missing samples (";
@@ -113,11 +124,19 @@ class CsvSource final : public RowSource {
     return feed_.finish_hash();
   }
 
-  const Account& total() const { return total_; }
-
  private:
   static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
+  // this reader.
+  void check_account() const {
+    const std::uint64_t bytes =
+        dialect_.data_offset + total_.bytes + feed_.nul_tail() + feed_.cut_bytes();
+    if (!total_.balanced() || bytes != feed_.bytes_read() ||
+        total_.cells != rows_ * plan_.target.size())
+      throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
 
   // The channels to read, in file order, and what to do with each column.
@@ -154,6 +173,7 @@ class CsvSource final : public RowSource {
       info_.channels.push_back({column.name, column.unit, true});
     }
     missing_per_channel_.assign(plan_.channels, 0);
+    words_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
   }
 
@@ -233,11 +253,13 @@ class CsvSource final : public RowSource {
     missing_.count += chunk.missing.count - chunk.missing.spots.size();
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
+      words_per_channel_[c] += chunk.words_per_channel[c];
       fractional_[c] |= chunk.fractional[c];
       info_.channels[c].integer = fractional_[c] == 0;
     }
     inexact_ += chunk.inexact_integers;
     next_line_ += chunk.lines;
+    rows_ += chunk.rows.rows;
     consumed_ += chunk.account.bytes;
     total_.add(chunk.account);
   }
@@ -382,12 +404,12 @@ class CsvSource final : public RowSource {
   ParsedChunk current_;
   std::optional<Fault> fault_;
   Tally missing_;
-  std::vector<std::uint64_t> missing_per_channel_;
-  std::vector<char> fractional_;
+  std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
+  std::vector<std::uint32_t> fractional_;
   Account total_;
-  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0,
-                head_bytes_ = 0, inexact_ = 0;
-  bool cr_noted_ = false, finished_ = false, ended_ = false;
+  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
+                inexact_ = 0;
+  bool cr_noted_ = false, finished_ = false, ended_ = false, reached_end_ = false;
 
   std::vector<std::thread> workers_;
   std::mutex mutex_;

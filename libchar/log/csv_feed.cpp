@@ -74,11 +74,14 @@ std::size_t Feed::read_some(char* to, std::size_t n) {
 }
 
 std::string_view Feed::head() {
-  head_.resize(kHeadBytes);
   const std::size_t first = std::size_t{1}
                             << 16U;  // small files end here; long headers ask for more
+  head_.resize(first);
   std::size_t size = read_some(head_.data(), first);
-  if (!ended_) size += read_some(head_.data() + first, kHeadBytes - first);
+  if (!ended_) {
+    head_.resize(kHeadBytes);
+    size += read_some(head_.data() + first, kHeadBytes - first);
+  }
   head_.resize(size);
   if (!ended_) {  // exactly that long?
     char one = 0;

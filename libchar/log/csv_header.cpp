@@ -226,7 +226,10 @@ std::pair<std::string, std::string> name_and_unit(std::string_view cell) {
     if (at == std::string_view::npos || at == 0) continue;
     const std::string_view name = trimmed(cell.substr(0, at));
     const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
-    if (!name.empty() && unit.size() <= 40) return {std::string(name), std::string(unit)};
+    // gyro(1), gyro(2): an index, not a unit
+    const bool index = unit.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!name.empty() && !index && unit.size() <= 40 && unit.find('"') == std::string_view::npos)
+      return {std::string(name), std::string(unit)};
   }
   for (std::size_t low = cell.find('_'); low != std::string_view::npos;
        low = cell.find('_', low + 1)) {

@@ -1,5 +1,6 @@
 #include "libchar/log/csv_number.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -88,6 +89,27 @@ Cell explain(std::string_view text, char point) {
   return cell;
 }
 
+// Is |number| < 1? Decides between overflow and underflow; the text is a well-formed number other
+// than zero.
+bool below_one(std::string_view text) {
+  const std::size_t e = text.find_first_of("eE");
+  const std::string_view digits = text.substr(0, e);
+  const std::size_t first = digits.find_first_of("123456789");
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  if (first == std::string_view::npos) return true;
+  // Decimal exponent of the first digit that counts.
+  const double position = first < point ? static_cast<double>(point - first) - 1
+                                        : static_cast<double>(point) - static_cast<double>(first);
+  double exponent = 0;
+  if (e != std::string_view::npos) {
+    const bool down = e + 1 < text.size() && text[e + 1] == '-';
+    for (std::size_t i = e + 1; i < text.size(); ++i)
+      if (is_digit(text[i])) exponent = std::min(1e18, exponent * 10 + (text[i] - '0'));
+    if (down) exponent = -exponent;
+  }
+  return position + exponent < 0;
+}
+
 }  // namespace
 
 Cell read_cell(std::string_view text, char point) {
@@ -119,8 +141,14 @@ Cell read_cell(std::string_view text, char point) {
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (whole && status == std::errc::result_out_of_range) {
-    cell.kind = Cell::out_of_range;
-    cell.reason = "number out of range";
+    if (!below_one(digits)) {
+      cell.kind = Cell::out_of_range;
+      cell.reason = "number out of range";
+      return cell;
+    }
+    cell.kind =
+        Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
+    cell.number = digits[0] == '-' ? -0.0 : 0.0;
     return cell;
   }
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
@@ -148,7 +176,7 @@ StampFault read_stamp(std::string_view text,
   std::size_t i = negative || text[0] == '+' ? 1 : 0;
   Uint128 w = 0;
   int q = 0;
-  bool any = false, fraction = false;
+  bool any = false, fraction = false, lost = false;
   for (; i < text.size(); ++i) {
     if (text[i] == point && !fraction) {
       fraction = true;
@@ -161,6 +189,7 @@ StampFault read_stamp(std::string_view text,
         q -= fraction;
       } else {
         q += !fraction;
+        lost = lost || text[i] != '0';
       }
     } else {
       break;
@@ -190,7 +219,7 @@ StampFault read_stamp(std::string_view text,
   }
   if (q < 0) {
     Uint128 divisor = 1;
-    bool sticky = false;
+    bool sticky = lost;
     for (; q < -30; ++q) {
       sticky = sticky || w % 10 != 0;
       w /= 10;

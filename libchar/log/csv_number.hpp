@@ -99,6 +99,9 @@ inline bool divide_by_power_of_ten(std::uint64_t w, int n, double& out) {
   return true;
 }
 
+inline constexpr std::array<std::int64_t, 10> kNanoseconds = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+
 inline bool is_digit(char c) {
   return static_cast<unsigned char>(c - '0') < 10;
 }
@@ -109,28 +112,34 @@ inline std::uint64_t load8(const char* p) {
   return v;
 }
 
-/// Eight decimal digits at once (little endian).
-inline bool eight_digits(std::uint64_t v) {
-  return ((v & 0xF0F0F0F0F0F0F0F0U) | (((v + 0x0606060606060606U) & 0xF0F0F0F0F0F0F0F0U) >> 4U)) ==
-         0x3333333333333333U;
-}
-inline std::uint64_t value_of_eight(std::uint64_t v) {
-  v -= 0x3030303030303030U;
-  v = v * 10 + (v >> 8U);  // pairs
-  return (((v & 0x000000FF000000FFU) * 0x000F424000000064U) +
-          (((v >> 16U) & 0x000000FF000000FFU) * 0x0000271000000001U)) >>
+/// Eight digit values (0…9, first digit in the lowest byte) to their number: pairs, fours, eight.
+inline std::uint64_t value_of_eight(std::uint64_t digits) {
+  digits = digits * 10 + (digits >> 8U);
+  return (((digits & 0x000000FF000000FFU) * 0x000F424000000064U) +
+          (((digits >> 16U) & 0x000000FF000000FFU) * 0x0000271000000001U)) >>
          32U;
 }
 
-/// Reads digits into w; stops at the first byte that is none. The text must be readable 8 bytes
-/// past its end.
+inline constexpr std::array<std::uint64_t, 8> kShift = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
+
+/// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past
+/// its end. Eight bytes are looked at together; how many of them are digits decides a shift, not a
+/// branch.
 inline const char* read_digits(const char* p, std::uint64_t& w) {
-  for (std::uint64_t v = load8(p); eight_digits(v); v = load8(p)) {
-    w = w * 100000000 + value_of_eight(v);
-    p += 8;
+  for (;;) {
+    const std::uint64_t digits = load8(p) ^ 0x3030303030303030U;
+    // The top bit of every byte that is not 0…9.
+    const std::uint64_t others = ((digits + 0x7676767676767676U) | digits) & 0x8080808080808080U;
+    if (others == 0) {
+      w = w * 100000000 + value_of_eight(digits);
+      p += 8;
+      continue;
+    }
+    const unsigned n = static_cast<unsigned>(std::countr_zero(others)) / 8;
+    w = w * kShift[n] + value_of_eight((digits << (56 - 8 * n)) << 8U);
+    return p + n;
   }
-  while (is_digit(*p)) w = w * 10 + static_cast<std::uint64_t>(*p++ - '0');
-  return p;
 }
 
 /// The number at p, with `point` as decimal mark. Returns its end and sets `value`, or returns
@@ -153,14 +162,14 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
     q = -static_cast<int>(p - fraction);
     digits += p - fraction;
   }
-  if (digits == 0 || digits > 19) {
-    if (digits == 0) return nullptr;
-    // Leading zeros do not count: 0.0012345678901234567890 has fewer significant digits than
-    // characters.
-    const char* s = first;
-    while (*s == '0' || *s == point) digits -= *s++ == '0';
-    if (digits > 19) return nullptr;
+  if (*first == '0' && !integer) {
+    // Leading zeros are no significant digits: up to eight of them behind the mark are taken off in
+    // one go.
+    const std::uint64_t zeros = load8(first + 2) ^ 0x3030303030303030U;
+    if (first[1] == point) digits -= 1 + (zeros == 0 ? 8 : std::countr_zero(zeros) / 8);
+    digits = digits < 1 ? 1 : digits;
   }
+  if (digits == 0 || digits > 19) return nullptr;
   if ((*p | 0x20) == 'e') {
     integer = false;
     const char* e = p + 1;
@@ -176,15 +185,44 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
   double magnitude = 0;
   if (q == 0) {
     magnitude = static_cast<double>(w);
-  } else if (w < (std::uint64_t{1} << 53U) && q >= -22 && q <= 22) {
+  } else if (digits <= 15 && q >= -22 && q <= 22) {
     magnitude = q < 0 ? static_cast<double>(w) / kPowerOfTen[static_cast<std::size_t>(-q)]
                       : static_cast<double>(w) * kPowerOfTen[static_cast<std::size_t>(q)];
   } else if (w == 0) {
     magnitude = 0;
   } else if (q >= 0 || q < -27 || !divide_by_power_of_ten(w, -q, magnitude)) {
-    return nullptr;
+    if (w >= (std::uint64_t{1} << 53U) || q < -22 || q > 22) return nullptr;
+    magnitude = q < 0 ? static_cast<double>(w) / kPowerOfTen[static_cast<std::size_t>(-q)]
+                      : static_cast<double>(w) * kPowerOfTen[static_cast<std::size_t>(q)];
   }
-  value = negative ? -magnitude : magnitude;
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) |
+                                (static_cast<std::uint64_t>(negative) << 63U));
+  return p;
+}
+
+/// The same for a time stamp in a unit of 10^unit_digits ns: whole nanoseconds, or nullptr for the
+/// slow way (`read_stamp`).
+inline const char* quick_stamp(const char* p, char point, int unit_digits, std::int64_t& stamp) {
+  const bool negative = *p == '-';
+  p += negative;
+  const char* const first = p;
+  std::uint64_t w = 0;
+  p = read_digits(p, w);
+  std::ptrdiff_t digits = p - first;
+  int scale = unit_digits;
+  if (digits == 0) return nullptr;
+  if (*p == point) {
+    const char* const fraction = ++p;
+    p = read_digits(p, w);
+    digits += p - fraction;
+    scale -= static_cast<int>(p - fraction);
+  }
+  std::int64_t ns = 0;
+  if (digits > 19 || w > INT64_MAX || scale < 0 || scale > 9 ||
+      __builtin_mul_overflow(
+          static_cast<std::int64_t>(w), kNanoseconds[static_cast<std::size_t>(scale)], &ns))
+    return nullptr;
+  stamp = negative ? -ns : ns;
   return p;
 }
 

@@ -25,14 +25,9 @@ class RowParser {
     const char* p = begin_;
     while (p < end_ && !out_.fault) {
       const char* const start = p;
-      if (const char* next = quick_row(p); next != nullptr) {
-        p = next;
-        out_.account.row_bytes += static_cast<std::uint64_t>(p - start);
-        note_line();
-        ++rows_;
-        ++line_;
-        continue;
-      }
+      p = quick_rows(p);
+      out_.account.row_bytes += static_cast<std::uint64_t>(p - start);
+      if (p == end_) break;
       p = careful_line(p);
       ++line_;
     }
@@ -57,11 +52,14 @@ class RowParser {
       rows.time_ns.clear();
     }
     point_at_columns();
+    for (std::size_t i = 0; i < kNanoseconds.size(); ++i)
+      if (dialect_.time_unit_ns == kNanoseconds[i]) stamp_digits_ = static_cast<int>(i);
     out_.lines = 0;
     out_.fault.reset();
     out_.blank = out_.comment = out_.repeated = out_.infinite = out_.mixed_end = out_.overflow =
         out_.missing = {};
     out_.missing_per_channel.assign(plan_.channels, 0);
+    out_.words_per_channel.assign(plan_.channels, 0);
     out_.fractional.assign(plan_.channels, 0);
     out_.inexact_integers = 0;
     out_.account = {};
@@ -95,53 +93,72 @@ class RowParser {
       out_.rows.line_offset[i] = static_cast<std::uint32_t>(i);
   }
 
-  // A row of plain numbers between delimiters, with the file's line end: nearly all rows. Anything
-  // else returns nullptr and has changed nothing but scratch.
-  const char* quick_row(const char* p) {
-    if (dialect_.delimiter == ' ') return nullptr;
-    if (rows_ == capacity_) grow();
+  // Rows of plain numbers between delimiters, with the file's line end: nearly all of a file. Stops
+  // in front of the first row that is anything else, of which it has changed nothing but scratch.
+  const char* quick_rows(const char* p) {
+    if (dialect_.delimiter == ' ' || dialect_.line_end == LineEnd::cr ||
+        dialect_.line_end == LineEnd::none)
+      return p;
+    const std::size_t before = rows_;
+    const int* const target = plan_.target.data();
+    const std::size_t last = plan_.target.size() - 1;
     const char delimiter = dialect_.delimiter, point = dialect_.decimal;
-    const std::size_t count = plan_.target.size();
-    for (std::size_t c = 0; c < count; ++c) {
-      const int target = plan_.target[c];
-      if (target >= 0) {
-        bool integer = false;
-        p = quick_number(p, point, pointers_[static_cast<std::size_t>(target)][rows_], integer);
-        if (p == nullptr) return nullptr;
-        out_.fractional[static_cast<std::size_t>(target)] |= static_cast<char>(!integer);
-      } else {
-        const char* const start = p;
-        while (p < end_ && *p != delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
-        if (p - start > static_cast<std::ptrdiff_t>(kMaxField) || p == end_ || *p == '"')
-          return nullptr;
-        if (target == Plan::kTime) {
-          std::size_t offset = 0;
-          if (read_stamp({start, static_cast<std::size_t>(p - start)},
-                         point,
-                         dialect_.time_unit_ns,
-                         out_.rows.time_ns[rows_],
-                         offset) != StampFault::none)
-            return nullptr;
-        } else if (c == 0 && (p == start || *start == '#' || *start == '%' || *start == '/' ||
-                              *start == ' ' || *start == '\t')) {
-          return nullptr;
+    const bool crlf = dialect_.line_end == LineEnd::crlf;
+    std::uint32_t* const fractional = out_.fractional.data();
+    const char* const end = end_;
+    while (p < end) {
+      if (rows_ == capacity_) grow();
+      double* const* const columns = pointers_.data();
+      const std::size_t row = rows_;
+      const char* q = p;
+      for (std::size_t c = 0;; ++c) {
+        const int to = target[c];
+        if (to >= 0) {
+          bool integer = false;
+          q = quick_number(q, point, columns[to][row], integer);
+          if (q == nullptr) break;
+          if (!integer && fractional[to] == 0) fractional[to] = 1;
+        } else if (to == Plan::kTime && stamp_digits_ >= 0) {
+          q = quick_stamp(q, point, stamp_digits_, out_.rows.time_ns[row]);
+          if (q == nullptr) break;
+        } else {
+          q = quick_text(q, c, to == Plan::kTime);
+          if (q == nullptr) break;
         }
+        if (c == last || *q != delimiter) {
+          if (c != last) q = nullptr;
+          break;
+        }
+        ++q;
       }
-      if (c + 1 < count) {
-        if (*p != delimiter) return nullptr;
-        ++p;
-      }
+      // The line end is compared before the end of the chunk is: what stands behind it is readable.
+      if (q == nullptr || (crlf ? *q != '\r' || q[1] != '\n' : *q != '\n') || q >= end) break;
+      p = q + (crlf ? 2 : 1);
+      ++rows_;
+      if (lines_listed_)
+        out_.rows.line_offset.push_back(static_cast<std::uint32_t>(line_ + (rows_ - before - 1)));
     }
-    if (p >= end_) return nullptr;
-    if (dialect_.line_end == LineEnd::lf) {
-      if (*p != '\n') return nullptr;
-      ++p;
-    } else if (dialect_.line_end == LineEnd::crlf) {
-      if (*p != '\r' || p[1] != '\n') return nullptr;
-      p += 2;
-    } else {
+    quick_rows_ += rows_ - before;
+    line_ += rows_ - before;
+    return p;
+  }
+
+  // A column that is not wanted, or stamps in a unit that is no power of ten.
+  const char* quick_text(const char* p, std::size_t column, bool stamp) {
+    const char* const start = p;
+    while (p < end_ && *p != dialect_.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
+    if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
       return nullptr;
-    }
+    if (column == 0 &&
+        (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start)))
+      return nullptr;
+    std::size_t offset = 0;
+    if (stamp && read_stamp({start, static_cast<std::size_t>(p - start)},
+                            dialect_.decimal,
+                            dialect_.time_unit_ns,
+                            out_.rows.time_ns[rows_],
+                            offset) != StampFault::none)
+      return nullptr;
     return p;
   }
 
@@ -300,7 +317,7 @@ class RowParser {
          std::string(line),
          fields == 2 * count && dialect_.delimiter == ','
              ? "are these decimal commas? write the file with another delimiter, such as ;"
-             : "--delimiter, if , is not the one",
+             : fmt::format("--delimiter, if '{}' does not separate the fields", dialect_.delimiter),
          i);
     return false;
   }
@@ -364,7 +381,7 @@ class RowParser {
     switch (cell.kind) {
       case Cell::value:
         out = cell.number;
-        out_.fractional[channel] |= static_cast<char>(!cell.integer);
+        out_.fractional[channel] |= cell.integer ? 0U : 1U;
         out_.inexact_integers += cell.inexact_integer;
         ++out_.account.values;
         return true;
@@ -384,6 +401,7 @@ class RowParser {
         break;
       case Cell::missing:
         out_.missing.add(line_, span.start + 1);
+        out_.words_per_channel[channel] += !text.empty();
         break;
       case Cell::bad:
         fail("E0311",
@@ -415,6 +433,11 @@ class RowParser {
     RowBlock& rows = out_.rows;
     rows.rows = rows_;
     out_.lines = line_;
+    const std::uint64_t stamps = dialect_.time_column >= 0 ? 1 : 0;
+    out_.account.cells += quick_rows_ * plan_.target.size();
+    out_.account.values += quick_rows_ * plan_.channels;
+    out_.account.stamps += quick_rows_ * stamps;
+    out_.account.unread += quick_rows_ * (plan_.target.size() - plan_.channels - stamps);
     const std::uint64_t consumed = static_cast<std::uint64_t>(p - begin_);
     out_.account.bytes = consumed;
     if (out_.fault)
@@ -429,7 +452,8 @@ class RowParser {
   ParsedChunk& out_;
   std::vector<double*> pointers_;
   std::size_t rows_ = 0, capacity_ = 0;
-  std::uint64_t line_ = 0;
+  int stamp_digits_ = -1;  // the time unit is 10^this ns
+  std::uint64_t line_ = 0, quick_rows_ = 0;
   const char* line_start_ = nullptr;
   bool lines_listed_ = false;
 };

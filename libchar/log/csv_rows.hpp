@@ -66,7 +66,9 @@ struct ParsedChunk {
   std::optional<RowFault> fault;
   Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
   std::vector<std::uint64_t> missing_per_channel;
-  std::vector<char> fractional;  ///< per channel: some value was not written as an integer
+  std::vector<std::uint64_t>
+      words_per_channel;  ///< of these, cells that say NaN (or NA, null…) in letters
+  std::vector<std::uint32_t> fractional;  ///< per channel: some value was not written as an integer
   std::uint64_t inexact_integers = 0;
   Account account;
 };

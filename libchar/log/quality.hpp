@@ -16,17 +16,14 @@ struct ChannelQuality {
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;
   double mean = 0, standard_deviation = 0, minimum = 0, maximum = 0;
-  std::optional<double>
-      resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
-  std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
-  std::uint64_t saturated =
-      0;  ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
-  std::uint64_t longest_stuck = 0;  ///< longest run of one value
-  double difference_kurtosis = 3;   ///< kurtosis of first differences: 3 Gaussian, above = spikes
-  bool float32 = false;             ///< every value is exactly representable in 32 bits
-  double float32_step = 0;          ///< spacing of 32-bit floats at the largest magnitude
-  std::vector<std::string> suggestions;  ///< in sentences ("2 distinct values:
-                                         ///< quantization-limited, record with more gain")
+  std::optional<double> resolution;      ///< least step between distinct values (LSB), when the values lie on a grid
+  std::uint64_t distinct_values = 0;     ///< counted up to 4096, then 4096
+  std::uint64_t saturated = 0;           ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
+  std::uint64_t longest_stuck = 0;       ///< longest run of one value
+  double difference_kurtosis = 3;        ///< kurtosis of first differences: 3 Gaussian, above = spikes
+  bool float32 = false;                  ///< every value is exactly representable in 32 bits
+  double float32_step = 0;               ///< spacing of 32-bit floats at the largest magnitude
+  std::vector<std::string> suggestions;  ///< in sentences ("2 distinct values: quantization-limited, record with more gain")
 };
 
 /// Streaming, constant memory; the result does not depend on block boundaries.
@@ -44,12 +41,10 @@ class QualityMeter {
   std::unique_ptr<State> state_;
 };
 
-/// What of a channel's quality makes the recording doubtful for noise analysis, as warnings
-/// (read_recording and inspect).
+/// What of a channel's quality makes the recording doubtful for noise analysis, as warnings (read_recording and inspect).
 void quality_warnings(const Channel& channel, const ChannelQuality& quality, Warnings& warnings);
 
-/// Throws Error(numeric) when the log has fewer than `needed` samples for `purpose` ("an Allan
-/// deviation").
+/// Throws Error(numeric) when the log has fewer than `needed` samples for `purpose` ("an Allan deviation").
 void require_samples(const LogInfo& info, std::uint64_t needed, const std::string& purpose);
 
 }  // namespace libchar

@@ -1,7 +1,6 @@
 #pragma once
-// The contract between a format (one file each, listed in formats.cpp) and the common part of
-// reading (time base, channel selection, repairs, grid): a format delivers rows as the file has
-// them, in blocks of columns.
+// The contract between a format (one file each, listed in formats.cpp) and the common part of reading (time base, channel
+// selection, repairs, grid): a format delivers rows as the file has them, in blocks of columns.
 
 #include <cstdint>
 #include <memory>
@@ -19,35 +18,27 @@ namespace libchar {
 /// A block of consecutive rows as the file has them.
 struct RowBlock {
   std::size_t rows = 0;
-  std::vector<std::vector<double>>
-      columns;  ///< the selected value columns, at least `rows` values each; NaN = missing cell
-  std::vector<std::int64_t>
-      time_ns;  ///< stamps in ns, at least `rows` values; empty when there is no time column
-  std::uint64_t first_line =
-      0;  ///< CSV: physical line of the first row (1-based); 0 for binary formats
-  std::vector<std::uint32_t>
-      line_offset;  ///< CSV: line of row i is first_line + line_offset[i]; empty = i
+  std::vector<std::vector<double>> columns;  ///< the selected value columns, at least `rows` values each; NaN = missing cell
+  std::vector<std::int64_t> time_ns;         ///< stamps in ns, at least `rows` values; empty when there is no time column
+  std::uint64_t first_line = 0;              ///< CSV: physical line of the first row (1-based); 0 for binary formats
+  std::vector<std::uint32_t> line_offset;    ///< CSV: line of row i is first_line + line_offset[i]; empty = i
 };
 
 /// A file opened by its format.
 class RowSource {
  public:
   virtual ~RowSource() = default;
-  /// Channels (selected ones, in file order), format name, dialect, guesses;
-  /// time.column/unit/unit_guessed/rate_hz if the file says.
+  /// Channels (selected ones, in file order), format name, dialect, guesses; time.column/unit/unit_guessed/rate_hz if the file says.
   virtual const LogInfo& info() const = 0;
   /// The next rows, false at the end. Warnings found on the way are added to `warnings`.
   virtual bool next(RowBlock& block, Warnings& warnings) = 0;
   /// Where row i of `block` stands, for messages: "line 412" or "row 17 (byte 1024)".
-  virtual std::string place(const RowBlock& block,
-                            std::size_t i,
-                            std::uint64_t rows_before) const = 0;
+  virtual std::string place(const RowBlock& block, std::size_t i, std::uint64_t rows_before) const = 0;
   /// The same for the front of an error: "FILE:412:1" or "FILE (row 17, byte 1024)".
   virtual std::string where(const RowBlock& block, std::size_t i, std::uint64_t rows_before) const {
     return info().file + " (" + place(block, i, rows_before) + ")";
   }
-  /// Called once when reading ends (at the end of the file or of the window): warnings that need
-  /// totals.
+  /// Called once when reading ends (at the end of the file or of the window): warnings that need totals.
   virtual void finish(Warnings& warnings) { static_cast<void>(warnings); }
   /// Bytes consumed and in total (0 when unknown), for progress.
   virtual std::uint64_t bytes_read() const = 0;
@@ -57,10 +48,9 @@ class RowSource {
 };
 
 struct Format {
-  std::string_view name;      ///< "csv"
-  std::string_view suffixes;  ///< ".csv .tsv .txt .dat"
-  bool (*sniff)(const std::string& path,
-                std::string_view first_bytes);  ///< does this file look like mine?
+  std::string_view name;                      ///< "csv"
+  std::string_view suffixes;                  ///< ".csv .tsv .txt .dat"
+  bool (*sniff)(const std::string& path, std::string_view first_bytes);  ///< does this file look like mine?
   std::unique_ptr<RowSource> (*open)(const std::string& path, const ReadOptions& options);
 };
 

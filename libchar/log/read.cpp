@@ -152,12 +152,9 @@ LogInfo read_log(const std::string& path,
   info.time = time;
   for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)
     if (!watch.seen[c])
-      throw Error({ErrorKind::input,
-                   "E0318",
-                   info.file,
-                   "column " + info.channels[c].name + " has no finite value",
-                   "",
-                   "--channels reads only the columns named there"});
+      warnings.add("no_finite_value",
+                   "channels without any finite value",
+                   "channel " + info.channels[c].name);
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());
   info.warnings = std::move(warnings);

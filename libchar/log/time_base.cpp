@@ -113,6 +113,9 @@ FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
   if (steps.empty()) return result;
   result.coarse = stamps.size() > 8 && zeros * 4 > stamps.size();
   const double middle = median(steps);
+  std::vector<double> scatter;
+  for (const double step : steps) scatter.push_back(std::fabs(step - middle));
+  const double deviation = 1.4826 * median(scatter);
   double sum = 0;
   std::size_t close = 0;
   for (const double step : steps) {
@@ -122,6 +125,7 @@ FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
   }
   if (!result.coarse && close * 2 >= steps.size()) {
     result.ns = sum / static_cast<double>(close);
+    result.longest_step = 1.5 * result.ns;
     return result;
   }
   // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
@@ -134,6 +138,7 @@ FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
   const double slope = median(slopes);
   result.ns = result.coarse || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
   if (!(result.ns > 0)) result.ns = middle;
+  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
   return result;
 }
 
@@ -232,6 +237,7 @@ void TimeGrid::process(bool end) {
     front.done += count;
     waiting_ -= count;
     if (front.done == front.block.rows) {
+      end_of_block_ = place(front, front.block.rows - 1);
       if (spare_.size() < 4) spare_.push_back(std::move(front.block));
       pending_.pop_front();
     }
@@ -247,7 +253,7 @@ void TimeGrid::learn() {
   const FirstInterval found = first_interval(stamps);
   dt_ = found.ns;
   coarse_ = found.coarse;
-  limit_ = static_cast<std::int64_t>(std::min(1.5 * dt_, 9e18));
+  limit_ = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
   if (dt_ == 0 && stamps.size() > 1) {
     const Pending* item = &pending_.front();
     std::size_t row = 1;
@@ -465,10 +471,9 @@ void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
     same_ratio_ = 0;
     last_ratio_ = ratio;
     // The last row at the old distance.
-    ratio_place_ = row > 0 ? place(front, row - 1) : place(front, row);
+    ratio_place_ = row > 0 ? place(front, row - 1) : end_of_block_;
   }
   if (++same_ratio_ != kRateRun) return;
-  rate_changed_ = true;
   warnings_.add(
       "rate_change",
       fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
@@ -571,7 +576,7 @@ void TimeGrid::finish(LogInfo& info) {
   const auto deviation = sketch_.deviation(interval);
   time.jitter_s = deviation.robust * 1e-9;
   time.max_deviation_s = deviation.largest * 1e-9;
-  if (interval > 0 && deviation.robust > 0.1 * interval && !rate_changed_)
+  if (interval > 0 && deviation.robust > 0.1 * interval)
     warnings_.add("jitter",
                   fmt::format("stamps scatter by {:.0f} % of the sampling interval: the samples "
                               "are treated as evenly spaced",

@@ -50,6 +50,8 @@ class StampSketch {
 /// coarse to tell rows apart.
 struct FirstInterval {
   double ns = 0;
+  double longest_step =
+      0;  ///< a longer one is a gap: 1.5 dt, or more where the stamps scatter widely, ns
   bool coarse = false;
 };
 FirstInterval first_interval(const std::vector<std::int64_t>& stamps);
@@ -108,7 +110,7 @@ class TimeGrid {
   std::uint64_t rows_ = 0, waiting_ = 0;
   bool stamped_ = false, began_ = false, learned_ = false, window_over_ = false, coarse_ = false;
   double dt_ = 0;           // ns
-  std::int64_t limit_ = 0;  // 1.5 dt
+  std::int64_t limit_ = 0;  // longest regular step, ns
   std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;
   bool have_last_ = false;
   std::int64_t index_ = -1;  // grid index of the last row, from the first row of the file
@@ -117,8 +119,7 @@ class TimeGrid {
   std::optional<std::int64_t> start_ns_;
   double last_ratio_ = 1;
   int same_ratio_ = 0;
-  std::string ratio_place_;
-  bool rate_changed_ = false;
+  std::string ratio_place_, end_of_block_;
   StampSketch sketch_;
   std::vector<std::vector<double>> staging_;
   std::size_t staged_ = 0;

@@ -27,7 +27,8 @@ class CsvWriter final : public LogWriter {
   CsvWriter(const std::string& path, const LogInfo& info, const WriteOptions& options)
       : file_(path, options.overwrite), rate_(info.time.rate_hz), start_ns_(info.time.start_ns), stamped_(options.time_column && info.time.rate_hz > 0) {
     if (!stamped_) lost_.push_back(rate_ > 0 ? "the rate: no time column was wanted" : "");
-    if (stamped_) text_ = start_ns_ ? "t[ns]" : "t[s]";
+    absolute_ = start_ns_ && std::abs(static_cast<double>(*start_ns_)) > kRelative;
+    if (stamped_) text_ = absolute_ ? "t[ns]" : "t[s]";
     for (const Channel& channel : info.channels) text_ += (text_.empty() ? "" : ",") + header_cell(channel);
     text_ += '\n';
     // A row of nothing is no row for most readers.
@@ -58,6 +59,8 @@ class CsvWriter final : public LogWriter {
   }
 
  private:
+  // Stamps below ten days are seconds since some start, and a double holds them to 0.1 ns; above, they are a calendar's.
+  static constexpr double kRelative = 8.64e14;
   static constexpr std::size_t kPiece = std::size_t{1} << 16U;
 
   template <typename T>
@@ -69,9 +72,9 @@ class CsvWriter final : public LogWriter {
 
   // Row k stands at k / rate: computed, not summed, so that no error grows.
   void put_stamp() {
-    if (!start_ns_) return put(static_cast<double>(row_) / rate_);
-    const long double after = static_cast<long double>(row_) * 1e9L / static_cast<long double>(rate_);
-    put(*start_ns_ + std::llroundl(after));
+    const long double after = static_cast<long double>(row_) / static_cast<long double>(rate_);
+    if (absolute_) put(*start_ns_ + std::llroundl(after * 1e9L));
+    else put(static_cast<double>(static_cast<long double>(start_ns_.value_or(0)) / 1e9L + after));
   }
 
   void flush() {
@@ -82,7 +85,7 @@ class CsvWriter final : public LogWriter {
   WholeFile file_;
   double rate_;
   std::optional<std::int64_t> start_ns_;
-  bool stamped_, lone_ = false;
+  bool stamped_, absolute_ = false, lone_ = false;
   std::uint64_t row_ = 0;
   std::string text_;
   std::vector<std::string> lost_;

@@ -15,12 +15,31 @@
 
 namespace libchar {
 
+/// How the samples of a channel are to be understood.
+enum class SampleKind {
+  rate,       ///< the quantity itself (angular rate, acceleration, fractional frequency…)
+  phase,      ///< its integral (angle, clock phase): differenced once, a point fewer
+  frequency,  ///< a frequency in its unit around `nominal_frequency`: y = (f - nominal) / nominal
+};
+
+/// What is to be computed; nothing else is.
+struct Wanted {
+  bool quality = true;
+  bool allan = true;     ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
+  bool spectrum = true;
+  bool fit = true;
+};
+
 struct CharacterizeOptions {
   ReadOptions reading;
+  Wanted wanted;
+  SampleKind data = SampleKind::rate;
+  double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
   AllanOptions allan;
   WelchOptions spectrum;
   FitOptions fit;
   std::uint64_t memory_bytes = std::uint64_t{1} << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
+  std::uint64_t exact_samples = std::uint64_t{1} << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
   bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
 

@@ -1,0 +1,134 @@
+#include "libchar/log/inspection.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+// Channels are measured beside each other; each by one thread, so that nothing depends on their number.
+class Meters final : public BlockSink {
+ public:
+  explicit Meters(int threads) : arena_(threads > 0 ? threads : tbb::task_arena::automatic) {}
+
+  void begin(const LogInfo& so_far) override { meters_.resize(so_far.channels.size()); }
+  void block(const SampleBlock& samples) override {
+    arena_.execute([&] {
+      tbb::parallel_for(std::size_t{0}, meters_.size(), [&](std::size_t c) { meters_[c].push({samples.channels[c], samples.rows}); });
+    });
+  }
+  ChannelQuality quality(std::size_t channel) const { return meters_[channel].finish(); }
+
+ private:
+  tbb::task_arena arena_;
+  std::vector<QualityMeter> meters_;
+};
+
+// JSON has no infinity: a channel without a sample has no extremes.
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json channel_json(const Channel& channel, const ChannelQuality& q) {
+  Json out;
+  out["name"] = printable(channel.name);
+  out["unit"] = printable(channel.unit);
+  out["missing"] = q.missing;
+  out["samples"] = q.samples;
+  out["integer"] = channel.integer;
+  out["mean"] = number_or_null(q.mean);
+  out["standard_deviation"] = number_or_null(q.standard_deviation);
+  out["minimum"] = number_or_null(q.minimum);
+  out["maximum"] = number_or_null(q.maximum);
+  out["resolution"] = q.resolution ? number_or_null(*q.resolution) : Json(nullptr);
+  out["distinct_values"] = q.distinct_values;
+  out["saturated"] = q.saturated;
+  out["longest_stuck"] = q.longest_stuck;
+  out["difference_kurtosis"] = number_or_null(q.difference_kurtosis);
+  out["float32"] = q.float32;
+  out["suggestions"] = q.suggestions;
+  return out;
+}
+
+Json recording_json(const Inspection& inspection) {
+  const LogInfo& info = inspection.info;
+  const TimeBase& time = info.time;
+  Json out;
+  out["file"] = printable(info.file);
+  out["sha256"] = info.sha256.empty() ? Json(nullptr) : Json(info.sha256);
+  out["bytes"] = info.bytes;
+  out["log_format"] = info.format;
+  out["rows"] = info.rows;
+  out["samples"] = info.samples;
+  out["channels"] = Json::array();
+  for (std::size_t c = 0; c < info.channels.size(); ++c) out["channels"].push_back(channel_json(info.channels[c], inspection.quality[c]));
+  out["rate_hz"] = time.rate_hz > 0 ? number_or_null(time.rate_hz) : Json(nullptr);
+  out["jitter_s"] = number_or_null(time.jitter_s);
+  out["max_deviation_s"] = number_or_null(time.max_deviation_s);
+  out["gaps"] = time.gaps;
+  out["missing_samples"] = time.missing_samples;
+  out["time"] = {{"column", printable(time.column)}, {"unit", time.unit}, {"unit_guessed", time.unit_guessed}, {"from_stamps", time.from_stamps}, {"start_ns", time.start_ns ? Json(*time.start_ns) : Json(nullptr)}};
+  out["repairs"] = Json::object();
+  for (const Warning& w : info.warnings.list()) out["repairs"][w.code] = w.count;
+  for (const auto& [key, texts] : {std::pair{"guesses", &info.guesses}, std::pair{"dialect", &info.dialect}}) {
+    out[key] = Json::array();
+    for (const std::string& text : *texts) out[key].push_back(printable(text));
+  }
+  return out;
+}
+
+std::string duration(double seconds) {
+  const std::string text = seconds >= 100 ? fmt::format("{:.0f}", seconds) : significant(seconds, 4);
+  return text + " s";
+}
+
+std::string small_time(double seconds) {
+  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
+  if (seconds < 1e-3) return fmt::format("{:.2g} us", seconds * 1e6);
+  return seconds < 1 ? fmt::format("{:.2g} ms", seconds * 1e3) : fmt::format("{:.2g} s", seconds);
+}
+
+std::string plural(std::uint64_t n, const std::string& noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress) {
+  Meters meters(options.threads);
+  Inspection inspection;
+  inspection.info = read_log(path, options, meters, progress);
+  for (std::size_t c = 0; c < inspection.info.channels.size(); ++c) {
+    inspection.quality.push_back(meters.quality(c));
+    quality_warnings(inspection.info.channels[c], inspection.quality.back(), inspection.info.warnings);
+  }
+  return inspection;
+}
+
+std::string summary_line(const LogInfo& info) {
+  const TimeBase& time = info.time;
+  std::string line = fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
+  if (time.rate_hz > 0) {
+    const bool usual = time.rate_hz >= 0.1 && time.rate_hz < 1e6;
+    line += usual ? fmt::format("{:.3f} Hz", time.rate_hz) : significant(time.rate_hz, 6) + " Hz";
+    line += time.from_stamps ? fmt::format(" (jitter {})", small_time(time.jitter_s)) : " (given)";
+    line += ", " + duration(static_cast<double>(info.samples) / time.rate_hz);
+  } else {
+    line += plural(info.samples, "sample") + ", rate unknown";
+  }
+  line += ", " + plural(time.gaps, "gap");
+  if (time.missing_samples > 0) line += fmt::format(" ({})", plural(time.missing_samples, "missing sample"));
+  return line;
+}
+
+Json inspection_json(const std::vector<Inspection>& inspections) {
+  Json document;
+  document["format"] = "inspect";
+  document["version"] = 1;
+  document["recordings"] = Json::array();
+  for (const Inspection& inspection : inspections) document["recordings"].push_back(recording_json(inspection));
+  return document;
+}
+
+}  // namespace libchar

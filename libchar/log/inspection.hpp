@@ -1,0 +1,28 @@
+#pragma once
+// What is in a log: everything about it, and what its samples say about the instrument.
+
+#include <string>
+#include <vector>
+
+#include "libchar/core/json.hpp"
+#include "libchar/log/quality.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar {
+
+struct Inspection {
+  LogInfo info;
+  std::vector<ChannelQuality> quality;  ///< one a channel
+};
+
+/// Reads a log once, in constant memory.
+Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
+
+/// "euroc.csv: 6 channels, 200.000 Hz (jitter 0.8 us), 7200 s, 0 gaps".
+std::string summary_line(const LogInfo& info);
+
+/// {"format":"inspect","version":1,"recordings":[…]} with the keys of design.md 6.3.
+Json inspection_json(const std::vector<Inspection>& inspections);
+
+}  // namespace libchar

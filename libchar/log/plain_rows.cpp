@@ -1,0 +1,238 @@
+// Two stages, after the idea of Langdale & Lemire, "Parsing gigabytes of JSON per second" (VLDB J. 28, 2019): first the positions of
+// all separators as bit masks of 64 bytes, then each field on its own, so that no field waits for the end of the one before it.
+//
+// A field -?D*.D* of at most 16 characters behind the sign becomes an integer m of its digits and f, the number of digits
+// behind the point; m < 2^53 and 10^f <= 10^15 are exact doubles, so m / 10^f is rounded once (Clinger 1990, fast path).
+
+#include "libchar/log/plain_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace libchar {
+
+#if defined(__x86_64__)
+namespace {
+
+constexpr std::array<double, 17> kPowers = {1,   1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7, 1e8,
+                                            1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
+constexpr std::array<std::int64_t, 10> kIntegerPowers = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+constexpr std::int64_t kExactInteger = std::int64_t{1} << 53U;
+
+// gather[point][length] moves the digits of a field, without its point, to the right end of 16 bytes; 0x80 gives zero.
+struct Gather {
+  alignas(16) std::uint8_t index[17][17][16];
+};
+
+constexpr Gather make_gather() {
+  Gather g{};
+  for (unsigned point = 0; point <= 16; ++point)
+    for (unsigned length = 0; length <= 16; ++length) {
+      const unsigned digits = point < length ? length - 1 : length;
+      unsigned to = 16 - digits;
+      for (auto& byte : g.index[point][length]) byte = 0x80;
+      for (unsigned from = 0; from < length; ++from)
+        if (from != point || point >= length) g.index[point][length][to++] = static_cast<std::uint8_t>(from);
+    }
+  return g;
+}
+
+constexpr Gather kGather = make_gather();
+
+/// Offsets of every delimiter and line feed of `text` into `positions` (grown as needed); returns their number.
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t find_separators(std::string_view text, char delimiter, std::vector<std::uint32_t>& positions) {
+  const __m256i wanted = _mm256_set1_epi8(delimiter), feed = _mm256_set1_epi8('\n');
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < text.size(); at += 64) {
+    if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
+    std::uint64_t mask = 0;
+    for (unsigned half = 0; half < 2; ++half) {
+      const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text.data() + at + 32 * half));
+      const __m256i hit = _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, feed));
+      mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit))) << (32 * half);
+    }
+    if (at + 64 > text.size()) mask &= (std::uint64_t{1} << (text.size() - at)) - 1;
+    const auto found = static_cast<std::size_t>(_mm_popcnt_u64(mask));
+    std::uint32_t* out = positions.data() + count;
+    // Eight at a time without asking: positions beyond `found` are overwritten by the next 64 bytes.
+    for (std::size_t done = 0; done < found || done == 0; done += 8)
+      for (std::size_t k = 0; k < 8; ++k) {
+        out[done + k] = static_cast<std::uint32_t>(at + _tzcnt_u64(mask));
+        mask = _blsr_u64(mask);
+      }
+    count += found;
+  }
+  return count;
+}
+
+// Constants of the vector code, as memory operands.
+struct alignas(16) Bytes {
+  std::uint8_t value[16];
+};
+consteval Bytes all(std::uint8_t byte) {
+  Bytes bytes{};
+  for (auto& b : bytes.value) b = byte;
+  return bytes;
+}
+constexpr Bytes kPoint = all('.'), kZero = all('0'), kNine = all(9);
+__m128i vector_of(const Bytes& bytes) { return _mm_load_si128(reinterpret_cast<const __m128i*>(bytes.value)); }
+
+struct Field {
+  std::int64_t digits = 0;   // all digits as one integer
+  std::uint32_t behind = 0;  // how many of them stand behind the point
+  bool plain = false;
+};
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline Field read_field(const char* text, std::uint32_t length) {
+  const __m128i raw = _mm_loadu_si128(reinterpret_cast<const __m128i*>(text));
+  const std::uint32_t inside = _bzhi_u32(0xFFFF, length);
+  const std::uint32_t points = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(raw, vector_of(kPoint)))) & inside;
+  const __m128i digit = _mm_sub_epi8(raw, vector_of(kZero));
+  const auto is_digit = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, vector_of(kNine)), digit)));
+  Field field;
+  // Branches that are never taken in a plain file are cheaper than one flag put together from four.
+  if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside || (points & (points - 1)) != 0 || (is_digit & inside) == 0, 0)) return field;
+  field.plain = true;
+  const std::uint32_t point = _tzcnt_u32(points | (std::uint32_t{1} << length));
+  field.behind = length - point - static_cast<std::uint32_t>(points != 0);
+  const __m128i packed = _mm_shuffle_epi8(digit, _mm_load_si128(reinterpret_cast<const __m128i*>(kGather.index[point][length])));
+  const __m128i pairs = _mm_maddubs_epi16(packed, _mm_setr_epi8(10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1));
+  const __m128i fours = _mm_madd_epi16(pairs, _mm_setr_epi16(100, 1, 100, 1, 100, 1, 100, 1));
+  const __m128i words = _mm_packus_epi32(fours, fours);
+  const __m128i eights = _mm_madd_epi16(words, _mm_setr_epi16(10000, 1, 10000, 1, 10000, 1, 10000, 1));
+  const auto both = static_cast<std::uint64_t>(_mm_cvtsi128_si64(eights));
+  field.digits = static_cast<std::int64_t>((both & 0xFFFFFFFFU) * 100000000U + (both >> 32U));
+  return field;
+}
+
+// What the slow parsers give back by value: an address of a local would keep the fast path's variables in memory.
+template <class T>
+struct Slow {
+  T value{};
+  bool good = false;
+};
+
+// Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite".
+__attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
+  Slow<double> out;
+  const auto [stop, status] = std::from_chars(begin, end, out.value);
+  out.good = status == std::errc() && stop == end && std::isfinite(out.value);
+  return out;
+}
+
+__attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin, const char* end, int stamp_digits) {
+  Slow<std::int64_t> out;
+  if (stamp_digits != 0) return out;
+  const auto [stop, status] = std::from_chars(begin, end, out.value);
+  out.good = status == std::errc() && stop == end;
+  return out;
+}
+
+/// The fields of one column over consecutive rows: field r lies between the separators at stops[r * width - 1] (the byte before
+/// the text for the very first) and stops[r * width].
+struct Column {
+  const char* text;
+  const std::uint32_t* stops;  // of all columns
+  std::size_t width, index;
+  char delimiter;
+};
+
+/// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the first row that it refuses.
+template <bool kLast, class Take>
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_fields(const Column column, std::size_t first, const std::size_t last, Take take) {
+  const char* const text = column.text;
+  const std::size_t width = column.width;
+  const char separator = kLast ? '\n' : column.delimiter;
+  const std::uint32_t* stop = column.stops + first * width + column.index;
+  for (std::size_t row = first; row < last; ++row, stop += width) {
+    const std::size_t from = stop == column.stops ? 0 : stop[-1] + std::size_t{1};
+    std::size_t to = *stop;
+    if (__builtin_expect(text[to] != separator, 0)) return row;
+    if (kLast) to -= static_cast<std::size_t>(to > from && text[to - 1] == '\r');
+    const char* const begin = text + from;
+    // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
+    const std::uint32_t negative = ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
+    if (__builtin_expect(!take(row, begin, text + to, negative, read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative)), 0)) return row;
+  }
+  return last;
+}
+
+template <class Take>
+__attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last, Take take) {
+  return column.index + 1 == column.width ? take_fields<true>(column, first, last, take) : take_fields<false>(column, first, last, take);
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Column& column, std::size_t first, std::size_t last, double* values) {
+  return take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
+      const Slow<double> slow = read_value_slowly(begin, end);
+      values[row] = slow.value;
+      return slow.good;
+    }
+    const double magnitude = static_cast<double>(field.digits) / kPowers[field.behind];
+    values[row] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (std::uint64_t{negative} << 63U));
+    return true;
+  });
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last, const PlainColumn& to) {
+  return take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    const int shift = to.stamp_digits - static_cast<int>(field.behind);
+    if (__builtin_expect(field.plain && shift >= 0, 1))
+      return !__builtin_mul_overflow(negative ? -field.digits : field.digits, kIntegerPowers[static_cast<std::size_t>(shift)], &to.stamps[row]);
+    const Slow<std::int64_t> slow = read_stamp_slowly(begin, end, to.stamp_digits);
+    to.stamps[row] = slow.value;
+    return slow.good;
+  });
+}
+
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t check_fields(const Column& column, std::size_t first, std::size_t last) {
+  return take_column(column, first, last, [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+    return field.plain || read_value_slowly(begin, end).good;
+  });
+}
+
+constexpr std::size_t kBatch = 128;  // rows read column by column while their text is in the first-level cache
+
+PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
+  const std::size_t width = columns.size();
+  const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, scratch) / width);
+  std::size_t good = 0;
+  for (std::size_t first = 0; first < rows; first = good) {
+    good = std::min(rows, first + kBatch);
+    const std::size_t whole = good;
+    for (std::size_t c = 0; c < width; ++c) {
+      const Column column{text.data(), scratch.data(), width, c, delimiter};
+      switch (columns[c].use) {
+        case PlainColumn::Use::value: good = take_values(column, first, good, columns[c].values); break;
+        case PlainColumn::Use::stamp: good = take_stamps(column, first, good, columns[c]); break;
+        case PlainColumn::Use::skip: good = check_fields(column, first, good); break;
+      }
+    }
+    if (good != whole) break;
+  }
+  return {good, good == 0 ? 0 : scratch[good * width - 1] + std::size_t{1}};
+}
+
+}  // namespace
+
+PlainRows parse_plain_rows(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
+  static const bool capable = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+  if (!capable || columns.empty()) return {};
+  return parse(text, delimiter, columns, max_rows, scratch);
+}
+
+#else
+
+PlainRows parse_plain_rows(std::string_view, char, std::span<const PlainColumn>, std::size_t, std::vector<std::uint32_t>&) { return {}; }
+
+#endif
+
+}  // namespace libchar

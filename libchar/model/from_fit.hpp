@@ -1,0 +1,20 @@
+#pragma once
+// A sensor model from what was found in a recording.
+
+#include <string>
+
+#include "libchar/log/quality.hpp"
+#include "libchar/log/recording.hpp"
+#include "libchar/model/sensor_model.hpp"
+
+namespace libchar {
+
+/// Everything of the fit that a simulation needs, and where it came from. `allan` gives the range
+/// of averaging times that the recording covers; it may be without points.
+SensorModel sensor_model_from(const Channel& channel,
+                              const LogInfo& log,
+                              const ChannelQuality& quality,
+                              const NoiseFit& fit,
+                              const AllanCurve& allan);
+
+}  // namespace libchar

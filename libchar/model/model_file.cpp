@@ -1,0 +1,155 @@
+// The sensor-model file, written by hand: a YAML library prints 200 for 200.0 and
+// 0.33333333333333331 for a third, and a number such as 1e-05 is text to YAML 1.1 readers. Every
+// number here has a decimal point and reads back to the same double.
+
+#include "libchar/model/model_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/core/version.hpp"
+
+namespace libchar {
+namespace {
+
+// A double-quoted YAML scalar: quotes and backslashes escaped; what is not printable was made
+// visible by `printable`.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : printable(text)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? shortest_yaml(value) : "null";
+}
+
+struct TermText {
+  const char* meaning;
+  const char* curve;
+};
+constexpr std::array<TermText, kTerms> kTexts = {{
+    {"white noise (angle or velocity random walk): root of the two-sided density",
+     "Allan deviation value / sqrt(tau)"},
+    {"bias instability: flicker (1/f) noise; not the minimum of the Allan curve",
+     "Allan deviation 0.6643 value, flat"},
+    {"random walk of the bias: root of its two-sided driving density",
+     "Allan deviation value sqrt(tau / 3)"},
+    {"quantization noise of the integrated output", "Allan deviation sqrt(3) value / tau"},
+    {"rate ramp: a linear drift", "Allan deviation value tau / sqrt(2)"},
+}};
+
+std::string status_comment(Status status) {
+  switch (status) {
+    case Status::detected:
+      return "";
+    case Status::not_detected:
+      return "  # no value: only an upper limit is known";
+    case Status::undetermined:
+      return "  # present, but the record cannot tell it apart from another term";
+    case Status::given:
+      return "  # stated, not fitted";
+    case Status::not_fitted:
+      return "  # not part of the model that was fitted";
+  }
+  return "";
+}
+
+std::string term_block(const Coefficient& c, std::size_t t, const std::string& unit) {
+  const TermName& name = kTermNames[t];
+  std::string out = fmt::format("{}:  # {} here, {} in IEEE 952: {}; {}\n",
+                                name.key,
+                                name.letter,
+                                name.ieee,
+                                kTexts[t].meaning,
+                                kTexts[t].curve);
+  out += fmt::format("  value: {}\n", c.value ? number(*c.value) : "null");
+  out += fmt::format("  unit: {}\n", quoted(term_unit(name.key, unit)));
+  if (c.value && c.status != Status::given) {
+    out += fmt::format(
+        "  ci95: [{}, {}]  # {}\n",
+        number(c.ci95.low),
+        number(c.ci95.high),
+        c.profile ? "by profile likelihood" : "log-normal, from the covariance of the fit");
+  } else {
+    out += "  ci95: null\n";
+  }
+  if (!c.value && c.upper95)
+    out += fmt::format("  upper95: {}  # one-sided upper 95 % limit\n", number(*c.upper95));
+  return out + fmt::format("  status: {}{}\n", name_of(c.status), status_comment(c.status));
+}
+
+std::string optional_line(const char* key,
+                          const std::optional<double>& value,
+                          const std::string& comment) {
+  return value ? fmt::format("{}: {}  # {}\n", key, number(*value), comment) : std::string();
+}
+
+std::string provenance_block(const SensorModel& m) {
+  std::string out = fmt::format("obtained: {}\nmethod: {}\n", quoted(m.obtained), quoted(m.method));
+  out += fmt::format("recording:\n  file: {}\n  sha256: {}\n  duration_s: {}\n",
+                     quoted(m.recording_file),
+                     quoted(m.recording_sha256),
+                     number(m.duration_s));
+  if (m.tau_max_s > 0) {
+    out += fmt::format(
+        "valid_tau_s: [{}, {}]  # averaging times, in seconds, that the recording covers "
+        "reliably\n",
+        number(m.tau_min_s),
+        number(m.tau_max_s));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string model_yaml(const SensorModel& m) {
+  const std::string unit = m.unit.empty() ? "U" : m.unit;
+  const std::string u = printable(unit);
+  std::string out = fmt::format(
+      "# Noise of one sensor channel. Long keys name each term; a bare Q is white noise here and "
+      "quantization in IEEE 952.\n"
+      "format: sensor-model\nversion: 1\ntool: {{name: sensorchar, version: {}}}\nchannel: "
+      "{}\nunit: {}\n",
+      quoted(version()),
+      quoted(m.channel),
+      m.unit.empty() ? "null  # the log names none: U below" : quoted(m.unit));
+  out += fmt::format(
+      "rate_hz: {}\nsampling: point  # samples at an instant, not averages over the sampling "
+      "interval\n",
+      number(m.rate_hz));
+  out +=
+      "density: two-sided  # a data sheet's noise density is one-sided: sqrt(2) times "
+      "white_noise\n\n";
+  for (std::size_t t = 0; t < kTerms; ++t) out += term_block(m.noise[t], t, unit);
+  out += "\n";
+  out += optional_line(
+      "bandwidth_hz", m.bandwidth_hz, "corner of a first-order low-pass behind the noise");
+  out += optional_line("resolution", m.resolution, "least step between two values, in " + u);
+  if (m.saturation_low && m.saturation_high) {
+    out +=
+        fmt::format("saturation: [{}, {}]  # ends of the range that the recording reached, in {}\n",
+                    number(*m.saturation_low),
+                    number(*m.saturation_high),
+                    u);
+  }
+  out += fmt::format(
+      "mean: {}  # of the recording, in {}; holds the true input at rest as well as the bias\n\n",
+      number(m.mean),
+      u);
+  out += provenance_block(m);
+  if (!m.remarks.empty()) {
+    out += "remarks:\n";
+    for (const std::string& remark : m.remarks) out += "  - " + quoted(remark) + "\n";
+  }
+  return out;
+}
+
+}  // namespace libchar

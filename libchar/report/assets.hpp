@@ -1,0 +1,13 @@
+#pragma once
+// Files embedded in the library at build time (libchar/cmake/embed.cmake).
+
+#include <string_view>
+
+namespace libchar {
+
+std::string_view chart_js();          ///< Chart.js 3, minified, from Debian's libjs-chart.js
+std::string_view chart_js_licence();  ///< its copyright file, whole
+std::string_view page_js();
+std::string_view page_css();
+
+}  // namespace libchar

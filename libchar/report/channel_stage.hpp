@@ -1,0 +1,48 @@
+#pragma once
+// One channel on its way through: keeps its samples while they fit, streams them through fixed-size stages when they do not.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libchar/report/characterization.hpp"
+
+namespace libchar {
+
+class ChannelStage {
+ public:
+  explicit ChannelStage(const CharacterizeOptions& options) : options_(&options) {}
+
+  /// Takes samples as the log has them.
+  void push(std::span<const double> samples);
+  /// Moves what is kept into the streaming stages and keeps nothing from now on.
+  void stop_keeping();
+  std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
+  /// Room for a record of this length, so that growing does not take twice the memory.
+  void reserve(std::size_t samples) { kept_.reserve(samples); }
+
+  /// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
+  ChannelResult finish(const Channel& channel, double rate_hz);
+
+ private:
+  struct Streams {
+    AllanPyramid allan;
+    std::optional<WelchStream> spectrum;
+    PowerBinner bins;
+  };
+  void as_rate(std::span<const double> samples);
+  void stream(std::span<const double> samples);
+  void finish_kept(ChannelResult& result, double rate_hz);
+  void finish_streams(ChannelResult& result, double rate_hz);
+
+  const CharacterizeOptions* options_;
+  QualityMeter quality_;
+  bool keeping_ = true;
+  std::vector<double> kept_;
+  std::optional<Streams> streams_;
+  std::vector<double> differenced_;       // scratch of as_rate
+  std::optional<double> previous_phase_;
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace libchar

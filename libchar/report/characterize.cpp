@@ -1,0 +1,65 @@
+// The main job as a table of contents: read once → per channel keep or stream → curves → fit → intervals.
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "libchar/report/channel_stage.hpp"
+
+namespace libchar {
+namespace {
+
+// With a segment given nothing needs the whole record; short logs are still kept, because exact forms cost nothing there.
+constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
+
+class Stages : public BlockSink {
+ public:
+  explicit Stages(const CharacterizeOptions& options) : options_(options) {
+    const bool whole_record_needed = options.wanted.spectrum && options.spectrum.segment == 0;
+    budget_ = whole_record_needed || options.full_overlap ? options.memory_bytes : std::min(options.memory_bytes, kSmallLogBytes);
+  }
+
+  void begin(const LogInfo& so_far) override { for (std::size_t c = 0; c < so_far.channels.size(); ++c) stages_.emplace_back(options_); }
+
+  void block(const SampleBlock& samples) override {
+    kept_bytes_ += samples.rows * samples.channels.size() * sizeof(double);
+    const bool too_much = kept_bytes_ > budget_;
+    tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
+      if (too_much) stages_[c].stop_keeping();
+      stages_[c].push({samples.channels[c], samples.rows});
+    });
+  }
+
+  std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress) {
+    std::vector<ChannelResult> results(stages_.size());
+    // Two channels at a time: memory stays bounded however many there are.
+    const std::size_t group = 2;
+    for (std::size_t first = 0; first < stages_.size(); first += group) {
+      progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");
+      const std::size_t last = std::min(stages_.size(), first + group);
+      tbb::parallel_for(first, last, [&](std::size_t c) { results[c] = stages_[c].finish(log.channels[c], log.time.rate_hz); });
+    }
+    return results;
+  }
+
+ private:
+  const CharacterizeOptions& options_;
+  std::uint64_t budget_ = 0, kept_bytes_ = 0;
+  std::vector<ChannelStage> stages_;
+};
+
+}  // namespace
+
+Characterization characterize(const std::string& path, const CharacterizeOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Characterization result;
+  Stages stages(options);
+  result.log = read_log(path, options.reading, stages, progress);
+  result.channels = stages.finish(result.log, progress);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace libchar

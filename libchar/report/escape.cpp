@@ -1,0 +1,94 @@
+#include "libchar/report/escape.hpp"
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+std::string entities(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string html_text(std::string_view text) {
+  return entities(printable(text));
+}
+
+std::string html_attribute(std::string_view text) {
+  return entities(printable(text));
+}
+
+std::string json_in_script(const Json& document) {
+  // No indent (a line for each number would double the page), and ASCII only: line separators and
+  // bidirectional controls inside a script would mislead whoever reads the page's source.
+  const std::string plain = document.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string out;
+  out.reserve(plain.size() + plain.size() / 16);
+  for (const char c : plain) {
+    switch (c) {
+      case '<':
+        out += "\\u003c";
+        break;
+      case '>':
+        out += "\\u003e";
+        break;
+      case '&':
+        out += "\\u0026";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string html_comment(std::string_view text) {
+  std::string out(text);
+  for (std::size_t at = 0; (at = out.find("--", at)) != std::string::npos;)
+    out.replace(at, 2, "- -");
+  return out;
+}
+
+std::string csv_cell(std::string_view text) {
+  std::string out(text);
+  if (!out.empty() && std::string_view("=+-@\t\r").find(out[0]) != std::string_view::npos)
+    out.insert(0, "'");
+  if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
+  replace_all(out, "\"", "\"\"");
+  return '"' + out + '"';
+}
+
+std::string json_text(std::string_view text) {
+  return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
+}
+
+}  // namespace libchar

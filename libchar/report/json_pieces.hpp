@@ -1,0 +1,19 @@
+#pragma once
+// One channel's share of each shared document (outputs_json.cpp), for those who assemble them.
+
+#include "libchar/report/characterization.hpp"
+
+namespace libchar {
+
+/// With a fit, also "model": what it predicts at each point.
+Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit);
+Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit);
+Json fit_channel_json(const Channel& channel, const NoiseFit& fit);
+Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
+Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
+
+/// The whole document without "measured": all that a page shows, and the same bytes for the same
+/// characterization.
+Json json_without_times(const Characterization& result);
+
+}  // namespace libchar

@@ -1,0 +1,122 @@
+// report.json: the documents of every verb in one frame, and what the report adds to them.
+
+#include <cmath>
+
+#include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/model_curve.hpp"
+#include "libchar/report/outputs.hpp"
+#include "libchar/report/verdict.hpp"
+
+namespace libchar {
+namespace {
+
+Json frame(std::string_view format) {
+  return {{"format", format}, {"version", 1}};
+}
+
+Json read_off_json(const ChannelResult& channel) {
+  Json out = Json::array();
+  for (const ReadOff& p : read_off_points(*channel.fit, channel.allan)) {
+    out.push_back({{"term", kTermNames[static_cast<std::size_t>(p.term)].key},
+                   {"tau_s", p.tau_s},
+                   {"deviation", p.deviation},
+                   {"label", p.label}});
+  }
+  return out;
+}
+
+// Numbers that follow from the coefficients and that people ask for.
+Json derived_json(const ChannelResult& channel, double rate_hz) {
+  Json out = Json::object();
+  const Coefficient& white = (*channel.fit)[Term::white];
+  if (white.value) {
+    out["per_sample_sd"] = *white.value * std::sqrt(rate_hz);
+    out["noise_density_one_sided"] = *white.value * std::sqrt(2.0);
+  }
+  if (const AllanPoint* lowest = allan_minimum(channel.allan)) {
+    out["allan_minimum"] = {{"deviation", lowest->deviation}, {"tau_s", lowest->tau_s}};
+  }
+  out["read_off_points"] = read_off_json(channel);
+  return out;
+}
+
+Json quality_json(const ChannelResult& channel) {
+  Json out = quality_channel_json(channel.channel, channel.quality);
+  out["lines"] = Json::array();
+  for (const SpectralLine& line : channel.lines) {
+    out["lines"].push_back({{"frequency_hz", line.frequency_hz},
+                            {"amplitude", line.amplitude},
+                            {"excess", line.excess},
+                            {"width_hz", line.width_hz}});
+  }
+  out["problems"] = Json::array();
+  for (const std::string& problem : channel.problems) out["problems"].push_back(json_text(problem));
+  return out;
+}
+
+// A channel that could not be fitted keeps its place: null, with the reason in "problems".
+Json fit_or_reason(const ChannelResult& channel, double rate_hz) {
+  if (channel.fit) {
+    Json out = fit_channel_json(channel.channel, *channel.fit);
+    out["derived"] = derived_json(channel, rate_hz);
+    return out;
+  }
+  Json out = {{"name", json_text(channel.channel.name)}, {"unit", json_text(channel.channel.unit)}};
+  for (const TermName& term : kTermNames) {
+    out[std::string(term.key)] = {{"value", nullptr},
+                                  {"ci95", nullptr},
+                                  {"status", name_of(Status::not_fitted)},
+                                  {"upper95", nullptr}};
+  }
+  out["second_opinion"] = nullptr;
+  out["goodness"] = nullptr;
+  return out;
+}
+
+}  // namespace
+
+Json json_without_times(const Characterization& result) {
+  Json out = frame("characterization");
+  add_provenance(out, result.command, {result.log});
+  out["config"] = result.settings.is_null() ? Json::object() : result.settings;
+  out["verdict"] = json_text(verdict_of(result));
+
+  std::vector<ChannelQuality> qualities;
+  LogInfo log = result.log;
+  log.channels.clear();
+  for (const ChannelResult& c : result.channels) {
+    log.channels.push_back(c.channel);
+    qualities.push_back(c.quality);
+  }
+  out["recording"] = recording_json(log, qualities);
+
+  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = frame("noise-fit"),
+       quality = Json::object();
+  const bool any = !result.channels.empty();
+  allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
+  spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
+  spectrum["scaling"] = key_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
+  fit["density_sides"] = "two";
+  for (Json* part : {&allan, &spectrum, &fit, &quality}) (*part)["channels"] = Json::array();
+  for (const ChannelResult& c : result.channels) {
+    const NoiseFit* model = c.fit ? &*c.fit : nullptr;
+    allan["channels"].push_back(allan_channel_json(c.channel, c.allan, model));
+    spectrum["channels"].push_back(spectrum_channel_json(c.channel, c.spectrum, model));
+    fit["channels"].push_back(fit_or_reason(c, result.log.time.rate_hz));
+    quality["channels"].push_back(quality_json(c));
+  }
+  out["allan"] = std::move(allan);
+  out["spectrum"] = std::move(spectrum);
+  out["fit"] = std::move(fit);
+  out["quality"] = std::move(quality);
+  return out;
+}
+
+Json json_report(const Characterization& result) {
+  Json out = json_without_times(result);
+  out["measured"] = {{"seconds", result.seconds}};
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,316 @@
+// The JSON pieces that the verbs share; the keys are those of design.md 6.3, which may grow and
+// never change.
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/units.hpp"
+#include "libchar/core/version.hpp"
+#include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/model_curve.hpp"
+#include "libchar/report/outputs.hpp"
+
+namespace libchar {
+namespace {
+
+// JSON has no infinity: a bound that does not exist is null, and the status or the degrees of
+// freedom beside it say why.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
+Json interval(const Interval& i) {
+  return Json::array({number(i.low), number(i.high)});
+}
+
+Json strings(const std::vector<std::string>& texts) {
+  Json out = Json::array();
+  for (const std::string& text : texts) out.push_back(json_text(text));
+  return out;
+}
+
+Json named(const Channel& channel) {
+  return {{"name", json_text(channel.name)}, {"unit", json_text(channel.unit)}};
+}
+
+// Each a straight line on logarithmic axes: two points.
+Json asymptotes_json(const std::vector<Asymptote>& lines) {
+  Json out = Json::object();
+  for (const Asymptote& a : lines) {
+    out[std::string(kTermNames[static_cast<std::size_t>(a.term)].key)] = {{a.x[0], a.y[0]},
+                                                                          {a.x[1], a.y[1]}};
+  }
+  return out;
+}
+
+Json frame(std::string_view format) {
+  return {{"format", format}, {"version", 1}};
+}
+
+}  // namespace
+
+Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit) {
+  Json out = named(channel);
+  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "ci68", "reliable"})
+    out[key] = Json::array();
+  Json model = Json::array();
+  for (const AllanPoint& p : curve.points) {
+    const bool known = p.edf > 0;
+    out["tau_s"].push_back(p.tau_s);
+    out["deviation"].push_back(number(p.deviation));
+    out["ci95"].push_back(known ? interval(p.ci95) : Json(nullptr));
+    out["edf"].push_back(known ? number(p.edf) : Json(nullptr));
+    out["terms"].push_back(p.terms);
+    out["m"].push_back(p.m);
+    out["ci68"].push_back(known ? interval(p.ci68) : Json(nullptr));
+    out["reliable"].push_back(p.reliable);
+    if (fit != nullptr)
+      model.push_back(
+          number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
+  }
+  if (fit != nullptr && !curve.points.empty()) {
+    out["model"] = model;
+    out["asymptotes"] = asymptotes_json(allan_asymptotes(*fit, curve));
+  }
+  out["dt_s"] = curve.dt_s;
+  out["samples"] = curve.samples;
+  out["missing"] = curve.missing;
+  out["stride_divisor"] = curve.stride_divisor;
+  out["notes"] = strings(curve.notes);
+  return out;
+}
+
+Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
+  Json out = frame("allan");
+  out["type"] = name_of(curves.empty() ? DeviationType::oadev : curves[0].type);
+  out["channels"] = Json::array();
+  for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
+    out["channels"].push_back(allan_channel_json(channels[i], curves[i], nullptr));
+  }
+  return out;
+}
+
+Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit) {
+  Json out = named(channel);
+  for (const char* key : {"frequency_hz", "value", "dof", "ci95"}) out[key] = Json::array();
+  Json model = Json::array();
+  for (std::size_t i = 0; i < spectrum.frequency_hz.size(); ++i) {
+    const double dof = i < spectrum.dof.size() ? spectrum.dof[i] : 0;
+    out["frequency_hz"].push_back(spectrum.frequency_hz[i]);
+    out["value"].push_back(number(spectrum.value[i]));
+    out["dof"].push_back(number(dof));
+    if (dof > 0) {
+      const auto [low, high] = spectrum_interval(spectrum, i, 0.95);
+      out["ci95"].push_back(interval({low, high}));
+    } else {
+      out["ci95"].push_back(nullptr);
+    }
+    if (fit != nullptr)
+      model.push_back(number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
+  }
+  if (fit != nullptr && !spectrum.frequency_hz.empty()) {
+    out["model"] = model;
+    out["asymptotes"] = asymptotes_json(spectrum_asymptotes(*fit, spectrum));
+  }
+  out["value_unit"] = json_text(spectrum_unit(spectrum.scaling, channel.unit));
+  out["window"] = name_of(spectrum.window);
+  out["rate_hz"] = spectrum.rate_hz;
+  out["segment"] = spectrum.segment;
+  out["segments"] = spectrum.segments;
+  out["dropped"] = spectrum.dropped;
+  out["enbw_hz"] = number(spectrum.enbw_hz);
+  out["notes"] = strings(spectrum.notes);
+  return out;
+}
+
+Json spectrum_json(const std::vector<Channel>& channels, const std::vector<Spectrum>& spectra) {
+  Json out = frame("spectrum");
+  out["sides"] = key_of(spectra.empty() ? Sides::one : spectra[0].sides);
+  out["scaling"] = key_of(spectra.empty() ? Scaling::psd : spectra[0].scaling);
+  out["channels"] = Json::array();
+  for (std::size_t i = 0; i < std::min(channels.size(), spectra.size()); ++i) {
+    out["channels"].push_back(spectrum_channel_json(channels[i], spectra[i], nullptr));
+  }
+  return out;
+}
+
+namespace {
+
+Json coefficient_json(const Coefficient& c, std::size_t term, const std::string& unit) {
+  const bool has = c.value.has_value();
+  Json out = {{"value", number(c.value)},
+              {"ci95", has ? interval(c.ci95) : Json(nullptr)},
+              {"status", name_of(c.status)},
+              {"unit", json_text(term_unit(kTermNames[term].key, unit))}};
+  if (!has) out["upper95"] = number(c.upper95);
+  if (has) {
+    out["relative_sd"] = number(c.relative_sd);
+    out["interval"] = c.profile ? "profile_likelihood" : "log_normal";
+  }
+  out["likelihood_ratio"] = number(c.likelihood_ratio);
+  out["bound_relative_sd"] = number(c.bound);
+  out["seconds_for_10_percent"] = number(c.seconds_for_10_percent);
+  return out;
+}
+
+Json goodness_json(const Goodness& g) {
+  return {{"chi2", number(g.chi2)}, {"dof", number(g.dof)}, {"p", number(g.p)}};
+}
+
+Json second_opinion_json(const SecondOpinion& opinion) {
+  Json out = Json::object();
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (!opinion.value[t]) continue;
+    out[std::string(kTermNames[t].key)] = {{"value", number(opinion.value[t])},
+                                           {"sd", number(opinion.sd[t])}};
+  }
+  out["goodness"] = goodness_json(opinion.goodness);
+  out["agrees"] = opinion.agrees;
+  out["sentence"] = json_text(opinion.sentence);
+  return out;
+}
+
+Json remedies_json(const std::vector<Remedy>& remedies) {
+  Json out = Json::array();
+  for (const Remedy& r : remedies) {
+    out.push_back({{"kind", r.kind},
+                   {"alarm", json_text(r.alarm)},
+                   {"action", json_text(r.action)},
+                   {"count", r.count}});
+  }
+  return out;
+}
+
+Json residuals_json(const std::vector<FitResidual>& residuals) {
+  Json out = {{"frequency_hz", Json::array()},
+              {"measured", Json::array()},
+              {"model", Json::array()},
+              {"dof", Json::array()},
+              {"z", Json::array()}};
+  for (const FitResidual& r : residuals) {
+    out["frequency_hz"].push_back(number(r.frequency_hz));
+    out["measured"].push_back(number(r.measured));
+    out["model"].push_back(number(r.model));
+    out["dof"].push_back(number(r.dof));
+    out["z"].push_back(number(r.z));
+  }
+  return out;
+}
+
+}  // namespace
+
+Json fit_channel_json(const Channel& channel, const NoiseFit& fit) {
+  Json out = named(channel);
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    out[std::string(kTermNames[t].key)] = coefficient_json(fit.term[t], t, channel.unit);
+  }
+  out["second_opinion"] =
+      fit.second_opinion ? second_opinion_json(*fit.second_opinion) : Json(nullptr);
+  out["goodness"] = goodness_json(fit.goodness);
+  out["bandwidth_hz"] = number(fit.bandwidth_hz);
+  if (fit.bandwidth_hz)
+    out["bandwidth_ci95"] = fit.bandwidth_ci95 ? interval(*fit.bandwidth_ci95) : Json(nullptr);
+  out["remedies"] = remedies_json(fit.remedies);
+  out["sentences"] = strings(fit.sentences);
+  out["method"] = json_text(fit.method);
+  out["converged"] = fit.converged;
+  out["iterations"] = fit.iterations;
+  out["rate_hz"] = number(fit.rate_hz);
+  out["duration_s"] = number(fit.duration_s);
+  out["samples"] = fit.samples;
+  out["residuals"] = residuals_json(fit.residuals);
+  return out;
+}
+
+Json fit_json(const std::vector<Channel>& channels, const std::vector<NoiseFit>& fits) {
+  Json out = frame("noise-fit");
+  out["density_sides"] = "two";
+  out["channels"] = Json::array();
+  for (std::size_t i = 0; i < std::min(channels.size(), fits.size()); ++i) {
+    out["channels"].push_back(fit_channel_json(channels[i], fits[i]));
+  }
+  return out;
+}
+
+Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
+  Json out = named(channel);
+  out["missing"] = q.missing;
+  out["samples"] = q.samples;
+  out["mean"] = number(q.mean);
+  out["standard_deviation"] = number(q.standard_deviation);
+  out["minimum"] = q.samples > 0 ? number(q.minimum) : Json(nullptr);
+  out["maximum"] = q.samples > 0 ? number(q.maximum) : Json(nullptr);
+  out["resolution"] = number(q.resolution);
+  out["distinct_values"] = q.distinct_values;
+  out["saturated"] = q.saturated;
+  out["longest_stuck"] = q.longest_stuck;
+  out["difference_kurtosis"] = number(q.difference_kurtosis);
+  out["float32"] = q.float32;
+  out["float32_step"] = number(q.float32_step);
+  out["suggestions"] = strings(q.suggestions);
+  return out;
+}
+
+Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities) {
+  Json out = {{"file", json_text(log.file)},
+              {"sha256", log.sha256},
+              {"rows", log.rows},
+              {"channels", Json::array()}};
+  for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i) {
+    out["channels"].push_back(quality_channel_json(log.channels[i], qualities[i]));
+  }
+  out["rate_hz"] = log.time.rate_hz > 0 ? number(log.time.rate_hz) : Json(nullptr);
+  out["jitter_s"] = number(log.time.jitter_s);
+  out["gaps"] = log.time.gaps;
+  out["repairs"] = Json::object();
+  for (const Warning& w : log.warnings.list()) out["repairs"][w.code] = w.count;
+  out["format"] = log.format;
+  out["bytes"] = log.bytes;
+  out["samples"] = log.samples;
+  out["missing_samples"] = log.time.missing_samples;
+  out["max_deviation_s"] = number(log.time.max_deviation_s);
+  out["rate_from_stamps"] = log.time.from_stamps;
+  out["time_column"] = json_text(log.time.column);
+  out["time_unit"] = json_text(log.time.unit);
+  out["time_unit_guessed"] = log.time.unit_guessed;
+  out["start_ns"] = log.time.start_ns ? Json(*log.time.start_ns) : Json(nullptr);
+  out["dialect"] = strings(log.dialect);
+  out["guesses"] = strings(log.guesses);
+  return out;
+}
+
+Json inspect_json(const std::vector<LogInfo>& logs,
+                  const std::vector<std::vector<ChannelQuality>>& qualities) {
+  Json out = frame("inspect");
+  out["recordings"] = Json::array();
+  for (std::size_t i = 0; i < std::min(logs.size(), qualities.size()); ++i) {
+    out["recordings"].push_back(recording_json(logs[i], qualities[i]));
+  }
+  return out;
+}
+
+void add_provenance(Json& document,
+                    const std::vector<std::string>& command,
+                    const std::vector<LogInfo>& logs) {
+  document["tool"] = {{"name", "sensorchar"}, {"version", version()}};
+  document["command"] = strings(command);
+  document["input"] = Json::array();
+  document["warnings"] = Json::array();
+  for (const LogInfo& log : logs) {
+    document["input"].push_back(
+        {{"path", json_text(log.file)}, {"sha256", log.sha256}, {"bytes", log.bytes}});
+    for (const Warning& w : log.warnings.list()) {
+      document["warnings"].push_back({{"code", w.code},
+                                      {"message", json_text(w.message)},
+                                      {"count", w.count},
+                                      {"where", strings(w.places)}});
+    }
+  }
+}
+
+}  // namespace libchar

@@ -1,0 +1,300 @@
+// Draws the plots of a report from the JSON in the page, when they come into view. Chart.js does the drawing; every number
+// drawn here stands in the JSON, computed by libchar.
+(function () {
+  "use strict";
+
+  const source = document.getElementById("report-data");
+  const report = JSON.parse(source.textContent);
+
+  const INK = "#16191d", DIM = "#5a6470", MEASURED = "#1b4f8f", MODEL = "#c03a12";
+  // Told apart by dash as well as by colour, for print.
+  const TERMS = {
+    white_noise: { name: "white noise Q", colour: "#1e7a3c", dash: [9, 4], mark: "rectRot" },
+    bias_instability: { name: "bias instability B", colour: "#7a3fa0", dash: [2, 3], mark: "triangle" },
+    random_walk: { name: "random walk K", colour: "#a86a00", dash: [11, 3, 2, 3], mark: "rect" },
+    quantization: { name: "quantization Qz", colour: "#00757f", dash: [5, 2, 1, 2, 1, 2], mark: "star" },
+    rate_ramp: { name: "rate ramp R", colour: "#8c4630", dash: [16, 5], mark: "crossRot" },
+  };
+
+  // ---- numbers ----
+  const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+  const superscript = (n) => (n < 0 ? "⁻" : "") + String(Math.abs(n)).split("").map((d) => SUPERSCRIPT[+d]).join("");
+  function people(value, digits) {
+    if (value === null || !isFinite(value)) return "–";
+    if (value === 0) return "0";
+    const [mantissa, exponent] = value.toExponential((digits || 4) - 1).split("e");
+    const e = Number(exponent);
+    return e < -3 || e > 5 ? mantissa + "×10" + superscript(e) : Number(value.toPrecision(digits || 4)).toString();
+  }
+  const isPowerOfTen = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
+
+  // ---- axes ----
+  // Only values above zero can stand on a logarithmic axis: one that is not would move the axis and hide the others.
+  const positive = (v) => typeof v === "number" && isFinite(v) && v > 0;
+
+  function logTicks(axis) {
+    const ticks = [];
+    for (let e = Math.floor(Math.log10(axis.min)) - 1; e <= Math.ceil(Math.log10(axis.max)); ++e) {
+      for (let d = 1; d < 10; ++d) {
+        const value = d * Math.pow(10, e);
+        if (value >= axis.min * (1 - 1e-9) && value <= axis.max * (1 + 1e-9)) ticks.push({ value });
+      }
+    }
+    axis.ticks = ticks;
+  }
+  function logLabel(value, min, max) {
+    const decades = Math.log10(max / min);
+    if (isPowerOfTen(value)) return "10" + superscript(Math.round(Math.log10(value)));
+    const lead = Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
+    return decades < 1.6 && (lead === 2 || lead === 5) ? people(value, 2) : "";
+  }
+  function logAxis(title, min, max) {
+    return {
+      type: "logarithmic", min, max,
+      title: { display: true, text: title, color: INK, font: { size: 12.5 } },
+      afterBuildTicks: logTicks,
+      ticks: { autoSkip: false, maxRotation: 0, color: INK, callback: (value) => logLabel(value, min, max) },
+      grid: {
+        color: (context) => (context.tick && isPowerOfTen(context.tick.value) ? "#c3c9d0" : "#edf0f3"),
+        tickColor: (context) => (context.tick && isPowerOfTen(context.tick.value) ? "#8a929b" : "transparent"),
+        borderColor: "#8a929b",
+      },
+    };
+  }
+  function padded(values, factor) {
+    const good = values.filter(positive);
+    return good.length ? [Math.min(...good) / factor, Math.max(...good) * factor] : [0.1, 10];
+  }
+
+  // ---- data sets ----
+  function band(name, x, intervals, colour) {
+    const low = [], high = [];
+    x.forEach((value, i) => {
+      const pair = intervals[i];
+      if (!positive(value) || !pair || !positive(pair[0]) || !positive(pair[1])) return;
+      low.push({ x: value, y: pair[0] });
+      high.push({ x: value, y: pair[1] });
+    });
+    const plain = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, order: 9 };
+    return [
+      Object.assign({ label: name, data: high, backgroundColor: colour, fill: "+1", swatch: colour }, plain),
+      Object.assign({ label: "", data: low, fill: false, backgroundColor: "transparent" }, plain),
+    ];
+  }
+  function points(x, y) {
+    const out = [];
+    x.forEach((value, i) => { if (positive(value) && positive(y[i])) out.push({ x: value, y: y[i], i }); });
+    return out;
+  }
+  function asymptotes(all) {
+    return Object.keys(all || {}).map((key) => ({
+      label: TERMS[key].name, data: all[key].map(([x, y]) => ({ x, y })),
+      borderColor: TERMS[key].colour, borderDash: TERMS[key].dash, borderWidth: 1.6, pointRadius: 0, pointHitRadius: 0, fill: false, order: 4,
+    }));
+  }
+
+  // ---- pieces of a chart ----
+  // Names the read-off points beside their marks, on a white halo so that curves behind do not hide them.
+  const readOffLabels = {
+    id: "readOffLabels",
+    afterDatasetsDraw(chart) {
+      const pen = chart.ctx, area = chart.chartArea;
+      chart.data.datasets.forEach((set, index) => {
+        if (!set.readOff || !chart.isDatasetVisible(index)) return;
+        chart.getDatasetMeta(index).data.forEach((mark, i) => {
+          if (mark.x < area.left || mark.x > area.right || mark.y < area.top || mark.y > area.bottom) return;
+          const text = set.data[i].label, right = mark.x + 90 < area.right;
+          pen.save();
+          pen.font = "600 12px system-ui, 'DejaVu Sans', sans-serif";
+          pen.textAlign = right ? "left" : "right";
+          pen.lineWidth = 4;
+          pen.strokeStyle = "rgba(255,255,255,0.9)";
+          pen.fillStyle = set.borderColor;
+          const x = mark.x + (right ? 9 : -9), y = mark.y - 9;
+          pen.strokeText(text, x, y);
+          pen.fillText(text, x, y);
+          pen.restore();
+        });
+      });
+    },
+  };
+  const whitePaper = {
+    id: "whitePaper",
+    beforeDraw(chart) {
+      chart.ctx.save();
+      chart.ctx.fillStyle = "#fff";
+      chart.ctx.fillRect(0, 0, chart.width, chart.height);
+      chart.ctx.restore();
+    },
+  };
+
+  function legend() {
+    return {
+      position: "bottom",
+      labels: {
+        usePointStyle: true, boxWidth: 28, boxHeight: 8, padding: 12, color: INK, font: { size: 12 },
+        generateLabels(chart) {
+          return chart.data.datasets.map((set, index) => ({
+            text: set.label, datasetIndex: index, hidden: !chart.isDatasetVisible(index), fontColor: INK,
+            pointStyle: set.swatch ? "rect" : set.marks ? set.pointStyle || "circle" : "line",
+            fillStyle: set.swatch || (set.marks ? set.borderColor : "transparent"), strokeStyle: set.swatch || set.borderColor,
+            lineWidth: set.swatch ? 0 : set.borderWidth || 2, lineDash: set.borderDash || [],
+          })).filter((item) => item.text);
+        },
+      },
+      // The lower edge of a band follows the upper one.
+      onClick(event, item, box) {
+        const chart = box.chart, index = item.datasetIndex, show = !chart.isDatasetVisible(index);
+        chart.setDatasetVisibility(index, show);
+        if (chart.data.datasets[index].swatch) chart.setDatasetVisibility(index + 1, show);
+        chart.update();
+      },
+    };
+  }
+  function options(x, y, tooltip) {
+    return {
+      animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
+      devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),
+      interaction: { mode: "nearest", axis: "xy", intersect: false },
+      scales: { x, y },
+      plugins: {
+        legend: legend(),
+        tooltip: {
+          filter: (item) => Boolean(item.dataset.tip), displayColors: false, backgroundColor: "rgba(22,25,29,0.93)",
+          callbacks: { title: () => "", label: (item) => item.dataset.tip(item.raw) },
+        },
+      },
+    };
+  }
+
+  // ---- the three plots ----
+  function allanChart(index, axis, unit) {
+    const a = report.allan.channels[index], f = report.fit.channels[index];
+    const marks = f.derived ? f.derived.read_off_points : [];
+    const measured = points(a.tau_s, a.deviation);
+    const tip = (p) => {
+      const out = ["τ = " + people(p.x) + " s", "measured " + people(p.y, 5) + " " + unit];
+      if (a.ci95[p.i]) out.push("95 %: " + people(a.ci95[p.i][0]) + " … " + people(a.ci95[p.i][1]), "68 %: " + people(a.ci68[p.i][0]) + " … " + people(a.ci68[p.i][1]));
+      if (a.edf[p.i] !== null) out.push(people(a.edf[p.i]) + " degrees of freedom, " + a.terms[p.i] + " terms");
+      if (a.model && a.model[p.i] !== null) out.push("model " + people(a.model[p.i], 5) + " " + unit);
+      if (!a.reliable[p.i]) out.push("unreliable: fewer than 5 degrees of freedom");
+      return out;
+    };
+    const sets = [];
+    if (measured.length) {
+      const hollow = measured.map((p) => !a.reliable[p.i]);
+      sets.push({
+        label: "measured", data: measured, borderColor: MEASURED, showLine: false, borderWidth: 1.6, marks: true, tip, order: 2,
+        pointRadius: measured.length > 60 ? 2 : 3.5, pointHoverRadius: 6, pointBorderColor: MEASURED, pointBackgroundColor: hollow.map((h) => (h ? "#fff" : MEASURED)), fill: false,
+      });
+    }
+    if (a.model) sets.push({ label: "fitted model", data: points(a.tau_s, a.model), borderColor: MODEL, cubicInterpolationMode: "monotone", borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 3 });
+    sets.push(...asymptotes(a.asymptotes));
+    marks.filter((m) => positive(m.tau_s) && positive(m.deviation)).forEach((m) => {
+      const style = TERMS[m.term];
+      sets.push({
+        label: "", readOff: true, marks: true, data: [{ x: m.tau_s, y: m.deviation, label: m.label }], borderColor: style.colour, showLine: false,
+        backgroundColor: "#fff", pointStyle: style.mark, pointRadius: 7, pointHoverRadius: 9, pointBorderWidth: 2.2, order: 1, fill: false,
+        tip: () => [m.label, people(m.deviation, 5) + " " + unit],
+      });
+    });
+    sets.push(...band("68 % interval", a.tau_s, a.ci68, "rgba(27,79,143,0.30)"), ...band("95 % interval", a.tau_s, a.ci95, "rgba(27,79,143,0.14)"));
+    // A mark far below the curve (a K that a short record hardly shows) would press everything else together.
+    const near = marks.filter((m) => m.deviation > Math.min(...measured.map((p) => p.y)) / 30);
+    const [xMin, xMax] = padded(measured.map((p) => p.x).concat(marks.map((m) => m.tau_s)), 1.4);
+    const [yMin, yMax] = padded(measured.map((p) => p.y).concat(near.map((m) => m.deviation)), 2.2);
+    return {
+      type: "line", data: { datasets: sets }, plugins: [readOffLabels, whitePaper],
+      options: options(logAxis("averaging time τ, s", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
+    };
+  }
+
+  function spectrumChart(index, axis, unit) {
+    const s = report.spectrum.channels[index];
+    const measured = points(s.frequency_hz, s.value);
+    const tip = (p) => {
+      const out = ["f = " + people(p.x, 5) + " Hz", "measured " + people(p.y, 4) + " " + unit];
+      if (s.ci95[p.i]) out.push("95 %: " + people(s.ci95[p.i][0], 3) + " … " + people(s.ci95[p.i][1], 3));
+      if (s.model && s.model[p.i] !== null) out.push("model " + people(s.model[p.i], 4) + " " + unit);
+      if (s.dof[p.i]) out.push(people(s.dof[p.i], 3) + " degrees of freedom");
+      return out;
+    };
+    const sets = [{ label: "measured", data: measured, borderColor: MEASURED, borderWidth: 1.3, pointRadius: 0, pointHoverRadius: 5, pointHitRadius: 5, tip, fill: false, order: 2 }];
+    if (s.model) sets.push({ label: "fitted model", data: points(s.frequency_hz, s.model), borderColor: MODEL, borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 1 });
+    sets.push(...asymptotes(s.asymptotes), ...band("95 % interval", s.frequency_hz, s.ci95, "rgba(27,79,143,0.18)"));
+    const [xMin, xMax] = padded(measured.map((p) => p.x), 1.3);
+    const [yMin, yMax] = padded(measured.map((p) => p.y), 2.5);
+    return {
+      type: "line", data: { datasets: sets }, plugins: [whitePaper],
+      options: options(logAxis("frequency, Hz", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
+    };
+  }
+
+  function residualChart(index) {
+    const r = report.fit.channels[index].residuals;
+    const dots = [];
+    r.frequency_hz.forEach((x, i) => { if (positive(x) && r.z[i] !== null) dots.push({ x, y: Math.max(-8, Math.min(8, r.z[i])), i }); });
+    const [xMin, xMax] = padded(dots.map((p) => p.x), 1.3);
+    const top = Math.max(4, Math.ceil(Math.max(0, ...dots.map((p) => Math.abs(p.y)))));
+    const tip = (p) => [people(p.x, 4) + (report.fit.channels[index].of_curve ? " s" : " Hz"), "residual " + people(r.z[p.i], 3) + " sd", people(r.dof[p.i], 3) + " degrees of freedom"];
+    const flat = (y) => [{ x: xMin, y }, { x: xMax, y }];
+    const plain = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, order: 9 };
+    const sets = [
+      { label: "residual", data: dots, showLine: false, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 2.4, pointHoverRadius: 5, marks: true, tip, order: 1, fill: false },
+      { label: "", data: flat(0), borderColor: MODEL, borderWidth: 1.4, pointRadius: 0, pointHitRadius: 0, order: 2, fill: false },
+      Object.assign({ label: "", data: flat(1.96), backgroundColor: "rgba(90,100,112,0.13)", fill: "+1" }, plain),
+      Object.assign({ label: "", data: flat(-1.96), fill: false }, plain),
+    ];
+    const y = {
+      type: "linear", min: -top, max: top, title: { display: true, text: "residual, sd", color: INK, font: { size: 12.5 } },
+      ticks: { color: INK, stepSize: top > 4 ? 4 : 2 }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
+    };
+    const all = options(logAxis("frequency, Hz", xMin, xMax), y);
+    all.plugins.legend = { display: false };
+    return { type: "line", data: { datasets: sets }, plugins: [whitePaper], options: all };
+  }
+
+  const MAKERS = { allan: allanChart, spectrum: spectrumChart, residuals: residualChart };
+
+  // ---- drawing when needed ----
+  const figures = Array.from(document.querySelectorAll("figure.plot"));
+  const charts = new Map();
+  function draw(figure) {
+    if (charts.has(figure)) return;
+    const config = MAKERS[figure.dataset.kind](Number(figure.dataset.channel), figure.dataset.axis, figure.dataset.unit);
+    charts.set(figure, new Chart(figure.querySelector("canvas"), config));
+  }
+  const watch = new IntersectionObserver((entries) => {
+    entries.filter((entry) => entry.isIntersecting).forEach((entry) => {
+      watch.unobserve(entry.target);
+      draw(entry.target);
+    });
+  }, { rootMargin: "900px 0px" });
+  // What is in view at the start is drawn at once, so that a page shown for a moment (or photographed) has its plots.
+  figures.forEach((figure) => (figure.getBoundingClientRect().top < window.innerHeight + 300 ? draw(figure) : watch.observe(figure)));
+
+  // Paper has no viewport: draw all, at the width of the page.
+  let opened = [];
+  window.addEventListener("beforeprint", () => {
+    figures.forEach(draw);
+    charts.forEach((chart, figure) => chart.resize(690, figure.dataset.kind === "residuals" ? 170 : 320));
+    opened = Array.from(document.querySelectorAll("#provenance details:not([open])"));
+    opened.forEach((details) => { details.open = true; });
+  });
+  window.addEventListener("afterprint", () => {
+    charts.forEach((chart) => chart.resize());
+    opened.forEach((details) => { details.open = false; });
+  });
+
+  // ---- the numbers, to take away ----
+  const button = document.getElementById("download");
+  button.hidden = false;
+  button.addEventListener("click", () => {
+    const address = URL.createObjectURL(new Blob([JSON.stringify(report, null, 2) + "\n"], { type: "application/json" }));
+    const link = document.createElement("a");
+    link.href = address;
+    link.download = "report.json";
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(address), 1000);
+  });
+})();

@@ -1,0 +1,79 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Contains;
+
+TEST_CASE("inspect says in one line what was understood, and marks guesses") {
+  const auto ran = test::run({"inspect", test::fixture("npy/structured.npy").string()});
+  CHECK(ran.code == 0);
+  CHECK(ran.err.empty());
+  CHECK_THAT(ran.out, Contains("structured.npy: 7 channels, 200.000 Hz (jitter 0 ns), 0.025 s, 0 gaps\n"));
+  CHECK_THAT(ran.out, Contains("  guessed: time unit: ns"));
+  CHECK_THAT(ran.out, Contains("gyr_0") && Contains("kurtosis of differences"));
+  CHECK_THAT(ran.out, Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
+}
+
+TEST_CASE("inspect --json keeps its promise to scripts") {
+  const std::string log = test::fixture("npy/half.npy").string();
+  const auto ran = test::run({"inspect", "--json", log, "--rate", "1.5kHz"});
+  REQUIRE(ran.code == 0);
+  const libchar::Json document = libchar::parse_json(ran.out, "stdout");
+  CHECK(document["format"] == "inspect");
+  CHECK(document["version"] == 1);
+  CHECK(document["tool"]["name"] == "sensorchar");
+  CHECK(document["command"][1] == "inspect");
+  CHECK(document["input"][0]["path"] == log);
+  CHECK(document["input"][0]["bytes"] == 146);
+  CHECK(document["warnings"][0]["code"] == "infinite_value");
+  const libchar::Json& recording = document["recordings"][0];
+  for (const char* key : {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"}) CHECK(recording.contains(key));
+  CHECK(recording["rows"] == 9);
+  CHECK(recording["rate_hz"] == 1500.0);
+  CHECK(recording["repairs"]["infinite_value"] == 1);
+  CHECK(recording["sha256"].get<std::string>().size() == 64);
+  CHECK(recording["channels"][0]["name"] == "c0");
+  CHECK(recording["channels"][0]["unit"] == "");
+  CHECK(recording["channels"][0]["missing"] == 2);
+  CHECK(recording["channels"][0]["maximum"] == 65504.0);
+}
+
+TEST_CASE("several logs make one document; channels are chosen by repetition and by commas") {
+  const std::string a = test::fixture("npy/c_order.npy").string(), b = test::fixture("npy/big_endian_f4.npy").string();
+  const auto ran = test::run({"inspect", "-c", "c0,c2", a, b, "-c", "c1", "--json"});
+  REQUIRE(ran.code == 0);
+  const libchar::Json document = libchar::parse_json(ran.out, "stdout");
+  REQUIRE(document["recordings"].size() == 2);
+  CHECK(document["recordings"][1]["channels"].size() == 3);
+  const auto slip = test::run({"inspect", a, "-c", "c9"});
+  CHECK(slip.code == 2);
+}
+
+TEST_CASE("--strict turns warnings into exit code 3, --quiet keeps results") {
+  const std::string log = test::fixture("npy/half.npy").string();
+  CHECK(test::run({"inspect", log}).code == 0);
+  const auto strict = test::run({"inspect", log, "--strict", "-q"});
+  CHECK(strict.code == 3);
+  CHECK_THAT(strict.err, Contains("--strict"));
+  CHECK_THAT(strict.out, Contains("half.npy"));
+}
+
+TEST_CASE("a raw log without sidecar is answered with a sidecar") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "gyro.f64") << std::string(48, 'x');
+  const auto ran = test::run({"inspect", (folder / "gyro.f64").string()});
+  CHECK(ran.code == 3);
+  CHECK_THAT(ran.err, Contains("gyro.f64.json, such as {\"dtype\": \"f64\""));
+}
+
+TEST_CASE("standard input is read as CSV") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "in.csv") << "t[s],x[V]\n0,1\n0.01,2\n0.02,3\n0.03,5\n";
+  test::RunOptions options;
+  options.stdin_path = (folder / "in.csv").string();
+  const auto ran = test::run({"inspect", "-"}, options);
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("1 channel, 100.000 Hz"));
+}

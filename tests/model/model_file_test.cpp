@@ -1,0 +1,108 @@
+#include "libchar/model/model_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <catch2/catch.hpp>
+#include <regex>
+#include <sstream>
+
+#include "libchar/core/text.hpp"
+#include "libchar/model/from_fit.hpp"
+#include "tests/report/synthetic.hpp"
+
+using namespace libchar;
+
+namespace {
+
+SensorModel model_of(const Characterization& result, std::size_t i) {
+  const ChannelResult& c = result.channels[i];
+  return sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan);
+}
+
+}  // namespace
+
+TEST_CASE("model from a fit: everything a simulation needs, and where it came from") {
+  const auto result = test::synthetic_imu();
+  const SensorModel m = model_of(result, 5);
+  CHECK(m.channel == "acc_z");
+  CHECK(m.unit == "m/s^2");
+  CHECK(m.rate_hz == 200);
+  CHECK(m.noise[0].value == result.channels[5].fit->term[0].value);
+  CHECK(m.bandwidth_hz == 62.0);
+  CHECK(m.resolution == 0.0025);
+  CHECK(m.saturation_high == result.channels[5].quality.maximum);
+  CHECK(m.tau_min_s == 0.005);
+  CHECK(m.tau_max_s == Approx(163.84));  // the last point with 5 degrees of freedom
+  CHECK(m.recording_sha256 == result.log.sha256);
+  CHECK(m.remarks.size() == 2);
+  CHECK(!model_of(result, 0).saturation_low);  // never reached
+}
+
+TEST_CASE("model file: reads back to the same doubles") {
+  const auto result = test::synthetic_imu();
+  for (std::size_t i = 0; i < result.channels.size(); ++i) {
+    const SensorModel m = model_of(result, i);
+    const YAML::Node file = YAML::Load(model_yaml(m));
+    CHECK(file["format"].as<std::string>() == "sensor-model");
+    CHECK(file["version"].as<int>() == 1);
+    CHECK(file["density"].as<std::string>() == "two-sided");
+    CHECK(file["recording"]["sha256"].as<std::string>() == result.log.sha256);
+    for (std::size_t t = 0; t < kTerms; ++t) {
+      const YAML::Node term = file[std::string(kTermNames[t].key)];
+      CHECK(term["status"].as<std::string>() == name_of(m.noise[t].status));
+      if (m.noise[t].value) {
+        CHECK(parse_double(term["value"].Scalar()) == *m.noise[t].value);
+        CHECK(parse_double(term["ci95"][0].Scalar()) == m.noise[t].ci95.low);
+        CHECK(parse_double(term["ci95"][1].Scalar()) == m.noise[t].ci95.high);
+        CHECK(!term["upper95"]);
+      } else {
+        CHECK(term["value"].IsNull());
+        CHECK(bool(term["upper95"]) == m.noise[t].upper95.has_value());
+      }
+    }
+  }
+}
+
+TEST_CASE("model file: numbers are numbers to YAML 1.1 readers too") {
+  auto result = test::synthetic_imu();
+  SensorModel m = model_of(result, 0);
+  m.noise[0].value = 1e-5;
+  m.noise[0].ci95 = {9e-6, 2};
+  m.rate_hz = 1e20;
+  m.mean = -3;
+  const std::string text = model_yaml(m);
+  CHECK(text.find("value: 1.0e-05") != std::string::npos);
+  CHECK(text.find("mean: -3.0 ") != std::string::npos);
+  // YAML 1.1 float: a point is compulsory, and an exponent carries a sign.
+  const std::regex number_1_1(R"([-+]?([0-9][0-9_]*)\.[0-9]*([eE][-+][0-9]+)?)");
+  const std::regex looks_numeric(R"([-+]?[0-9.]+([eE][-+]?[0-9]+)?)");
+  const std::regex value(
+      R"((value|upper95|rate_hz|mean|resolution|duration_s|bandwidth_hz): ([^ #\n]+))");
+  std::size_t seen = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), value), end; it != end; ++it) {
+    const std::string word = (*it)[2];
+    if (word == "null") continue;
+    CHECK(std::regex_match(word, looks_numeric));
+    CHECK(std::regex_match(word, number_1_1));
+    ++seen;
+  }
+  CHECK(seen >= 7);
+}
+
+TEST_CASE("model file: hostile text stays text") {
+  const auto result = test::hostile();
+  for (std::size_t i = 0; i < result.channels.size(); ++i) {
+    const std::string text = model_yaml(model_of(result, i));
+    const YAML::Node file = YAML::Load(text);
+    CHECK(file["channel"].as<std::string>() == printable(test::hostile_names()[i]));
+    CHECK(file["version"].as<int>() == 1);
+    CHECK(file["random_walk"]["unit"].IsScalar());
+    CHECK(file["remarks"].size() == 2);
+  }
+  auto quoted = test::synthetic_imu();
+  quoted.channels[0].channel.name = "a \"b\" \\ c: #d";
+  quoted.channels[0].channel.unit = "";
+  const YAML::Node file = YAML::Load(model_yaml(model_of(quoted, 0)));
+  CHECK(file["channel"].as<std::string>() == "a \"b\" \\ c: #d");
+  CHECK(file["unit"].IsNull());
+}

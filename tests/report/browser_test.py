@@ -1,0 +1,195 @@
+"""Opens reports in headless Chromium, as a reader would: no console message, no request, plots drawn, nothing injected.
+
+usage: browser_test.py MAKE_REPORT [REPORT.html…]
+MAKE_REPORT writes reports of synthetic characterizations; reports given beside it are opened as well.
+The browser is driven over plain HTTP (the WebDriver protocol), with Python's standard library only.
+"""
+import contextlib
+import http.client
+import json
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+
+
+class Browser:
+    def __init__(self, folder):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = probe.getsockname()[1]
+        self.driver = subprocess.Popen([shutil.which("chromedriver"), f"--port={self.port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.session = ""
+        self.wait_for_driver()
+        arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync", "--window-size=1280,900", f"--user-data-dir={folder}"]
+        options = {"args": arguments, "binary": shutil.which("chromium"), "perfLoggingPrefs": {"enableNetwork": True, "enablePage": False}}
+        capabilities = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+
+    def wait_for_driver(self):
+        for _ in range(200):
+            try:
+                if self.call("GET", "/status")["ready"]:
+                    return
+            except OSError:
+                time.sleep(0.1)
+        raise RuntimeError("chromedriver does not answer")
+
+    def call(self, method, path, body=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
+        connection.request(method, self.session + path, None if body is None else json.dumps(body), {"Content-Type": "application/json"})
+        value = json.loads(connection.getresponse().read())["value"]
+        if isinstance(value, dict) and "error" in value:
+            raise RuntimeError(value["message"])
+        return value
+
+    def open(self, address):
+        self.call("POST", "/url", {"url": address})
+
+    def run(self, script):
+        return self.call("POST", "/execute/sync", {"script": script, "args": []})
+
+    def until(self, script, seconds=20):
+        end = time.time() + seconds
+        while not self.run(script):
+            if time.time() > end:
+                return False
+            time.sleep(0.05)
+        return True
+
+    def protocol(self, command, parameters=None):
+        return self.call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters or {}})
+
+    def console(self):
+        return [entry["message"] for entry in self.call("POST", "/se/log", {"type": "browser"})]
+
+    def requests(self):
+        entries = [json.loads(entry["message"])["message"] for entry in self.call("POST", "/se/log", {"type": "performance"})]
+        return [e["params"]["request"]["url"] for e in entries if e["method"] == "Network.requestWillBeSent"]
+
+    def close(self):
+        with contextlib.suppress(Exception):
+            self.call("DELETE", "")
+        self.driver.terminate()
+        self.driver.wait()
+
+
+# A drawn plot has ink in the colours of the measurement, not just a white sheet.
+INKED = """
+return Array.from(document.querySelectorAll('figure.plot canvas')).map((canvas) => {
+  const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+  let blue = 0;
+  for (let i = 0; i < pixels.length; i += 4) if (pixels[i] < 90 && pixels[i + 2] > 110 && pixels[i + 3] > 200) ++blue;
+  return blue;
+});"""
+INJECTED = "return document.querySelectorAll('img, svg, iframe, object, embed, link, base, form, [onerror], [onload], [onmouseover], [onfocus]').length"
+DRAWN = "return Object.keys(Chart.instances).length"
+PLOTS = "return document.querySelectorAll('figure.plot').length"
+DRAW_ALL = "window.dispatchEvent(new Event('beforeprint')); return Object.keys(Chart.instances).length"
+
+faults = []
+
+
+def expect(condition, sentence):
+    if not condition:
+        faults.append(sentence)
+        print("FAILED:", sentence)
+
+
+def check_page(browser, page, plots=None):
+    address = page.resolve().as_uri()
+    browser.requests()
+    browser.open(address)
+    count = browser.run(PLOTS)
+    expect(plots is None or count == plots, f"{page}: {count} plots instead of {plots}")
+    first = browser.run(DRAWN)
+    if count:
+        browser.run("document.querySelector('figure.plot').scrollIntoView()")
+        expect(browser.until(DRAWN), f"{page}: no plot drawn in view")
+    if count > 30:
+        expect(first < count / 3, f"{page}: {first} of {count} plots were drawn at once")
+    expect(browser.run(DRAW_ALL) == count, f"{page}: printing does not draw every plot")
+    ink = browser.run(INKED)
+    expect(all(blue > 50 for blue in ink), f"{page}: empty plots, ink {ink}")
+    expect(browser.run("return document.querySelectorAll('script').length") == 3, f"{page}: a script was added")
+    expect(browser.run(INJECTED) == 0, f"{page}: an element or handler came from the input")
+    expect(browser.run("return window.broken === undefined"), f"{page}: injected code ran")
+    expect(browser.run("return performance.getEntriesByType('resource').length") == 0, f"{page}: resources were loaded")
+    check_axes(browser, page)
+    check_download(browser, page)
+    # chrome:// is the browser's own empty tab.
+    console, requests = browser.console(), [r for r in browser.requests() if r != address and not r.startswith("chrome://")]
+    expect(not console, f"{page}: console says {console[:3]}")
+    expect(all(r.startswith("blob:") for r in requests), f"{page}: requests {requests[:3]}")
+    print(f"{page}: {count} plots, {first} at once, {page.stat().st_size / 1e6:.2f} MB")
+
+
+def check_axes(browser, page):
+    """Sidedness on the axis, and no value that a logarithmic axis cannot hold."""
+    titles = browser.run("return Object.values(Chart.instances).map((c) => c.options.scales.y.title.text)")
+    spectra = [t for t in titles if "Hz" in t]
+    expect(all("ne-sided" in t or "wo-sided" in t for t in spectra), f"{page}: a spectrum without its sides: {spectra}")
+    bad = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic')
+      .flatMap((c) => c.data.datasets.flatMap((d) => d.data)).filter((p) => !(p.x > 0) || !(p.y > 0)).length""")
+    expect(bad == 0, f"{page}: {bad} points at or below zero on logarithmic axes")
+
+
+def check_download(browser, page):
+    """The button hands out the document of report.json, the measured time apart."""
+    beside = page.with_name("report.json")
+    if not beside.exists():
+        return
+    browser.run("""window.taken = null; const make = URL.createObjectURL;
+      URL.createObjectURL = (blob) => { blob.text().then((text) => { window.taken = text; }); return make.call(URL, blob); };
+      HTMLAnchorElement.prototype.click = function () { window.name_taken = this.download; };
+      document.getElementById('download').click();""")
+    expect(browser.until("return window.taken !== null"), f"{page}: nothing to download")
+    document, expected = json.loads(browser.run("return window.taken")), json.loads(beside.read_text())
+    expected.pop("measured", None)
+    expect(document == expected, f"{page}: the download differs from report.json")
+    expect(browser.run("return window.name_taken") == "report.json", f"{page}: the download has another name")
+
+
+def check_narrow(browser, page):
+    browser.protocol("Emulation.setDeviceMetricsOverride", {"width": 420, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+    browser.open(page.resolve().as_uri())
+    wide = browser.run("return document.documentElement.scrollWidth")
+    expect(wide <= 420, f"{page}: {wide} pixels wide in a window of 420")
+    browser.protocol("Emulation.clearDeviceMetricsOverride")
+
+
+def check_without_script(browser, page):
+    browser.protocol("Emulation.setScriptExecutionDisabled", {"value": True})
+    browser.open(page.resolve().as_uri())
+    browser.protocol("Emulation.setScriptExecutionDisabled", {"value": False})
+    text = browser.run("return document.body.innerText")
+    expect("Every number stands in the tables" in text, f"{page}: no notice without scripts")
+
+
+def main():
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        print("skipped: chromium and chromedriver (Debian: chromium, chromium-driver) are not both installed")
+        return SKIPPED
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        browser = Browser(folder / "profile")
+        try:
+            for kind, plots in {"imu": 18, "hostile": 36, "many": 144, "empty": 1}.items():
+                subprocess.run([sys.argv[1], kind, str(folder / kind)], check=True)
+                check_page(browser, folder / kind / "report.html", plots)
+            check_narrow(browser, folder / "imu/report.html")
+            check_without_script(browser, folder / "imu/report.html")
+            for given in sys.argv[2:]:
+                check_page(browser, pathlib.Path(given))
+        finally:
+            browser.close()
+    return 1 if faults else 0
+
+
+sys.exit(main())

@@ -1,0 +1,133 @@
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "libchar/core/whole_file.hpp"
+#include "libchar/report/assets.hpp"
+#include "libchar/report/outputs.hpp"
+#include "tests/report/synthetic.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
+  return n;
+}
+
+// The page without the parts that are ours byte for byte.
+std::string without_assets(std::string page) {
+  for (const std::string_view asset : {chart_js(), page_js(), page_css()}) {
+    const std::size_t at = page.find(asset);
+    REQUIRE(at != std::string::npos);
+    page.erase(at, asset.size());
+  }
+  return page;
+}
+
+}  // namespace
+
+TEST_CASE("html: asks for nothing from anywhere") {
+  const std::string page = without_assets(html_report(test::synthetic_imu()));
+  for (const char* word : {"src=",
+                           "href=\"http",
+                           "@import",
+                           "url(",
+                           "<link",
+                           "<iframe",
+                           "<img",
+                           " style=\"",
+                           " onclick"}) {
+    INFO(word);
+    CHECK(count(page, word) == 0);
+  }
+  CHECK(count(page, "default-src 'none'; script-src 'sha256-") == 1);
+  CHECK(count(page, "unsafe-") == 0);
+}
+
+TEST_CASE("html: the plotting library comes with its whole licence and both notices") {
+  const std::string page = html_report(test::synthetic_imu());
+  CHECK(count(page, "Chart.js Contributors") >= 1);
+  CHECK(count(page, "Permission is hereby granted, free of charge") == 1);
+  CHECK(count(page, "kurkle/color") >= 1);
+  CHECK(count(without_assets(page), "Jukka Kurkela") == 1);
+  CHECK(chart_js().find("Chart.js v3.") != std::string_view::npos);
+}
+
+TEST_CASE("html: names from a file never become elements or attributes") {
+  const std::string plain = html_report(test::synthetic_imu());
+  const std::string page = html_report(test::hostile());
+  CHECK(count(page, "<script") == count(plain, "<script"));
+  CHECK(count(page, "</script") == count(plain, "</script"));
+  CHECK(count(without_assets(page), "<!--") == 1);
+  for (const char* word : {"<img", "<svg", " onerror=\"", " onmouseover=\"", "<b>;"}) {
+    INFO(word);
+    CHECK(count(without_assets(page), word) == 0);
+  }
+  CHECK(count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
+  CHECK(page.find('\0') == std::string::npos);
+  CHECK(count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
+}
+
+TEST_CASE("html: every number of a channel stands in a table too") {
+  const auto result = test::synthetic_imu();
+  const std::string page = without_assets(html_report(result));
+  CHECK(count(page, "<noscript>") == 1);
+  CHECK(count(page, "<section class=\"channel\"") == result.channels.size());
+  CHECK(count(page, "Overlapping Allan deviation</h3>") == result.channels.size());
+  CHECK(count(page, "One-sided power spectral density</h3>") == result.channels.size());
+  CHECK(count(page, result.log.sha256) >= 1);
+  CHECK(count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it
+  for (const char* word : {"deg/√h",
+                           "deg/h",
+                           "µg/√Hz",
+                           "gyroscope_noise_density",
+                           "IEEE 952",
+                           "not detected",
+                           "undetermined"}) {
+    INFO(word);
+    CHECK(count(page, word) > 0);
+  }
+}
+
+TEST_CASE("html: what could not be computed leaves a sentence, not a hole") {
+  const std::string page = html_report(test::barely_anything());
+  CHECK(count(page, "5 samples are too few for a fit") >= 2);
+  CHECK(count(page, "unit not stated") == 1);
+  CHECK(!std::regex_search(without_assets(page), std::regex("\\b(nan|inf)\\b")));
+}
+
+TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
+  if (std::system("command -v xmllint >/dev/null 2>&1") != 0) {
+    WARN("skipped: xmllint is absent");
+    return;
+  }
+  const test::TemporaryFolder folder;
+  for (const auto& [name, result] : {std::pair{"plain.html", test::synthetic_imu()},
+                                     std::pair{"hostile.html", test::hostile()}}) {
+    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its
+    // own.
+    const std::string path = (folder / name).string(), log = path + ".log";
+    write_whole_file(path, without_assets(html_report(result)));
+    const int code = std::system(("xmllint --html --noout '" + path + "' 2>'" + log + "'").c_str());
+    INFO(test::slurp(log));
+    std::string complaints;
+    std::istringstream lines(test::slurp(log));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find("error :") != std::string::npos &&
+          !std::regex_search(
+              line,
+              std::regex(
+                  "Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) "
+                  "invalid")))
+        complaints += line + "\n";
+    }
+    CHECK(complaints.empty());
+    CHECK(code >= 0);
+  }
+}

@@ -1,0 +1,157 @@
+// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a colleague.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+
+#include "analysis_options.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/model/from_fit.hpp"
+#include "libchar/model/model_file.hpp"
+#include "libchar/report/outputs.hpp"
+#include "reading_options.hpp"
+#include "verbs.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+namespace fs = std::filesystem;
+
+struct CharacterizeVerb {
+  std::vector<std::string> logs;
+  std::string folder;
+  bool json = false, force = false;
+  AnalysisOptions analysis;
+};
+
+struct Output {
+  std::string path, text;
+};
+
+std::vector<Output> outputs_of(const Characterization& result, const fs::path& folder) {
+  std::vector<Output> outputs = {{(folder / "report.html").string(), html_report(result)},
+                                 {(folder / "report.json").string(), dump_json(json_report(result))},
+                                 {(folder / "curves.csv").string(), csv_curves(result)}};
+  std::set<std::string> taken;
+  for (const ChannelResult& c : result.channels) {
+    if (!c.fit) continue;
+    const std::string stem = file_name_for(c.channel.name);
+    std::string name = stem;
+    for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
+    outputs.push_back({(folder / (name + ".sensor.yaml")).string(), model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
+  }
+  return outputs;
+}
+
+// All files are written before the first gets its name: a full disk leaves none of them.
+void write_outputs(const std::vector<Output>& outputs, const fs::path& folder, const std::string& log, bool force) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem) throw Error({ErrorKind::output, "E0505", folder.string(), "cannot make this folder: " + problem.message(), "", ""});
+  std::vector<WholeFile> files;
+  for (const Output& output : outputs) {
+    refuse_same_file(log, output.path);
+    files.emplace_back(output.path, force).write(output.text);
+  }
+  for (WholeFile& file : files) file.commit();
+}
+
+std::string interval(const Coefficient& c) {
+  if (c.value) return fmt::format("{} … {}", significant(c.ci95.low, 4), significant(c.ci95.high, 4));
+  return c.upper95 ? "≤ " + significant(*c.upper95, 3) : "";
+}
+
+std::string habitual(const Coefficient& c, std::string_view term, const std::string& unit) {
+  if (!c.value) return "";
+  const auto habits = habitual_units(term, unit);
+  return habits.empty() ? "" : fmt::format("{} {}", significant(*c.value * habits[0].factor, 4), habits[0].symbol);
+}
+
+std::string summary(const ChannelResult& c) {
+  std::vector<std::vector<std::string>> rows = {{"term", "value", "unit", "95 % interval", "status", "as the field says it", "10 % needs"}};
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    const Coefficient& k = c.fit->term[t];
+    if (k.status == Status::not_fitted) continue;
+    rows.push_back({fmt::format("{} ({})", kTermNames[t].key, kTermNames[t].letter), k.value ? significant(*k.value, 4) : "–",
+                    term_unit(kTermNames[t].key, c.channel.unit), interval(k), std::string(name_of(k.status)), habitual(k, kTermNames[t].key, c.channel.unit),
+                    k.seconds_for_10_percent ? significant(*k.seconds_for_10_percent, 2) + " s" : ""});
+  }
+  return table(rows);
+}
+
+std::string text_for_people(const Characterization& result) {
+  const LogInfo& log = result.log;
+  const double rate = log.time.rate_hz;
+  std::string text = fmt::format("{}: {} channel{}, {} Hz, {} s, {} gap{}\n", printable(log.file), log.channels.size(), log.channels.size() == 1 ? "" : "s",
+                                 significant(rate, 6), rate > 0 ? significant(static_cast<double>(log.samples) / rate, 6) : "?", log.time.gaps, log.time.gaps == 1 ? "" : "s");
+  for (const ChannelResult& c : result.channels) {
+    text += fmt::format("\n{}{}\n", printable(c.channel.name), c.channel.unit.empty() ? "" : " [" + printable(c.channel.unit) + "]");
+    if (c.fit) {
+      text += summary(c);
+      for (const Remedy& r : c.fit->remedies) text += fmt::format("  {}: {} → {}\n", r.kind, r.alarm, r.action);
+      for (const std::string& sentence : c.fit->sentences) text += fmt::format("  {}\n", sentence);
+    }
+    for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
+  }
+  return text;
+}
+
+fs::path folder_for(const CharacterizeVerb& verb, const std::string& log, std::set<std::string>& taken) {
+  if (verb.logs.size() == 1) return verb.folder;
+  const std::string stem = file_name_for(fs::path(log).stem().string());
+  std::string name = stem;
+  for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
+  return fs::path(verb.folder) / name;
+}
+
+void run_characterize(Session& session, const CharacterizeVerb& verb) {
+  const CharacterizeOptions options = finish(verb.analysis);
+  std::set<std::string> taken;
+  Json documents = Json::array();
+  bool any_fit = false;
+  for (const std::string& log : verb.logs) {
+    Characterization result = characterize(log, options, session.terminal);
+    result.command = session.command;
+    result.settings = settings_json(options);
+    session.terminal.clear();
+    report_warnings(session, result.log);
+    const fs::path folder = folder_for(verb, log, taken);
+    const std::vector<Output> outputs = outputs_of(result, folder);
+    write_outputs(outputs, folder, log, verb.force);
+    for (const ChannelResult& c : result.channels) any_fit = any_fit || c.fit;
+    if (verb.json) {
+      documents.push_back(json_report(result));
+      continue;
+    }
+    print(text_for_people(result));
+    std::string written = "\nwrote";
+    for (const Output& output : outputs) written += fmt::format(" {}", printable(output.path));
+    print(written + "\n");
+  }
+  if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
+  if (!any_fit) throw Error({ErrorKind::numeric, "E0711", verb.logs[0], "no channel could be fitted; the report says why", "", ""});
+}
+
+}  // namespace
+
+void add_characterize(CLI::App& app, Session& session) {
+  auto verb = std::make_shared<CharacterizeVerb>();
+  CLI::App* sub = add_verb(app, session, "characterize", "everything about a recording: report.html, report.json, curves.csv, a sensor model per channel",
+                           [&session, verb] { run_characterize(session, *verb); });
+  sub->add_option("LOG", verb->logs, "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")->required();
+  sub->add_option("-o,--output", verb->folder, "folder for the results (made when absent; with several logs one folder each inside)")->required();
+  sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
+  sub->add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
+  add_reading_options(*sub, session, verb->analysis.options.reading);
+  add_data_options(*sub, verb->analysis);
+  add_allan_options(*sub, verb->analysis);
+  add_spectrum_options(*sub, verb->analysis);
+  add_fit_options(*sub, verb->analysis);
+}
+
+}  // namespace sensorchar
