@@ -21,7 +21,7 @@ double median_of(std::vector<double>& values) {
   return *middle;
 }
 
-/// Floor of every coefficient: medians over stretches of a sixteenth of k, 32 to 2048 coefficients
+/// Floor of every coefficient: medians over stretches of an eighth of k, 64 to 2048 coefficients
 /// long, joined by straight lines in log-log, so that the slope of flicker and walk within a
 /// stretch is not taken for a line.
 std::vector<double> local_floor(const std::vector<double>& mean,
@@ -29,9 +29,9 @@ std::vector<double> local_floor(const std::vector<double>& mean,
                                 double chi_median) {
   std::vector<double> log_k, log_floor, part;
   for (std::size_t lo = 0; lo < mean.size();) {
-    const std::size_t width = std::clamp<std::size_t>((lo + first) / 16, 32, 2048);
+    const std::size_t width = std::clamp<std::size_t>((lo + first) / 8, 64, 2048);
     std::size_t hi = std::min(mean.size(), lo + width);
-    if (mean.size() - hi < 32) hi = mean.size();
+    if (mean.size() - hi < 64) hi = mean.size();
     part.assign(mean.begin() + static_cast<std::ptrdiff_t>(lo),
                 mean.begin() + static_cast<std::ptrdiff_t>(hi));
     log_k.push_back(
@@ -63,7 +63,10 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
   LineClip clip;
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const std::uint64_t k = first + i;
-    if (k < kLowest || !(mean[i] > limit * floor[i])) continue;
+    // The median of a short stretch is itself uncertain: four of its standard deviations on top.
+    const double width = std::clamp(static_cast<double>(k) / 8, 64.0, 2048.0);
+    const double margin = 1 + 5 * std::sqrt(2 / dof / width);
+    if (k < kLowest || !(mean[i] > limit * margin * floor[i])) continue;
     if (clip.clipped.empty()) clip.clipped.assign(mean.size(), 0);
     const double excess = floor[i] > 0 ? mean[i] / floor[i] : 1e6;
     const double reach = std::min({std::sqrt(10 * excess),

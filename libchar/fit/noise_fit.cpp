@@ -35,7 +35,8 @@ namespace {
 constexpr double kAlarmP = 1e-4;  ///< probability of a false alarm of the residuals' ends
 constexpr double kRemedyRatio =
     15;  ///< 2 ln L a remedy with one parameter must gain to be taken (1e-4)
-constexpr std::size_t kLowest = 5;  ///< coefficients that a warm-up or a drift falls into
+constexpr double kRampRatio = 5.41;  ///< the same for a ramp: passed by 0.5 % of clean records
+constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift falls into
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
@@ -161,6 +162,19 @@ double rejection(const Attempt& other, const NoiseFit& fit) {
   return 2 * (half_deviance(bin_problem(other.bins), fit.theta) - other.half_deviance);
 }
 
+/// What `rejection` stays below in clean records. Its expectation is the information that the
+/// dropped bins carried, tr(1 - I_dropped I^-1), nearly all in one direction, so that it scatters
+/// like that times a chi-square of one degree of freedom. Below 1 the fit has moved by less than
+/// one standard deviation: not worth a remedy.
+double rejection_limit(const Attempt& now, const Attempt& dropped) {
+  const TermSet terms = only_positive(now.fit.theta);
+  const TermMatrix all = fisher_information(bin_problem(now.bins), now.fit.theta, terms);
+  const TermMatrix rest = fisher_information(bin_problem(dropped.bins), now.fit.theta, terms);
+  const double lost =
+      static_cast<double>(count_of(terms)) - (rest * inverse_of(all, terms)).trace();
+  return std::clamp(16 * lost, 1.0, 16.0);
+}
+
 void keep_remedies(NoiseFit& next, const NoiseFit& before) {
   next.remedies = before.remedies;
   next.bandwidth_hz = before.bandwidth_hz;
@@ -173,14 +187,14 @@ void answer_low_frequencies(Attempt& now) {
   if (rest.size() < 2 * count_of(now.options.terms) || rest.size() == now.bins.size()) return;
   const Attempt dropped = attempt(std::move(rest), now.fit.rate_hz, now.fit.samples, now.options);
   const double rejects = rejection(dropped, now.fit);
-  const double limit = 16.3;  // chi-square, three degrees of freedom, 0.1 %
+  const double limit = rejection_limit(now, dropped);
   const Goodness low = goodness_between(now.fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s));
   FitOptions with = now.options;
   with.terms[kRamp] = true;
   std::optional<Attempt> ramp;
   if (!now.options.terms[kRamp]) ramp = attempt(now.bins, now.fit.rate_hz, now.fit.samples, with);
   const double gain = ramp ? 2 * (now.half_deviance - ramp->half_deviance) : 0;
-  if (rejects < limit && low.p > 1e-3 && gain < kRemedyRatio) return;
+  if (rejects < limit && low.p > 1e-3 && gain < kRampRatio) return;
 
   const std::string alarm = fmt::format(
       "the slowest {} coefficients do not follow the rest (2 ln L {:.1f}; with a ramp {:.1f})",
@@ -188,8 +202,8 @@ void answer_low_frequencies(Attempt& now) {
       rejects,
       gain);
   const bool ramp_explains =
-      ramp && gain > kRemedyRatio / 2 && rejection(dropped, ramp->fit) < 6 &&
-      goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.01;
+      ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
+      goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
   if (ramp_explains) {
     keep_remedies(ramp->fit, now.fit);
     now = std::move(*ramp);
