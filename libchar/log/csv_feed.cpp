@@ -52,6 +52,7 @@ Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
   }
   regular_ = known && S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (size_ > 0) block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
 }
 
 Feed::~Feed() {
