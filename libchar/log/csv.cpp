@@ -44,9 +44,9 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
-    room_ = workers_.size() + 2;
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;
