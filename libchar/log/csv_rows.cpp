@@ -49,11 +49,11 @@ class RowParser {
     rows.line_offset.clear();
     capacity_ = ~std::size_t{0};
     for (auto& column : rows.columns) {
-      if (column.size() < 1024) column.resize(1024);
+      if (column.size() < 32) column.resize(32);
       capacity_ = std::min(capacity_, column.size());
     }
     if (dialect_.time_column >= 0) {
-      if (rows.time_ns.size() < 1024) rows.time_ns.resize(1024);
+      if (rows.time_ns.size() < 32) rows.time_ns.resize(32);
       capacity_ = std::min(capacity_, rows.time_ns.size());
     } else {
       rows.time_ns.clear();
@@ -218,6 +218,10 @@ class RowParser {
     const std::string_view line(start, static_cast<std::size_t>(stop - start));
     const auto bytes = static_cast<std::uint64_t>(after - start);
     line_start_ = start;
+    if (const std::size_t nul = line.find('\0'); line.size() > kMaxLine && nul != std::string_view::npos) {
+      fail("E0308", "NUL bytes between the rows", "", "a damaged file: copy it again, or read the part before with --to", nul);
+      return after;
+    }
     if (line.size() > kMaxLine) {
       fail("E0305", "line longer than 1 MiB", "", "is this a text file with line ends?", 0);
       return after;
