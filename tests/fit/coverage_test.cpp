@@ -31,15 +31,17 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       const NoiseFit fit = fit_record(y, scene.rate_hz, nullptr);
       REQUIRE(fit.converged);
       remedies += fit.remedies.empty() ? 0 : 1;
+      bool any_false = false;
       for (std::size_t i = 0; i < 3; ++i) {
         const Coefficient& c = fit.term[i];
         if (!present[i]) {
-          false_terms += c.status == Status::not_detected ? 0 : 1;
+          any_false = any_false || c.status != Status::not_detected;
           continue;
         }
         square[i] += std::pow((c.value.value_or(0) - truth[i]) / (*bound[i] * truth[i]), 2) / kRecords;
         covered[i] += c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1.0 / kRecords : 0.0;
       }
+      false_terms += any_false ? 1 : 0;
       if (r >= 20) continue;
       PowerBinner binner(kSamples);
       binner.push(y);
@@ -58,7 +60,7 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       CHECK(covered[i] > 0.95 - 3 * std::sqrt(0.95 * 0.05 / kRecords));
     }
     INFO(scene.name << " false terms " << false_terms << ", remedies " << remedies);
-    CHECK(false_terms <= 9);  // two terms at 1 % each: 3 expected at most
+    CHECK(false_terms <= 8);  // records with a false or an undetermined term: 2 % expected
     CHECK(remedies <= 7);     // 1 % expected
   }
 }
