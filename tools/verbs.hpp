@@ -11,6 +11,7 @@ void add_inspect(CLI::App& app, Session& session);
 void add_characterize(CLI::App& app, Session& session);
 void add_allan(CLI::App& app, Session& session);
 void add_psd(CLI::App& app, Session& session);
+void add_fit(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
@@ -19,6 +20,7 @@ inline void add_verbs(CLI::App& app, Session& session) {
   add_characterize(app, session);
   add_allan(app, session);
   add_psd(app, session);
+  add_fit(app, session);
   add_convert(app, session);
 }
 
