@@ -250,12 +250,14 @@ Json parse_json(std::string_view text, const std::string& file) {
   return guard.take();
 }
 
+Json with_valid_text(Json document) {
+  if (!all_utf8(document)) escape_strings(document);
+  return document;
+}
+
 std::string dump_json(const Json& document) {
   check_finite(document);
-  if (all_utf8(document)) return document.dump(2) + "\n";
-  Json clean = document;
-  escape_strings(clean);
-  return clean.dump(2) + "\n";
+  return with_valid_text(document).dump(2) + "\n";
 }
 
 }  // namespace libchar

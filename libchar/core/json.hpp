@@ -13,6 +13,9 @@ using Json = nlohmann::ordered_json;
 /// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
 
+/// The document with every string that is not UTF-8 escaped by `printable`.
+Json with_valid_text(Json document);
+
 /// The document as text, doubles in shortest round-trip form, two-space indent, newline at the end. Strings that are not
 /// UTF-8 are escaped by `printable`. A NaN or infinity in the document is a programmer's mistake and throws.
 std::string dump_json(const Json& document);

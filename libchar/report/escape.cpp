@@ -50,7 +50,7 @@ std::string html_attribute(std::string_view text) {
 std::string json_in_script(const Json& document) {
   // No indent (a line for each number would double the page), and ASCII only: line separators and
   // bidirectional controls inside a script would mislead whoever reads the page's source.
-  const std::string plain = document.dump(-1, ' ', true, Json::error_handler_t::replace);
+  const std::string plain = with_valid_text(document).dump(-1, ' ', true);
   std::string out;
   out.reserve(plain.size() + plain.size() / 16);
   for (const char c : plain) {

@@ -226,7 +226,7 @@ std::string command_line(const std::vector<std::string>& command) {
 std::string settings(const Json& document) {
   if (document.is_null() || document.empty()) return "";
   std::string out = "<details><summary>Effective settings</summary>\n<pre>";
-  const std::string text = document.dump(2, ' ', false, Json::error_handler_t::replace);
+  const std::string text = with_valid_text(document).dump(2);
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     out += html_text(std::string_view(text).substr(at, end - at)) + "\n";

@@ -83,7 +83,7 @@ TEST_CASE("outputs that cannot be: unknown suffix, no folder, no space") {
             .code == 5);
 }
 
-TEST_CASE("--strict leaves no output behind a warning") {
+TEST_CASE("option --strict leaves no output behind a warning") {
   const test::TemporaryFolder folder;
   const std::string out = (folder / "a.csv").string();
   CHECK(test::run({"convert", fixture("half.npy"), "-o", out, "--strict"}).code == 3);

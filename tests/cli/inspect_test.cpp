@@ -57,7 +57,7 @@ TEST_CASE("several logs make one document; channels are chosen by repetition and
   CHECK(slip.code == 2);
 }
 
-TEST_CASE("--strict turns warnings into exit code 3, --quiet keeps results") {
+TEST_CASE("option --strict turns warnings into exit code 3, --quiet keeps results") {
   const std::string log = test::fixture("npy/half.npy").string();
   CHECK(test::run({"inspect", log}).code == 0);
   const auto strict = test::run({"inspect", log, "--strict", "-q"});
