@@ -111,8 +111,9 @@ double median_ratio(const std::vector<FitResidual>& residual, std::size_t from, 
   return *middle;
 }
 
-/// Bins of a broad hump (vibration, a wandering line): on the scale of the model a quarter and six standard deviations above
-/// the median of the ten bins before as well as of the ten after, so that a slope or a rising end is none.
+/// Bins of a broad hump (vibration, a wandering line): on the scale of the model a quarter and six
+/// standard deviations above the median of the ten bins before as well as of the ten after, so that
+/// a slope or a rising end is none.
 std::vector<PowerBin> without_humps(const Attempt& now) {
   constexpr std::size_t kReach = 10;
   const std::vector<FitResidual>& residual = now.fit.residuals;
