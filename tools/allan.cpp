@@ -45,7 +45,7 @@ Json as_json(const Session& session, const Characterization& result) {
     channels.push_back(c.channel);
     curves.push_back(c.allan);
   }
-  for (auto& [key, value] : allan_json(channels, curves).items()) document[key] = value;
+  document.update(allan_json(channels, curves));
   return document;
 }
 

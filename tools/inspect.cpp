@@ -1,4 +1,5 @@
-// sensorchar inspect LOG…: what is in a log, what was guessed, what was repaired, and what to type next.
+// sensorchar inspect LOG…: what is in a log, what was guessed, what was repaired, and what to type
+// next.
 
 #include <fmt/format.h>
 
@@ -24,10 +25,12 @@ struct InspectOptions {
 // Enough digits to see a thousandth of the noise beside a large offset.
 std::string beside_noise(double value, double noise) {
   const double ratio = noise > 0 ? std::abs(value) / noise : 1;
-  return libchar::significant(value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
+  return libchar::significant(
+      value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
 }
 
-std::vector<std::string> channel_row(const libchar::Channel& channel, const libchar::ChannelQuality& q) {
+std::vector<std::string> channel_row(const libchar::Channel& channel,
+                                     const libchar::ChannelQuality& q) {
   const double noise = q.standard_deviation;
   return {libchar::printable(channel.name, 40),
           channel.unit.empty() ? "-" : libchar::printable(channel.unit, 20),
@@ -42,32 +45,54 @@ std::vector<std::string> channel_row(const libchar::Channel& channel, const libc
 }
 
 std::string channel_table(const libchar::Inspection& inspection) {
-  std::vector<std::vector<std::string>> rows = {{"channel", "unit", "missing", "mean", "sd", "min", "max", "LSB", "saturated", "kurtosis of differences"}};
-  for (std::size_t c = 0; c < inspection.quality.size(); ++c) rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
+  std::vector<std::vector<std::string>> rows = {{"channel",
+                                                 "unit",
+                                                 "missing",
+                                                 "mean",
+                                                 "sd",
+                                                 "min",
+                                                 "max",
+                                                 "LSB",
+                                                 "saturated",
+                                                 "kurtosis of differences"}};
+  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
+    rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
   return table(rows);
 }
 
 std::string next_command(const InspectOptions& options, const libchar::LogInfo& info) {
   const std::string flags = reading_flags(options.reading, info);
   const std::string log = shell_word(info.file);
-  if (info.time.rate_hz <= 0) return fmt::format("  next: say the sampling rate, such as sensorchar inspect {}{} --rate 200Hz\n", log, flags);
+  if (info.time.rate_hz <= 0)
+    return fmt::format(
+        "  next: say the sampling rate, such as sensorchar inspect {}{} --rate 200Hz\n",
+        log,
+        flags);
   const std::string folder = std::filesystem::path(info.file).stem().string();
-  return fmt::format("  next: sensorchar characterize {}{} -o {}\n", log, flags, shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
+  return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
+                     log,
+                     flags,
+                     shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
 }
 
 std::string for_people(const InspectOptions& options, const libchar::Inspection& inspection) {
   const libchar::LogInfo& info = inspection.info;
   std::string text = libchar::summary_line(info) + "\n";
   std::string dialect = info.format;
-  for (const std::string& fact : info.dialect) dialect += (dialect == info.format ? ": " : "; ") + libchar::printable(fact);
+  for (const std::string& fact : info.dialect)
+    dialect += (dialect == info.format ? ": " : "; ") + libchar::printable(fact);
   text += "  read as " + dialect + "\n";
-  for (const std::string& guess : info.guesses) text += "  guessed: " + libchar::printable(guess) + "\n";
+  for (const std::string& guess : info.guesses)
+    text += "  guessed: " + libchar::printable(guess) + "\n";
   const std::string front = libchar::printable(info.file) + ": warning: ";
-  for (const libchar::Warning& warning : info.warnings.list()) text += "  warning: " + libchar::one_line(warning, info.file).substr(front.size()) + "\n";
+  for (const libchar::Warning& warning : info.warnings.list())
+    text += "  warning: " + libchar::one_line(warning, info.file).substr(front.size()) + "\n";
   text += channel_table(inspection);
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     for (const std::string& suggestion : inspection.quality[c].suggestions)
-      text += fmt::format("  {}: {}\n", libchar::printable(info.channels[c].name, 40), libchar::printable(suggestion));
+      text += fmt::format("  {}: {}\n",
+                          libchar::printable(info.channels[c].name, 40),
+                          libchar::printable(suggestion));
   return text + next_command(options, info);
 }
 
@@ -78,7 +103,8 @@ void run_inspect(Session& session, const InspectOptions& options) {
     session.terminal.clear();
     const libchar::LogInfo& info = inspections.back().info;
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
-    if (!options.json) print((inspections.size() > 1 ? "\n" : "") + for_people(options, inspections.back()));
+    if (!options.json)
+      print((inspections.size() > 1 ? "\n" : "") + for_people(options, inspections.back()));
   }
   if (!options.json) return;
   std::vector<const libchar::LogInfo*> inputs;
@@ -92,8 +118,13 @@ void run_inspect(Session& session, const InspectOptions& options) {
 
 void add_inspect(CLI::App& app, Session& session) {
   const auto options = std::make_shared<InspectOptions>();
-  CLI::App* verb = add_verb(app, session, "inspect", "What is in a log: channels, rate, gaps, repairs, resolution", [&session, options] { run_inspect(session, *options); });
-  verb->add_option("LOG", options->logs, "logs to look at; - reads CSV from standard input")->required();
+  CLI::App* verb = add_verb(app,
+                            session,
+                            "inspect",
+                            "What is in a log: channels, rate, gaps, repairs, resolution",
+                            [&session, options] { run_inspect(session, *options); });
+  verb->add_option("LOG", options->logs, "logs to look at; - reads CSV from standard input")
+      ->required();
   verb->add_flag("--json", options->json, "one JSON document on stdout instead of text");
   add_reading_options(*verb, session, options->reading);
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Numbers on the command line. CLI11 takes "-1" for 18446744073709551615, "010" for 8, "nan" and "1e400" for numbers; these
-// functions do not. Each throws Error(usage) with one sentence that says what would have been right.
+// Numbers on the command line. CLI11 takes "-1" for 18446744073709551615, "010" for 8, "nan" and
+// "1e400" for numbers; these functions do not. Each throws Error(usage) with one sentence that says
+// what would have been right.
 
 #include <cstdint>
 #include <limits>
@@ -10,11 +11,13 @@
 namespace sensorchar {
 
 /// A finite number in [lowest, highest].
-double parse_number(std::string_view text, double lowest = -std::numeric_limits<double>::max(),
+double parse_number(std::string_view text,
+                    double lowest = -std::numeric_limits<double>::max(),
                     double highest = std::numeric_limits<double>::max());
 
 /// A whole number in [lowest, highest], decimal digits only ("1e6" and "1_000_000" are not counts).
-std::uint64_t parse_count(std::string_view text, std::uint64_t lowest = 0,
+std::uint64_t parse_count(std::string_view text,
+                          std::uint64_t lowest = 0,
                           std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
 
 /// Seconds: "90", "90s", "1.5h", "250ms", "10us", "5min", "2d". A bare number is in seconds. >= 0.
@@ -23,7 +26,8 @@ double parse_duration_s(std::string_view text);
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
 
-/// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB, MB, GB of 1000).
+/// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB,
+/// MB, GB of 1000).
 std::uint64_t parse_bytes(std::string_view text);
 
 }  // namespace sensorchar

@@ -10,63 +10,145 @@ namespace sensorchar {
 namespace {
 
 void add_time_options(CLI::App& verb, libchar::ReadOptions& options) {
-  add_duration(verb, "--from", options.from_s, "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")->group("Reading");
-  add_duration(verb, "--to", options.to_s, "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")->group("Reading");
-  add_rate(verb, "--rate", options.rate_hz, "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")->group("Reading");
-  verb.add_option("--time-column", options.time_column, "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
-      ->type_name("NAME")->group("Reading");
-  add_choice(verb, "--time-unit", options.time_unit, {"auto", "s", "ms", "us", "ns"}, "unit of the time column (default: auto)")->group("Reading");
+  add_duration(verb,
+               "--from",
+               options.from_s,
+               "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
+      ->group("Reading");
+  add_duration(verb,
+               "--to",
+               options.to_s,
+               "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
+      ->group("Reading");
+  add_rate(verb,
+           "--rate",
+           options.rate_hz,
+           "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")
+      ->group("Reading");
+  verb.add_option(
+          "--time-column",
+          options.time_column,
+          "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
+      ->type_name("NAME")
+      ->group("Reading");
+  add_choice(verb,
+             "--time-unit",
+             options.time_unit,
+             {"auto", "s", "ms", "us", "ns"},
+             "unit of the time column (default: auto)")
+      ->group("Reading");
 }
 
 void add_dialect_options(CLI::App& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  add_choice(verb, "--format", options.format, {"auto", "csv", "npy", "raw"}, "format of the log (default: auto)")->group("Reading");
+  add_choice(verb,
+             "--format",
+             options.format,
+             {"auto", "csv", "npy", "raw"},
+             "format of the log (default: auto)")
+      ->group("Reading");
   verb.add_option_function<std::string>(
           "--delimiter",
           [&options](const std::string& text) {
             if (text != "auto" && text != "tab" && text != "space" && text.size() != 1)
-              throw libchar::Error({libchar::ErrorKind::usage, "E0202", "--delimiter", "expected auto, tab, space or one character", text, ""});
+              throw libchar::Error({libchar::ErrorKind::usage,
+                                    "E0202",
+                                    "--delimiter",
+                                    "expected auto, tab, space or one character",
+                                    text,
+                                    ""});
             options.delimiter = text;
           },
           "between two cells: auto, tab, space, or one character (default: auto)")
-      ->type_name("CHAR")->group(csv);
-  add_choice(verb, "--decimal", options.decimal, {"auto", "point", "comma"}, "decimal sign (default: auto)")->group(csv);
-  add_choice(verb, "--header", options.header, {"auto", "yes", "no"}, "is the first row a header? (default: auto)")->group(csv);
-  add_choice(verb, "--encoding", options.encoding, {"utf-8", "latin1"}, "encoding of the header (default: utf-8)")->group(csv);
-  add_count(verb, "--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")->group(csv);
+      ->type_name("CHAR")
+      ->group(csv);
+  add_choice(verb,
+             "--decimal",
+             options.decimal,
+             {"auto", "point", "comma"},
+             "decimal sign (default: auto)")
+      ->group(csv);
+  add_choice(verb,
+             "--header",
+             options.header,
+             {"auto", "yes", "no"},
+             "is the first row a header? (default: auto)")
+      ->group(csv);
+  add_choice(verb,
+             "--encoding",
+             options.encoding,
+             {"utf-8", "latin1"},
+             "encoding of the header (default: utf-8)")
+      ->group(csv);
+  add_count(verb, "--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")
+      ->group(csv);
 }
 
 // Flags whose only other value is "no, end with an error", which is the default.
-void add_accepting_flag(CLI::App& verb, const std::string& name, const std::string& word, bool& value, const std::string& help) {
+void add_accepting_flag(CLI::App& verb,
+                        const std::string& name,
+                        const std::string& word,
+                        bool& value,
+                        const std::string& help) {
   verb.add_option_function<std::string>(
           name,
           [&value, name, word](const std::string& text) {
             if (text != word && text != "error")
-              throw libchar::Error({libchar::ErrorKind::usage, "E0202", name, fmt::format("expected {} or error", word), text, ""});
+              throw libchar::Error({libchar::ErrorKind::usage,
+                                    "E0202",
+                                    name,
+                                    fmt::format("expected {} or error", word),
+                                    text,
+                                    ""});
             value = text == word;
           },
           help)
-      ->type_name(word + "|error")->group("Reading CSV");
+      ->type_name(word + "|error")
+      ->group("Reading CSV");
 }
 
 }  // namespace
 
 void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options) {
-  verb.add_option("-c,--channel", options.channels, "channel to read, by name or position c0, c1…; repeat it or separate by commas (default: all)")
-      ->delimiter(',')->allow_extra_args(false)->type_name("NAME")->group("Reading");
+  verb.add_option("-c,--channel",
+                  options.channels,
+                  "channel to read, by name or position c0, c1…; repeat it or separate by commas "
+                  "(default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME")
+      ->group("Reading");
   add_time_options(verb, options);
   add_dialect_options(verb, options);
-  add_accepting_flag(verb, "--overflow", "nan", options.overflow_as_missing, "nan: a number out of range counts as missing (default: error)");
-  add_accepting_flag(verb, "--repeated-header", "skip", options.skip_repeated_header, "skip: header lines inside the data are skipped (default: error)");
+  add_accepting_flag(verb,
+                     "--overflow",
+                     "nan",
+                     options.overflow_as_missing,
+                     "nan: a number out of range counts as missing (default: error)");
+  add_accepting_flag(verb,
+                     "--repeated-header",
+                     "skip",
+                     options.skip_repeated_header,
+                     "skip: header lines inside the data are skipped (default: error)");
   verb.add_option_function<std::string>(
-          "--threads", [&options](const std::string& text) { options.threads = static_cast<int>(parse_count(text, 0, 4096)); },
+          "--threads",
+          [&options](const std::string& text) {
+            options.threads = static_cast<int>(parse_count(text, 0, 4096));
+          },
           "threads for reading; the result does not depend on it (default: 0 = all cores)")
-      ->type_name("N")->group("Reading");
-  verb.add_flag("--strict", session.strict, "a warning about the input ends the run with exit code 3")->group("Reading");
+      ->type_name("N")
+      ->group("Reading");
+  verb.add_flag(
+          "--strict", session.strict, "a warning about the input ends the run with exit code 3")
+      ->group("Reading");
 }
 
 std::string shell_word(std::string_view word) {
-  const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+=@%") == std::string_view::npos;
+  const bool plain =
+      !word.empty() &&
+      word.find_first_not_of(
+          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+=@%") ==
+          std::string_view::npos;
   if (plain) return std::string(word);
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -76,9 +158,10 @@ std::string shell_word(std::string_view word) {
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info) {
   const libchar::ReadOptions usual;
   std::string flags;
-  const auto word = [&](const char* flag, const std::string& value, const std::string& default_value) {
-    if (value != default_value) flags += fmt::format(" {} {}", flag, shell_word(value));
-  };
+  const auto word =
+      [&](const char* flag, const std::string& value, const std::string& default_value) {
+        if (value != default_value) flags += fmt::format(" {} {}", flag, shell_word(value));
+      };
   const auto number = [&](const char* flag, const std::optional<double>& value, const char* unit) {
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };

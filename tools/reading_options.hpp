@@ -6,11 +6,12 @@
 
 namespace sensorchar {
 
-/// Adds every flag that says how a log is to be read (--channel, --from, --to, --rate, --time-column, …, --strict). `options`
-/// and `session` must live until the verb has run.
+/// Adds every flag that says how a log is to be read (--channel, --from, --to, --rate,
+/// --time-column, …, --strict). `options` and `session` must live until the verb has run.
 void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options);
 
-/// The flags that read this log the same way again, what was guessed of it pinned (" --time-column t --time-unit us").
+/// The flags that read this log the same way again, what was guessed of it pinned (" --time-column
+/// t --time-unit us").
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info);
 
 /// A word quoted for a POSIX shell when it has to be.

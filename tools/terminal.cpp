@@ -15,9 +15,12 @@
 namespace sensorchar {
 namespace {
 
-volatile std::sig_atomic_t g_stop_signal = 0;  // the one global: a signal handler has nowhere else to write
+volatile std::sig_atomic_t g_stop_signal =
+    0;  // the one global: a signal handler has nowhere else to write
 
-void remember(int number) { g_stop_signal = number; }
+void remember(int number) {
+  g_stop_signal = number;
+}
 
 // Characters, not bytes: "°" takes one place on a terminal.
 std::size_t width(std::string_view text) {
@@ -53,19 +56,26 @@ void install_signal_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-int stop_signal() { return g_stop_signal; }
+int stop_signal() {
+  return g_stop_signal;
+}
 
 void print(std::string_view text) {
   const int status = write_all(STDOUT_FILENO, text);
   if (status == EPIPE) throw StdoutClosed{};
   if (status != 0) {
-    throw libchar::Error({libchar::ErrorKind::output, "E0510", "stdout",
-                          fmt::format("cannot write the result: {}", std::strerror(status)), "",
+    throw libchar::Error({libchar::ErrorKind::output,
+                          "E0510",
+                          "stdout",
+                          fmt::format("cannot write the result: {}", std::strerror(status)),
+                          "",
                           "free some space, or send the output elsewhere"});
   }
 }
 
-void say(std::string_view line) { write_all(STDERR_FILENO, std::string(line) + "\n"); }
+void say(std::string_view line) {
+  write_all(STDERR_FILENO, std::string(line) + "\n");
+}
 
 Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
   const char* term = std::getenv("TERM");
@@ -75,25 +85,30 @@ Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
   escapes_ = draws_ && (no_color == nullptr || *no_color == '\0');
 }
 
-Terminal::~Terminal() { clear(); }
+Terminal::~Terminal() {
+  clear();
+}
 
 void Terminal::update(double fraction, std::string_view what) {
   if (const int number = stop_signal(); number != 0) throw libchar::Cancelled(number);
   if (!draws_ || quiet_) return;
   const Clock::time_point now = Clock::now();
-  if (now - start_ < std::chrono::seconds(1) || now - drawn_ < std::chrono::milliseconds(100)) return;
+  if (now - start_ < std::chrono::seconds(1) || now - drawn_ < std::chrono::milliseconds(100))
+    return;
   drawn_ = now;
   std::string line = libchar::printable(what, 60);
   if (fraction >= 0) line += fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0));
   const std::size_t places = width(line);
-  const std::string rest = escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
+  const std::string rest =
+      escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
   write_all(STDERR_FILENO, "\r" + line + rest);
   shown_ = places;
 }
 
 void Terminal::clear() {
   if (shown_ == 0) return;
-  write_all(STDERR_FILENO, escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
+  write_all(STDERR_FILENO,
+            escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
   shown_ = 0;
 }
 

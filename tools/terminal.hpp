@@ -1,5 +1,6 @@
 #pragma once
-// What the program says to people: results to stdout, progress and messages to stderr, and how it is interrupted.
+// What the program says to people: results to stdout, progress and messages to stderr, and how it
+// is interrupted.
 
 #include <chrono>
 #include <string>
@@ -11,11 +12,12 @@
 
 namespace sensorchar {
 
-/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, there is nobody left to talk to.
+/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, there is nobody left to
+/// talk to.
 struct StdoutClosed {};
 
-/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled; SIGPIPE and SIGXFSZ become
-/// ordinary write errors.
+/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled;
+/// SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers();
 
 /// Number of the signal that asked the program to stop, 0 when there is none.
@@ -24,7 +26,8 @@ int stop_signal();
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
-/// One message on stderr, a newline added. Lines coming from files must have gone through libchar::printable already.
+/// One message on stderr, a newline added. Lines coming from files must have gone through
+/// libchar::printable already.
 void say(std::string_view line);
 
 /// Progress on stderr: only on a terminal, after one second of work, at most ten times a second.
@@ -54,7 +57,9 @@ class Terminal : public libchar::Progress {
   Clock::time_point start_, drawn_;
 };
 
-/// A table for people: columns aligned by width in characters, the first to the left and the others to the right.
-std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
+/// A table for people: columns aligned by width in characters, the first to the left and the others
+/// to the right.
+std::string table(const std::vector<std::vector<std::string>>& rows,
+                  std::string_view indent = "  ");
 
 }  // namespace sensorchar

@@ -80,12 +80,13 @@ LIBCHAR_CLONES bool extremes(const double* x, int n, double& minimum, double& ma
 
 }  // namespace
 
-Moments::Central Moments::of_block(const double* x, int n) {
+Moments::Central Moments::of_block(const double* x, int n) const {
   const double shift = x[0];
   Central c;
   c.n = n;
   const double offset = shifted_sum(x, n, shift) / n;
-  c.mean = shift + offset;
+  // About the first sample of all: a mean stored whole would round away the differences of means that `merged` needs.
+  c.mean = (shift - origin_) + offset;
   double s[4] = {};
   power_sums(x, n, shift, offset, s);
   // s[0]: what rounding left of the sum of deviations (Chan's corrected two-pass formula).
@@ -112,6 +113,11 @@ Moments::Central Moments::merged(const Central& a, const Central& b) {
 void Moments::push(std::span<const double> samples) {
   const double* x = samples.data();
   const double* const end = x + samples.size();
+  if (!started_)
+    for (const double* first = x; first != end && !started_; ++first) {
+      started_ = !std::isnan(*first);
+      if (started_) origin_ = std::isfinite(*first) ? *first : 0;
+    }
   while (x != end) {
     // A whole block without NaN is taken where it lies; the blocks are the same as when filled one
     // by one.
@@ -148,7 +154,7 @@ std::uint64_t Moments::missing() const {
   return missing_;
 }
 double Moments::mean() const {
-  return total().mean;
+  return origin_ + total().mean;
 }
 double Moments::variance() const {
   const Central c = total();

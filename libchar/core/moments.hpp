@@ -26,12 +26,14 @@ class Moments {
  private:
   static constexpr int kBlock = 4096;
   struct Central {
-    double n = 0, mean = 0, m2 = 0, m3 = 0, m4 = 0;
+    double n = 0, mean = 0 /* less origin_ */, m2 = 0, m3 = 0, m4 = 0;
   };
-  static Central of_block(const double* x, int n);
+  Central of_block(const double* x, int n) const;
   static Central merged(const Central& a, const Central& b);
   Central total() const;
 
+  double origin_ = 0;  // the first sample
+  bool started_ = false;
   Central done_;
   double pending_[kBlock];
   int pending_count_ = 0;

@@ -1,15 +1,10 @@
 #include "libchar/log/binary_rows.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <future>
 
 #include "libchar/core/error.hpp"
@@ -18,39 +13,6 @@
 #include "libchar/log/column_choice.hpp"
 
 namespace libchar {
-
-BinaryFile::BinaryFile(std::string path) : path_(std::move(path)) {
-  const auto fail = [&](const char* code, std::string what, std::string hint) { throw Error({ErrorKind::input, code, path_, std::move(what), "", std::move(hint)}); };
-  struct stat status {};
-  // Looked at before it is opened: opening a pipe would wait for its writer.
-  if (::stat(path_.c_str(), &status) != 0) fail("E0302", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
-  if (S_ISDIR(status.st_mode)) fail("E0303", "is a folder, not a log", "");
-  if (!S_ISREG(status.st_mode)) fail("E0304", "is not a regular file; binary formats need one", "copy it to a file first");
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor_ < 0) fail("E0302", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
-  size_ = static_cast<std::uint64_t>(status.st_size);
-  ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
-}
-
-BinaryFile::~BinaryFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-void BinaryFile::read(std::uint64_t offset, std::span<std::byte> to) const {
-  for (std::size_t done = 0; done < to.size();) {
-    const ssize_t n = ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw Error({ErrorKind::input, "E0305", fmt::format("{} (byte {})", path_, offset + done), fmt::format("cannot be read: {}", std::strerror(errno)), "", ""});
-    if (n == 0) throw Error({ErrorKind::input, "E0306", fmt::format("{} (byte {})", path_, offset + done), "became shorter while it was read", "", "read a copy that nobody writes to"});
-    done += static_cast<std::size_t>(n);
-  }
-}
-
-std::string BinaryFile::head(std::size_t count) const {
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(count, size_)), '\0');
-  read(0, std::as_writable_bytes(std::span(bytes)));
-  return bytes;
-}
 
 namespace {
 
@@ -64,8 +26,14 @@ struct Wanted {
 
 class BinaryRows final : public RowSource {
  public:
-  BinaryRows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info, const ReadOptions& options)
-      : file_(std::move(file)), layout_(std::move(layout)), info_(std::move(info)), hash_(options.hash) {
+  BinaryRows(std::unique_ptr<BinaryFile> file,
+             BinaryLayout layout,
+             LogInfo info,
+             const ReadOptions& options)
+      : file_(std::move(file)),
+        layout_(std::move(layout)),
+        info_(std::move(info)),
+        hash_(options.hash) {
     std::vector<std::string> names;
     for (const BinaryColumn& column : layout_.columns) names.push_back(column.name);
     const ColumnChoice choice = choose_columns(names, layout_.named, options, file_->path());
@@ -73,16 +41,21 @@ class BinaryRows final : public RowSource {
     for (const std::size_t i : choice.values) {
       const BinaryColumn& column = layout_.columns[i];
       values_.push_back({column, {}});
-      info_.channels.push_back({column.name, column.unit, !is_float(column.number.type) && column.scale == 1 && column.offset == 0});
+      info_.channels.push_back(
+          {column.name,
+           column.unit,
+           !is_float(column.number.type) && column.scale == 1 && column.offset == 0});
       row_bytes += size_of(column.number.type);
     }
-    if (layout_.rows == 0) throw Error({ErrorKind::input, "E0313", file_->path(), "holds no samples", "", ""});
+    if (layout_.rows == 0)
+      throw Error({ErrorKind::input, "E0313", file_->path(), "holds no samples", "", ""});
     if (choice.time) {
       time_ = layout_.columns[*choice.time];
       row_bytes += size_of(time_->number.type);
     }
     if (!layout_.column_major) row_bytes = layout_.columns.front().stride;
-    rows_per_block_ = std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
+    rows_per_block_ =
+        std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
     info_.file = file_->path();
     info_.bytes = file_->size();
     info_.rows = layout_.rows;
@@ -106,24 +79,28 @@ class BinaryRows final : public RowSource {
       warnings.merge(layout_.warnings);
       start_hash();
     }
-    block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(rows_per_block_, layout_.rows - next_row_));
+    block.rows = static_cast<std::size_t>(
+        std::min<std::uint64_t>(rows_per_block_, layout_.rows - next_row_));
     block.columns.resize(values_.size());
     block.time_ns.clear();
     block.first_line = 0;
     block.line_offset.clear();
     if (block.rows == 0) return false;
     if (!layout_.column_major) read_interleaved(block.rows);
-    for (std::size_t c = 0; c < values_.size(); ++c) read_values(values_[c], block.columns[c], block.rows, warnings);
+    for (std::size_t c = 0; c < values_.size(); ++c)
+      read_values(values_[c], block.columns[c], block.rows, warnings);
     if (time_) read_stamps(block, warnings);
     next_row_ += rows_in_file_block_;
-    bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_ : layout_.data_byte + next_row_ * stride();
+    bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_
+                                       : layout_.data_byte + next_row_ * stride();
     if (next_row_ == layout_.rows) bytes_read_ = bytes_total();
     return true;
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
     const BinaryColumn& column = values_.front().column;
-    return fmt::format("row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
+    return fmt::format(
+        "row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
   }
 
   std::string sha256() override {
@@ -141,14 +118,16 @@ class BinaryRows final : public RowSource {
     return bytes;
   }
 
-  // The digest is of the whole file in its own order, so it is taken beside the reading, from pages the system has cached.
+  // The digest is of the whole file in its own order, so it is taken beside the reading, from pages
+  // the system has cached.
   void start_hash() {
     if (!hash_ || hashing_.valid()) return;
     hashing_ = std::async(std::launch::async, [this] {
       Sha256 sha;
       std::vector<std::byte> piece(std::size_t{1} << 20U);
       for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
-        const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
+        const auto n =
+            static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
         file_->read(at, std::span(piece).first(n));
         sha.update({reinterpret_cast<const char*>(piece.data()), n});
         at += n;
@@ -171,43 +150,61 @@ class BinaryRows final : public RowSource {
   }
 
   std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
-    return fmt::format("row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
+    return fmt::format(
+        "row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
   }
 
   void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Warnings& warnings) {
     const BinaryColumn& column = wanted.column;
     out.resize(rows);
     rows_in_file_block_ = rows;
-    const std::uint64_t rounded = read_numbers(locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
+    const std::uint64_t rounded = read_numbers(
+        locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
     if (rounded > 0)
-      warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded", fmt::format("{} from row {}", column.name, next_row_), rounded);
+      warnings.add("rounded_integer",
+                   "64-bit integers above 2^53 do not fit a double and were rounded",
+                   fmt::format("{} from row {}", column.name, next_row_),
+                   rounded);
     probe_byte_order(wanted, out, warnings);
     if (is_float(column.number.type)) drop_non_finite(column, out, warnings);
-    if (column.scale != 1) for (double& x : out) x *= column.scale;
-    if (column.offset != 0) for (double& x : out) x += column.offset;
+    if (column.scale != 1)
+      for (double& x : out) x *= column.scale;
+    if (column.offset != 0)
+      for (double& x : out) x += column.offset;
     if (column.scale != 1 || column.offset != 0) drop_non_finite(column, out, warnings);
   }
 
   // Infinity is no sample; every NaN becomes the one that means "missing".
-  void drop_non_finite(const BinaryColumn& column, std::vector<double>& out, Warnings& warnings) const {
+  void drop_non_finite(const BinaryColumn& column,
+                       std::vector<double>& out,
+                       Warnings& warnings) const {
     std::size_t odd = 0;
     for (const double x : out) odd += !(std::abs(x) <= std::numeric_limits<double>::max());
     if (odd == 0) return;
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (std::isfinite(out[i])) continue;
-      if (std::isinf(out[i])) warnings.add("infinite_value", "infinite values count as missing", place_of(column, next_row_ + i));
+      if (std::isinf(out[i]))
+        warnings.add(
+            "infinite_value", "infinite values count as missing", place_of(column, next_row_ + i));
       out[i] = kMissing;
     }
   }
 
   void probe_byte_order(Wanted& wanted, const std::vector<double>& out, Warnings& warnings) const {
-    if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 || !is_float(wanted.column.number.type)) return;
-    const std::size_t missing = static_cast<std::size_t>(std::min<std::uint64_t>(kOrderProbe, layout_.rows)) - wanted.probe.size();
-    wanted.probe.insert(wanted.probe.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(std::min(missing, out.size())));
+    if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 ||
+        !is_float(wanted.column.number.type))
+      return;
+    const std::size_t missing =
+        static_cast<std::size_t>(std::min<std::uint64_t>(kOrderProbe, layout_.rows)) -
+        wanted.probe.size();
+    wanted.probe.insert(wanted.probe.end(),
+                        out.begin(),
+                        out.begin() + static_cast<std::ptrdiff_t>(std::min(missing, out.size())));
     if (wanted.probe.size() < std::min<std::uint64_t>(kOrderProbe, layout_.rows)) return;
     if (looks_byte_swapped(wanted.probe, wanted.column.number.type)) {
       warnings.add("implausible_magnitude",
-                   fmt::format("values as small as 1e-100 or as large as 1e100 that would be ordinary in {}-endian order: is the byte order right?",
+                   fmt::format("values as small as 1e-100 or as large as 1e100 that would be "
+                               "ordinary in {}-endian order: is the byte order right?",
                                wanted.column.number.big_endian ? "little" : "big"),
                    "field " + wanted.column.name);
     }
@@ -217,19 +214,30 @@ class BinaryRows final : public RowSource {
   void settle_time_unit(const ReadOptions& options) {
     TimeBase& time = info_.time;
     time.column = time_->name;
-    time.unit = options.time_unit != "auto" ? options.time_unit : nanoseconds_in(time_->unit) != 0 ? time_->unit : time_unit_of_name(time_->name);
+    time.unit = options.time_unit != "auto"        ? options.time_unit
+                : nanoseconds_in(time_->unit) != 0 ? time_->unit
+                                                   : time_unit_of_name(time_->name);
     if (time.unit.empty()) {
       const std::size_t rows = static_cast<std::size_t>(std::min<std::uint64_t>(layout_.rows, 2));
       std::vector<double> first(rows);
-      std::vector<std::byte> bytes(static_cast<std::size_t>(time_->stride) * (rows - 1) + size_of(time_->number.type));
+      std::vector<std::byte> bytes(static_cast<std::size_t>(time_->stride) * (rows - 1) +
+                                   size_of(time_->number.type));
       file_->read(time_->first_byte, bytes);
       read_numbers(bytes.data(), static_cast<std::size_t>(time_->stride), time_->number, first);
-      time.unit = guess_time_unit(first.front(), first.back() - first.front(), !is_float(time_->number.type));
+      time.unit = guess_time_unit(
+          first.front(), first.back() - first.front(), !is_float(time_->number.type));
       time.unit_guessed = true;
-      info_.guesses.push_back(fmt::format("time unit: {}, from the size of the stamps in {}", time.unit, printable(time.column)));
+      info_.guesses.push_back(fmt::format(
+          "time unit: {}, from the size of the stamps in {}", time.unit, printable(time.column)));
     }
     nanoseconds_ = nanoseconds_in(time.unit);
-    if (nanoseconds_ == 0) throw Error({ErrorKind::usage, "E0314", file_->path(), "the time unit is none of s, ms, us, ns", time.unit, ""});
+    if (nanoseconds_ == 0)
+      throw Error({ErrorKind::usage,
+                   "E0314",
+                   file_->path(),
+                   "the time unit is none of s, ms, us, ns",
+                   time.unit,
+                   ""});
   }
 
   void read_stamps(RowBlock& block, Warnings& warnings) {
@@ -238,13 +246,20 @@ class BinaryRows final : public RowSource {
     const std::byte* first = locate(column, block.rows);
     const auto stride = static_cast<std::size_t>(column.stride);
     const auto refuse = [&](std::size_t i, double got) {
-      throw Error({ErrorKind::input, "E0315", fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)), "a time stamp does not fit 64-bit nanoseconds", shortest(got), "is the time unit right? --time-unit"});
+      throw Error({ErrorKind::input,
+                   "E0315",
+                   fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
+                   "a time stamp does not fit 64-bit nanoseconds",
+                   shortest(got),
+                   "is the time unit right? --time-unit"});
     };
     if (!is_float(column.number.type)) {
-      if (const auto bad = read_integers(first, stride, column.number, block.time_ns)) refuse(*bad, 1.8e19);
+      if (const auto bad = read_integers(first, stride, column.number, block.time_ns))
+        refuse(*bad, 1.8e19);
       for (std::size_t i = 0; i < block.rows; ++i) {
         const std::int64_t stamp = block.time_ns[i];
-        if (__builtin_mul_overflow(stamp, nanoseconds_, &block.time_ns[i])) refuse(i, static_cast<double>(stamp));
+        if (__builtin_mul_overflow(stamp, nanoseconds_, &block.time_ns[i]))
+          refuse(i, static_cast<double>(stamp));
       }
       return;
     }
@@ -255,14 +270,17 @@ class BinaryRows final : public RowSource {
       if (std::isfinite(stamps_[i]) && !(std::abs(ns) < 9.2e18)) refuse(i, stamps_[i]);
     }
     drop_rows_without_stamp(block, warnings);
-    for (std::size_t i = 0; i < block.rows; ++i) block.time_ns[i] = std::llround(stamps_[i] * static_cast<double>(nanoseconds_));
+    for (std::size_t i = 0; i < block.rows; ++i)
+      block.time_ns[i] = std::llround(stamps_[i] * static_cast<double>(nanoseconds_));
   }
 
   void drop_rows_without_stamp(RowBlock& block, Warnings& warnings) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < block.rows; ++i) {
       if (!std::isfinite(stamps_[i])) {
-        warnings.add("missing_timestamp", "rows without a time stamp were left out", place_of(*time_, next_row_ + i));
+        warnings.add("missing_timestamp",
+                     "rows without a time stamp were left out",
+                     place_of(*time_, next_row_ + i));
         continue;
       }
       for (auto& samples : block.columns) samples[kept] = samples[i];
@@ -291,7 +309,10 @@ class BinaryRows final : public RowSource {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info, const ReadOptions& options) {
+std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file,
+                                            BinaryLayout layout,
+                                            LogInfo info,
+                                            const ReadOptions& options) {
   return std::make_unique<BinaryRows>(std::move(file), std::move(layout), std::move(info), options);
 }
 

@@ -30,23 +30,32 @@ std::pair<std::string, std::string> split_unit(std::string_view name) {
   return {stem, text.substr(at + 1)};
 }
 
-std::optional<std::size_t> find_column(const std::vector<std::string>& names, const std::string& wanted) {
+std::optional<std::size_t> find_column(const std::vector<std::string>& names,
+                                       const std::string& wanted) {
   const auto found = std::find(names.begin(), names.end(), wanted);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   if (wanted.size() < 2 || wanted[0] != 'c') return std::nullopt;
   std::size_t index = 0;
-  const auto [end, status] = std::from_chars(wanted.data() + 1, wanted.data() + wanted.size(), index);
-  const bool position = status == std::errc() && end == wanted.data() + wanted.size() && index < names.size();
+  const auto [end, status] =
+      std::from_chars(wanted.data() + 1, wanted.data() + wanted.size(), index);
+  const bool position =
+      status == std::errc() && end == wanted.data() + wanted.size() && index < names.size();
   return position ? std::optional(index) : std::nullopt;
 }
 
-[[noreturn]] void refuse_unknown(const std::vector<std::string>& names, const std::string& wanted, const std::string& what, const std::string& file) {
+[[noreturn]] void refuse_unknown(const std::vector<std::string>& names,
+                                 const std::string& wanted,
+                                 const std::string& what,
+                                 const std::string& file) {
   std::string hint;
   if (const auto near = nearest(wanted, names)) {
     hint = fmt::format("did you mean {}?", *near);
   } else {
     const std::size_t shown = std::min<std::size_t>(names.size(), 12);
-    hint = fmt::format("it has {}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "), shown < names.size() ? ", …" : "");
+    hint = fmt::format(
+        "it has {}{}",
+        fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+        shown < names.size() ? ", …" : "");
   }
   throw Error({ErrorKind::usage, "E0310", file, "has no " + what, wanted, hint});
 }
@@ -55,9 +64,12 @@ std::optional<std::size_t> find_column(const std::vector<std::string>& names, co
 
 bool is_time_name(std::string_view name) {
   static const std::vector<std::string> kStems = {"t", "time", "timestamp", "stamp", "timestamps"};
-  const auto known = [&](const std::string& text) { return std::find(kStems.begin(), kStems.end(), text) != kStems.end(); };
+  const auto known = [&](const std::string& text) {
+    return std::find(kStems.begin(), kStems.end(), text) != kStems.end();
+  };
   const auto [stem, unit] = split_unit(name);
-  return known(lower(name)) || (known(stem) && (unit.empty() || nanoseconds_in(unit) != 0 || unit == "sec" || unit == "stamp"));
+  return known(lower(name)) || (known(stem) && (unit.empty() || nanoseconds_in(unit) != 0 ||
+                                                unit == "sec" || unit == "stamp"));
 }
 
 std::string time_unit_of_name(std::string_view name) {
@@ -85,7 +97,10 @@ std::string guess_time_unit(double first, double step, bool integer) {
   return step > 1 || size > 2e9 ? "ms" : "s";
 }
 
-ColumnChoice choose_columns(const std::vector<std::string>& names, bool named, const ReadOptions& options, const std::string& file) {
+ColumnChoice choose_columns(const std::vector<std::string>& names,
+                            bool named,
+                            const ReadOptions& options,
+                            const std::string& file) {
   ColumnChoice choice;
   if (options.time_column == "auto") {
     if (named) {
@@ -94,19 +109,27 @@ ColumnChoice choose_columns(const std::vector<std::string>& names, bool named, c
     }
   } else if (options.time_column != "none") {
     choice.time = find_column(names, options.time_column);
-    if (!choice.time) refuse_unknown(names, options.time_column, "column of this name for the time", file);
+    if (!choice.time)
+      refuse_unknown(names, options.time_column, "column of this name for the time", file);
   }
   std::vector<bool> wanted(names.size(), options.channels.empty());
   for (const std::string& name : options.channels) {
     const auto index = find_column(names, name);
     if (!index) refuse_unknown(names, name, "channel of this name", file);
     if (index == choice.time)
-      throw Error({ErrorKind::usage, "E0311", file, "the time column cannot be a channel too", name, "--time-column none reads it as a channel"});
+      throw Error({ErrorKind::usage,
+                   "E0311",
+                   file,
+                   "the time column cannot be a channel too",
+                   name,
+                   "--time-column none reads it as a channel"});
     wanted[*index] = true;
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     if (wanted[i] && choice.time != i) choice.values.push_back(i);
-  if (choice.values.empty()) throw Error({ErrorKind::input, "E0312", file, "has no channel besides its time column", "", ""});
+  if (choice.values.empty())
+    throw Error(
+        {ErrorKind::input, "E0312", file, "has no channel besides its time column", "", ""});
   return choice;
 }
 

@@ -16,9 +16,13 @@ struct ColumnChoice {
   std::optional<std::size_t> time;
 };
 
-/// `named`: the names were read from the file, so that one called t, time or timestamp is the time column unless the options
-/// say otherwise. Throws Error(usage) for an unknown name, with the nearest known one.
-ColumnChoice choose_columns(const std::vector<std::string>& names, bool named, const ReadOptions& options, const std::string& file);
+/// `named`: the names were read from the file, so that one called t, time or timestamp is the time
+/// column unless the options say otherwise. Throws Error(usage) for an unknown name, with the
+/// nearest known one.
+ColumnChoice choose_columns(const std::vector<std::string>& names,
+                            bool named,
+                            const ReadOptions& options,
+                            const std::string& file);
 
 /// Does a name say "time" ("t", "time_us", "Timestamp [ns]")?
 bool is_time_name(std::string_view name);

@@ -44,9 +44,9 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
-    room_ = workers_.size() + 2;
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;
@@ -82,6 +82,18 @@ class CsvSource final : public RowSource {
                      "",
                      "--channels reads only the columns named there"});
     warnings.merge(std::exchange(pending_, {}));
+    add(warnings, "blank_line", "blank lines skipped", blank_);
+    add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
+    add(warnings, "repeated_header", "repeated header lines skipped", repeated_);
+    add(warnings,
+        "mixed_line_ends",
+        "line ends of another kind than the first, accepted",
+        mixed_end_);
+    add(warnings, "infinite_value", "infinities, taken as missing samples", infinite_);
+    add(warnings,
+        "number_out_of_range",
+        "numbers out of the range of a double, taken as missing samples",
+        overflow_);
     if (missing_.count > 0) {
       std::string message = "empty or NaN cells, taken as missing samples (";
       std::size_t listed = 0;
@@ -206,51 +218,39 @@ class CsvSource final : public RowSource {
                  near ? "did you mean " + *near + "?" : "inspect lists the channels"});
   }
 
-  void add(Warnings& warnings,
-           std::string_view code,
-           std::string_view message,
-           const Tally& tally,
-           std::uint64_t base = 0) const {
-    for (std::size_t i = 0; i < tally.spots.size(); ++i)
-      warnings.add(code, message, place_name(base + tally.spots[i].line, tally.spots[i].column), 1);
+  static void add(Warnings& warnings,
+                  std::string_view code,
+                  std::string_view message,
+                  const Tally& tally) {
+    for (const Spot& spot : tally.spots)
+      warnings.add(code, message, place_name(spot.line, spot.column), 1);
     if (tally.count > tally.spots.size())
       warnings.add(code, message, "", tally.count - tally.spots.size());
+  }
+
+  // From lines of the chunk to lines of the file.
+  void collect(Tally& sum, const Tally& part) const {
+    for (const Spot& spot : part.spots) sum.add(next_line_ + spot.line, spot.column);
+    sum.count += part.count - part.spots.size();
   }
 
   void account(Warnings& warnings) {
     ParsedChunk& chunk = current_;
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
-    add(warnings, "blank_line", "blank lines skipped", chunk.blank, next_line_);
-    add(warnings,
-        "comment_line",
-        "comment lines between the rows skipped",
-        chunk.comment,
-        next_line_);
-    add(warnings, "repeated_header", "repeated header lines skipped", chunk.repeated, next_line_);
-    add(warnings,
-        "mixed_line_ends",
-        "line ends of another kind than the first, accepted",
-        chunk.mixed_end,
-        next_line_);
-    add(warnings,
-        "infinite_value",
-        "infinities, taken as missing samples",
-        chunk.infinite,
-        next_line_);
-    add(warnings,
-        "number_out_of_range",
-        "numbers out of the range of a double, taken as missing samples",
-        chunk.overflow,
-        next_line_);
+    collect(blank_, chunk.blank);
+    collect(comment_, chunk.comment);
+    collect(repeated_, chunk.repeated);
+    collect(mixed_end_, chunk.mixed_end);
+    collect(infinite_, chunk.infinite);
+    collect(overflow_, chunk.overflow);
+    collect(missing_, chunk.missing);
     if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
       cr_noted_ = true;
       warnings.add("carriage_return_line_ends",
                    "lines end in a lone carriage return (old Macintosh)",
                    place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
     }
-    for (const Spot& spot : chunk.missing.spots) missing_.add(next_line_ + spot.line, spot.column);
-    missing_.count += chunk.missing.count - chunk.missing.spots.size();
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       words_per_channel_[c] += chunk.words_per_channel[c];
@@ -403,7 +403,7 @@ class CsvSource final : public RowSource {
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Fault> fault_;
-  Tally missing_;
+  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, missing_;
   std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
   std::vector<std::uint32_t> fractional_;
   Account total_;

@@ -197,7 +197,7 @@ struct Study {
     while (offset < head.size() && sample.size() < kSample) {
       Line line = line_at(head, offset, number);
       if (line.end == LineEnd::none && complete_only) {
-        if (sample.empty() || line.text.size() > kMaxLine)
+        if (sample.empty())  // else the row parser tells
           fail(line,
                0,
                "E0305",
@@ -416,11 +416,17 @@ struct Study {
       warn_trailing(sample[1], split(sample[1].text, dialect.delimiter).back().offset);
       dialect.trailing_delimiter = true;
     }
+    if (fields.size() > kMaxColumns)
+      fail(
+          line, 0, "E0305", fmt::format("{} columns, the limit is {}", fields.size(), kMaxColumns));
+    std::size_t counted = 0, newline = std::string_view::npos;
+    std::uint64_t lines = 0;
     for (const Field& field : fields) {
-      const std::string_view before = text.substr(0, field.offset);
-      const std::size_t newline = before.find_last_of("\r\n");
-      const std::uint64_t lines =
-          static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n'));
+      for (; counted < field.offset; ++counted)
+        if (text[counted] == '\n' || text[counted] == '\r') {
+          newline = counted;
+          lines += text[counted] == '\n';
+        }
       const std::size_t column =
           newline == std::string_view::npos ? field.offset + indent : field.offset - newline - 1;
       dialect.columns.push_back(

@@ -52,6 +52,7 @@ Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
   }
   regular_ = known && S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (size_ > 0) block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
 }
 
 Feed::~Feed() {
@@ -140,15 +141,18 @@ void Feed::drop_nul_tail(RawChunk& chunk) {
   while (kept > 0 && chunk.bytes[kept - 1] == '\0') --kept;
   if (kept == chunk.size) return;
   std::vector<char> buffer(std::size_t{1} << 18U);
-  while (!ended_) {
-    const std::size_t n = read_some(buffer.data(), buffer.size());
+  std::uint64_t more = 0;
+  while (!ended_ || taken_ < head_.size()) {
+    std::size_t from_head = 0;
+    const std::size_t n = fill(buffer.data(), buffer.size(), from_head);
     // Something stands behind the NULs: the row parser reports the first of them.
     if (std::any_of(buffer.data(), buffer.data() + n, [](char c) { return c != '\0'; })) return;
-    chunk.nuls_after += n;
+    chunk.nuls_after += n - from_head;
+    more += n;
   }
   std::size_t line = kept;
   while (line > 0 && chunk.bytes[line - 1] != '\n' && chunk.bytes[line - 1] != '\r') --line;
-  nuls_ = chunk.size - kept + chunk.nuls_after;
+  nuls_ = chunk.size - kept + more;
   cut_bytes_ = kept - line;
   chunk.size = line;
 }

@@ -11,7 +11,8 @@
 namespace libchar {
 namespace {
 
-// Channels are measured beside each other; each by one thread, so that nothing depends on their number.
+// Channels are measured beside each other; each by one thread, so that nothing depends on their
+// number.
 class Meters final : public BlockSink {
  public:
   explicit Meters(int threads) : arena_(threads > 0 ? threads : tbb::task_arena::automatic) {}
@@ -19,7 +20,9 @@ class Meters final : public BlockSink {
   void begin(const LogInfo& so_far) override { meters_.resize(so_far.channels.size()); }
   void block(const SampleBlock& samples) override {
     arena_.execute([&] {
-      tbb::parallel_for(std::size_t{0}, meters_.size(), [&](std::size_t c) { meters_[c].push({samples.channels[c], samples.rows}); });
+      tbb::parallel_for(std::size_t{0}, meters_.size(), [&](std::size_t c) {
+        meters_[c].push({samples.channels[c], samples.rows});
+      });
     });
   }
   ChannelQuality quality(std::size_t channel) const { return meters_[channel].finish(); }
@@ -30,7 +33,9 @@ class Meters final : public BlockSink {
 };
 
 // JSON has no infinity: a channel without a sample has no extremes.
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json channel_json(const Channel& channel, const ChannelQuality& q) {
   Json out;
@@ -64,16 +69,22 @@ Json recording_json(const Inspection& inspection) {
   out["rows"] = info.rows;
   out["samples"] = info.samples;
   out["channels"] = Json::array();
-  for (std::size_t c = 0; c < info.channels.size(); ++c) out["channels"].push_back(channel_json(info.channels[c], inspection.quality[c]));
+  for (std::size_t c = 0; c < info.channels.size(); ++c)
+    out["channels"].push_back(channel_json(info.channels[c], inspection.quality[c]));
   out["rate_hz"] = time.rate_hz > 0 ? number_or_null(time.rate_hz) : Json(nullptr);
   out["jitter_s"] = number_or_null(time.jitter_s);
   out["max_deviation_s"] = number_or_null(time.max_deviation_s);
   out["gaps"] = time.gaps;
   out["missing_samples"] = time.missing_samples;
-  out["time"] = {{"column", printable(time.column)}, {"unit", time.unit}, {"unit_guessed", time.unit_guessed}, {"from_stamps", time.from_stamps}, {"start_ns", time.start_ns ? Json(*time.start_ns) : Json(nullptr)}};
+  out["time"] = {{"column", printable(time.column)},
+                 {"unit", time.unit},
+                 {"unit_guessed", time.unit_guessed},
+                 {"from_stamps", time.from_stamps},
+                 {"start_ns", time.start_ns ? Json(*time.start_ns) : Json(nullptr)}};
   out["repairs"] = Json::object();
   for (const Warning& w : info.warnings.list()) out["repairs"][w.code] = w.count;
-  for (const auto& [key, texts] : {std::pair{"guesses", &info.guesses}, std::pair{"dialect", &info.dialect}}) {
+  for (const auto& [key, texts] :
+       {std::pair{"guesses", &info.guesses}, std::pair{"dialect", &info.dialect}}) {
     out[key] = Json::array();
     for (const std::string& text : *texts) out[key].push_back(printable(text));
   }
@@ -81,7 +92,8 @@ Json recording_json(const Inspection& inspection) {
 }
 
 std::string duration(double seconds) {
-  const std::string text = seconds >= 100 ? fmt::format("{:.0f}", seconds) : significant(seconds, 4);
+  const std::string text =
+      seconds >= 100 ? fmt::format("{:.0f}", seconds) : significant(seconds, 4);
   return text + " s";
 }
 
@@ -91,7 +103,9 @@ std::string small_time(double seconds) {
   return seconds < 1 ? fmt::format("{:.2g} ms", seconds * 1e3) : fmt::format("{:.2g} s", seconds);
 }
 
-std::string plural(std::uint64_t n, const std::string& noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
+std::string plural(std::uint64_t n, const std::string& noun) {
+  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
 
 }  // namespace
 
@@ -101,14 +115,16 @@ Inspection inspect(const std::string& path, const ReadOptions& options, Progress
   inspection.info = read_log(path, options, meters, progress);
   for (std::size_t c = 0; c < inspection.info.channels.size(); ++c) {
     inspection.quality.push_back(meters.quality(c));
-    quality_warnings(inspection.info.channels[c], inspection.quality.back(), inspection.info.warnings);
+    quality_warnings(
+        inspection.info.channels[c], inspection.quality.back(), inspection.info.warnings);
   }
   return inspection;
 }
 
 std::string summary_line(const LogInfo& info) {
   const TimeBase& time = info.time;
-  std::string line = fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
+  std::string line =
+      fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {
     const bool usual = time.rate_hz >= 0.1 && time.rate_hz < 1e6;
     line += usual ? fmt::format("{:.3f} Hz", time.rate_hz) : significant(time.rate_hz, 6) + " Hz";
@@ -118,7 +134,8 @@ std::string summary_line(const LogInfo& info) {
     line += plural(info.samples, "sample") + ", rate unknown";
   }
   line += ", " + plural(time.gaps, "gap");
-  if (time.missing_samples > 0) line += fmt::format(" ({})", plural(time.missing_samples, "missing sample"));
+  if (time.missing_samples > 0)
+    line += fmt::format(" ({})", plural(time.missing_samples, "missing sample"));
   return line;
 }
 
@@ -127,7 +144,8 @@ Json inspection_json(const std::vector<Inspection>& inspections) {
   document["format"] = "inspect";
   document["version"] = 1;
   document["recordings"] = Json::array();
-  for (const Inspection& inspection : inspections) document["recordings"].push_back(recording_json(inspection));
+  for (const Inspection& inspection : inspections)
+    document["recordings"].push_back(recording_json(inspection));
   return document;
 }
 

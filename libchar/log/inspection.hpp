@@ -17,7 +17,9 @@ struct Inspection {
 };
 
 /// Reads a log once, in constant memory.
-Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
+Inspection inspect(const std::string& path,
+                   const ReadOptions& options = {},
+                   Progress& progress = no_progress());
 
 /// "euroc.csv: 6 channels, 200.000 Hz (jitter 0.8 us), 7200 s, 0 gaps".
 std::string summary_line(const LogInfo& info);

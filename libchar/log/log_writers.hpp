@@ -11,15 +11,21 @@
 
 namespace libchar {
 
-std::unique_ptr<LogWriter> write_csv(const std::string& path, const LogInfo& info, const WriteOptions& options);
-std::unique_ptr<LogWriter> write_npy(const std::string& path, const LogInfo& info, const WriteOptions& options);
-std::unique_ptr<LogWriter> write_raw(const std::string& path, const LogInfo& info, const WriteOptions& options);
+std::unique_ptr<LogWriter> write_csv(const std::string& path,
+                                     const LogInfo& info,
+                                     const WriteOptions& options);
+std::unique_ptr<LogWriter> write_npy(const std::string& path,
+                                     const LogInfo& info,
+                                     const WriteOptions& options);
+std::unique_ptr<LogWriter> write_raw(const std::string& path,
+                                     const LogInfo& info,
+                                     const WriteOptions& options);
 
 /// Are the channels called c0, c1… in this order, as a reader calls channels without names?
 bool unnamed(const std::vector<Channel>& channels);
 
-/// Numbers of one type, row by row or column by column. Columns of unknown length are kept in a nameless file in the target's
-/// folder until their end is known.
+/// Numbers of one type, row by row or column by column. Columns of unknown length are kept in a
+/// nameless file in the target's folder until their end is known.
 class ValueWriter {
  public:
   ValueWriter(WholeFile& file, std::size_t channels, NumberFormat number, bool column_major);
@@ -42,9 +48,10 @@ class ValueWriter {
   bool column_major_;
   int spool_ = -1;
   std::uint64_t rows_ = 0, rounded_ = 0;
-  std::vector<std::byte> bytes_;                    // row by row: the block being encoded
-  std::vector<std::vector<std::byte>> pending_;     // column by column: encoded, not yet in the spool
-  std::vector<std::uint64_t> stretch_bytes_;        // length of each stretch in the spool; one stretch a column and spill
+  std::vector<std::byte> bytes_;                 // row by row: the block being encoded
+  std::vector<std::vector<std::byte>> pending_;  // column by column: encoded, not yet in the spool
+  std::vector<std::uint64_t>
+      stretch_bytes_;  // length of each stretch in the spool; one stretch a column and spill
 };
 
 }  // namespace libchar

@@ -46,11 +46,11 @@ constexpr Gather make_gather() {
 
 constexpr Gather kGather = make_gather();
 
-/// Offsets of every delimiter and line feed of `text` into `positions` (grown as needed); returns their number.
-__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t find_separators(std::string_view text, char delimiter, std::vector<std::uint32_t>& positions) {
+/// Offsets of the delimiters and line feeds of `text` into `positions` (grown as needed), until there are `enough`; returns their number.
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t find_separators(std::string_view text, char delimiter, std::size_t enough, std::vector<std::uint32_t>& positions) {
   const __m256i wanted = _mm256_set1_epi8(delimiter), feed = _mm256_set1_epi8('\n');
   std::size_t count = 0;
-  for (std::size_t at = 0; at < text.size(); at += 64) {
+  for (std::size_t at = 0; at < text.size() && count < enough; at += 64) {
     if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
     std::uint64_t mask = 0;
     for (unsigned half = 0; half < 2; ++half) {
@@ -98,7 +98,7 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline Field read
   const auto is_digit = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, vector_of(kNine)), digit)));
   Field field;
   // Branches that are never taken in a plain file are cheaper than one flag put together from four.
-  if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside || (points & (points - 1)) != 0 || (is_digit & inside) == 0, 0)) return field;
+  if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside || (points & (points - 1)) != 0 || (is_digit & inside) == 0 || (points != 0 && (points << 1U) > inside), 0)) return field;
   field.plain = true;
   const std::uint32_t point = _tzcnt_u32(points | (std::uint32_t{1} << length));
   field.behind = length - point - static_cast<std::uint32_t>(points != 0);
@@ -119,11 +119,13 @@ struct Slow {
   bool good = false;
 };
 
-// Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite".
+// Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite". Very long fields
+// and numbers beyond 2^53 (integers there may not be exact) are for the general parser to judge.
 __attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
   Slow<double> out;
+  if (end - begin > 64) return out;
   const auto [stop, status] = std::from_chars(begin, end, out.value);
-  out.good = status == std::errc() && stop == end && std::isfinite(out.value);
+  out.good = status == std::errc() && stop == end && std::fabs(out.value) < 0x1p53;
   return out;
 }
 
@@ -142,6 +144,7 @@ struct Column {
   const std::uint32_t* stops;  // of all columns
   std::size_t width, index;
   char delimiter;
+  bool crlf;
 };
 
 /// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the first row that it refuses.
@@ -155,7 +158,10 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_
     const std::size_t from = stop == column.stops ? 0 : stop[-1] + std::size_t{1};
     std::size_t to = *stop;
     if (__builtin_expect(text[to] != separator, 0)) return row;
-    if (kLast) to -= static_cast<std::size_t>(to > from && text[to - 1] == '\r');
+    if (kLast && column.crlf) {
+      if (__builtin_expect(to == from || text[to - 1] != '\r', 0)) return row;
+      --to;
+    }
     const char* const begin = text + from;
     // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
     const std::uint32_t negative = ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
@@ -169,17 +175,23 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) inline std::size_
   return column.index + 1 == column.width ? take_fields<true>(column, first, last, take) : take_fields<false>(column, first, last, take);
 }
 
-__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Column& column, std::size_t first, std::size_t last, double* values) {
-  return take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
+__attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Column& column, std::size_t first, std::size_t last, const PlainColumn& to) {
+  double* const values = to.values;
+  std::uint32_t behind = 0;  // of all fields together
+  const std::size_t taken = take_column(column, first, last, [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field) __attribute__((target("avx2,bmi,bmi2,popcnt"), always_inline)) {
     if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
+      behind |= 1;
       return slow.good;
     }
+    behind |= field.behind;
     const double magnitude = static_cast<double>(field.digits) / kPowers[field.behind];
     values[row] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (std::uint64_t{negative} << 63U));
     return true;
   });
+  if (to.fractional != nullptr) *to.fractional = static_cast<char>(*to.fractional | (behind != 0));
+  return taken;
 }
 
 __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last, const PlainColumn& to) {
@@ -201,17 +213,17 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t check_fields(const C
 
 constexpr std::size_t kBatch = 128;  // rows read column by column while their text is in the first-level cache
 
-PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
+PlainRows parse(std::string_view text, char delimiter, bool crlf, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
   const std::size_t width = columns.size();
-  const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, scratch) / width);
+  const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
   std::size_t good = 0;
   for (std::size_t first = 0; first < rows; first = good) {
     good = std::min(rows, first + kBatch);
     const std::size_t whole = good;
     for (std::size_t c = 0; c < width; ++c) {
-      const Column column{text.data(), scratch.data(), width, c, delimiter};
+      const Column column{text.data(), scratch.data(), width, c, delimiter, crlf};
       switch (columns[c].use) {
-        case PlainColumn::Use::value: good = take_values(column, first, good, columns[c].values); break;
+        case PlainColumn::Use::value: good = take_values(column, first, good, columns[c]); break;
         case PlainColumn::Use::stamp: good = take_stamps(column, first, good, columns[c]); break;
         case PlainColumn::Use::skip: good = check_fields(column, first, good); break;
       }
@@ -223,15 +235,15 @@ PlainRows parse(std::string_view text, char delimiter, std::span<const PlainColu
 
 }  // namespace
 
-PlainRows parse_plain_rows(std::string_view text, char delimiter, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
+PlainRows parse_plain_rows(std::string_view text, char delimiter, bool crlf, std::span<const PlainColumn> columns, std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
   static const bool capable = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
   if (!capable || columns.empty()) return {};
-  return parse(text, delimiter, columns, max_rows, scratch);
+  return parse(text, delimiter, crlf, columns, max_rows, scratch);
 }
 
 #else
 
-PlainRows parse_plain_rows(std::string_view, char, std::span<const PlainColumn>, std::size_t, std::vector<std::uint32_t>&) { return {}; }
+PlainRows parse_plain_rows(std::string_view, char, bool, std::span<const PlainColumn>, std::size_t, std::vector<std::uint32_t>&) { return {}; }
 
 #endif
 

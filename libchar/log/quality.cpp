@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/moments.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -68,6 +67,99 @@ struct Extreme {
   }
 };
 
+constexpr std::size_t kLanes = 8;  // independent partial sums: any vector width gives the same bits
+using Lanes = double[kLanes];
+
+double fold(const Lanes& lane) {
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+// Mean and variance only: sums about the block's first value, blocks merged by Chan's formula
+// (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
+// sample need not pay).
+struct MeanAndSpread {
+  double n = 0, mean = 0, m2 = 0;
+
+  void block(const double* x, std::size_t count) {
+    Lanes sum{}, square{};
+    const double shift = x[0];
+    const std::size_t whole = count - count % kLanes;
+    for (std::size_t i = 0; i < whole; i += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) sum[k] += x[i + k] - shift;
+    for (std::size_t i = whole; i < count; ++i) sum[i % kLanes] += x[i] - shift;
+    const double offset = fold(sum) / static_cast<double>(count);
+    for (std::size_t i = 0; i < whole; i += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const double d = (x[i + k] - shift) - offset;
+        square[k] += d * d;
+      }
+    for (std::size_t i = whole; i < count; ++i) {
+      const double d = (x[i] - shift) - offset;
+      square[i % kLanes] += d * d;
+    }
+    const double other = static_cast<double>(count), total = n + other, d = shift + offset - mean;
+    m2 += fold(square) + d * d * n * other / total;
+    mean += d * other / total;
+    n = total;
+  }
+};
+
+// Raw moments of differences: their mean is next to nothing beside their spread, except for
+// counters.
+struct DifferenceMoments {
+  double n = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
+
+  void block(const double* d, std::size_t count) {
+    Lanes a1{}, a2{}, a3{}, a4{};
+    const std::size_t whole = count - count % kLanes;
+    for (std::size_t i = 0; i < whole; i += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const double v = d[i + k], q = v * v;
+        a1[k] += v;
+        a2[k] += q;
+        a3[k] += q * v;
+        a4[k] += q * q;
+      }
+    for (std::size_t i = whole; i < count; ++i) {
+      const double v = d[i], q = v * v;
+      a1[i % kLanes] += v;
+      a2[i % kLanes] += q;
+      a3[i % kLanes] += q * v;
+      a4[i % kLanes] += q * q;
+    }
+    s1 += fold(a1);
+    s2 += fold(a2);
+    s3 += fold(a3);
+    s4 += fold(a4);
+  }
+  double kurtosis() const {
+    if (n < 4 || !(s2 > 0)) return 3;
+    const double m = s1 / n, v = s2 / n - m * m;
+    const double fourth = s4 / n - 4 * m * s3 / n + 6 * m * m * s2 / n - 3 * m * m * m * m;
+    // A ramp leaves only rounding here, and squares of huge or tiny values leave the range of a
+    // double.
+    if (!(v > 1e-9 * (s2 / n)) || !std::isfinite(fourth) || !std::isnormal(v * v)) return 3;
+    return fourth / (v * v);
+  }
+};
+
+void extremes(const double* x, std::size_t count, double& low, double& high) {
+  Lanes l, h;
+  for (std::size_t k = 0; k < kLanes; ++k) l[k] = h[k] = x[0];
+  const std::size_t whole = count - count % kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes)
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      l[k] = x[i + k] < l[k] ? x[i + k] : l[k];
+      h[k] = x[i + k] > h[k] ? x[i + k] : h[k];
+    }
+  for (std::size_t i = whole; i < count; ++i) {
+    l[0] = std::min(l[0], x[i]);
+    h[0] = std::max(h[0], x[i]);
+  }
+  low = *std::min_element(l, l + kLanes);
+  high = *std::max_element(h, h + kLanes);
+}
+
 // The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing
 // when there is none.
 std::optional<double> grid_step(std::vector<double> values) {
@@ -125,11 +217,12 @@ double tidy(double step) {
 }  // namespace
 
 struct QualityMeter::State {
-  Moments values, differences;
+  MeanAndSpread values;
+  DifferenceMoments differences;
   DistinctValues distinct;
   Extreme top{1}, bottom{-1};
   std::uint64_t missing = 0, run = 0, longest_run = 0;
-  double previous = 0;
+  double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
   bool float32 = true;
   bool any_fraction = false;
@@ -147,9 +240,9 @@ void QualityMeter::State::push(std::span<const double> samples) {
   for (std::size_t done = 0; done < samples.size();) {
     const std::size_t n = std::min(kBlock - used, samples.size() - done);
     const double* const x = samples.data() + done;
-    bool clean = true;
-    for (std::size_t i = 0; i < n; ++i) clean &= x[i] == x[i];
-    if (clean) {
+    int absent = 0;
+    for (std::size_t i = 0; i < n; ++i) absent |= x[i] != x[i];
+    if (absent == 0) {
       std::memcpy(block + used, x, n * sizeof(double));
       std::memset(starts + used, 0, n);
       starts[used] = !joined;
@@ -177,26 +270,30 @@ void QualityMeter::State::push(std::span<const double> samples) {
 void QualityMeter::State::process() {
   if (used == 0) return;
   const std::size_t n = used;
-  values.push({block, n});
-  double low = block[0], high = block[0];
-  for (std::size_t i = 0; i < n; ++i) {
-    low = block[i] < low ? block[i] : low;
-    high = block[i] > high ? block[i] : high;
-  }
+  values.block(block, n);
+  double low = 0, high = 0;
+  extremes(block, n, low, high);
+  minimum = std::min(minimum, low);
+  maximum = std::max(maximum, high);
   double difference[kBlock];
-  difference[0] = starts[0] ? kMissing : block[0] - previous;
+  difference[0] = block[0] - previous;
   for (std::size_t i = 1; i < n; ++i) difference[i] = block[i] - block[i - 1];
-  if (any_start)
-    for (std::size_t i = 0; i < n; ++i) difference[i] = starts[i] ? kMissing : difference[i];
-  differences.push({difference, n});
   runs(difference, n);
+  std::size_t breaks = 0;
+  for (std::size_t i = 0; any_start && i < n; ++i)
+    if (starts[i]) {
+      difference[i] = 0;
+      ++breaks;
+    }
+  differences.block(difference, n);
+  differences.n += static_cast<double>(n - breaks);
   top.block(block, n, high);
   bottom.block(block, n, low);
   if (float32) {
-    bool all = true;
+    int wide = 0;
     for (std::size_t i = 0; i < n; ++i)
-      all &= static_cast<double>(static_cast<float>(block[i])) == block[i];
-    float32 = all;
+      wide |= static_cast<double>(static_cast<float>(block[i])) != block[i];
+    float32 = wide == 0;
   }
   for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(block[i]);
   previous = block[n - 1];
@@ -204,9 +301,9 @@ void QualityMeter::State::process() {
   any_start = false;
 }
 
-// Runs of one value: differences of exactly zero in a row, plus one.
+// Runs of one value: differences of exactly zero in a row, plus one; a missing sample ends a run.
 void QualityMeter::State::runs(const double* difference, std::size_t n) {
-  std::size_t zeros = 0;
+  int zeros = 0;
   for (std::size_t i = 0; i < n; ++i) zeros += difference[i] == 0;
   if (zeros == 0) {
     run = 1;
@@ -214,7 +311,7 @@ void QualityMeter::State::runs(const double* difference, std::size_t n) {
     return;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    run = difference[i] == 0 ? run + 1 : 1;
+    run = difference[i] == 0 && !starts[i] ? run + 1 : 1;
     longest_run = std::max(longest_run, run);
   }
 }
@@ -280,19 +377,18 @@ ChannelQuality QualityMeter::finish() const {
   State state = *state_;
   state.process();
   ChannelQuality q;
-  q.samples = state.values.count();
+  q.samples = static_cast<std::uint64_t>(state.values.n);
   q.missing = state.missing;
   if (q.samples > 0) {
-    q.mean = state.values.mean();
-    q.standard_deviation = state.values.standard_deviation();
-    q.minimum = state.values.minimum();
-    q.maximum = state.values.maximum();
+    q.mean = state.values.mean;
+    if (q.samples > 1) q.standard_deviation = std::sqrt(state.values.m2 / (state.values.n - 1));
+    q.minimum = state.minimum;
+    q.maximum = state.maximum;
   }
   q.distinct_values = state.distinct.values().size();
   q.longest_stuck = state.longest_run;
   if (state.top.value > -state.bottom.value) q.saturated = state.top.in_runs + state.bottom.in_runs;
-  const double kurtosis = state.differences.kurtosis();
-  if (state.differences.count() > 3 && kurtosis > 0) q.difference_kurtosis = kurtosis;
+  q.difference_kurtosis = state.differences.kurtosis();
   q.float32 = q.samples > 0 && state.float32;
   const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
   if (std::isfinite(largest))

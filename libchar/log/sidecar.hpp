@@ -1,5 +1,6 @@
 #pragma once
-// The sidecar FILE.json or FILE.yaml that says what a raw binary file holds (docs/formats.md lists the keys).
+// The sidecar FILE.json or FILE.yaml that says what a raw binary file holds (docs/formats.md lists
+// the keys).
 
 #include <cstdint>
 #include <optional>
@@ -21,17 +22,19 @@ struct Sidecar {
   NumberFormat number;
   std::vector<SidecarChannel> channels;
   bool named = false;
-  double rate_hz = 0;         ///< 0 when not given
-  std::uint64_t offset = 0;   ///< bytes to skip before the first value
+  double rate_hz = 0;        ///< 0 when not given
+  std::uint64_t offset = 0;  ///< bytes to skip before the first value
   std::optional<std::uint64_t> rows;
   std::optional<std::int64_t> t0_ns;
   bool planar = false;
 };
 
-/// Path of the sidecar that stands beside `log`, "" when there is none. Throws Error(input) when there are two.
+/// Path of the sidecar that stands beside `log`, "" when there is none. Throws Error(input) when
+/// there are two.
 std::string find_sidecar(const std::string& log);
 
-/// Reads one sidecar (JSON by the suffix .json, else YAML). Throws Error(input) with the place and the nearest known key.
+/// Reads one sidecar (JSON by the suffix .json, else YAML). Throws Error(input) with the place and
+/// the nearest known key.
 Sidecar read_sidecar(const std::string& path);
 Sidecar parse_sidecar(std::string_view text, const std::string& file, bool json);
 

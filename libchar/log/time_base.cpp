@@ -16,7 +16,8 @@ constexpr std::size_t kLearn = 1025;  // rows whose stamps decide on dt
 constexpr std::size_t kAhead = 16;    // rows looked at before a late stamp is called a gap
 constexpr double kLargestGap = 1e8;   // grid points in one gap
 constexpr std::uint64_t kBackward =
-    64;  // backward rows in a row before the clock is called restarted
+    64;                               // backward rows in a row before the clock is called restarted
+constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
 constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
 constexpr int kRateRun = 8;             // equal odd steps in a row that make a change of rate
 
@@ -300,6 +301,7 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
     }
     dropped_in_a_row_ = 0;
     ++index_;
+    raw_last_ = time[i] + wrap_;
     last_ = stamp;
     have_last_ = true;
     sketch_.add(index_, stamp);
@@ -335,6 +337,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
          "wild time stamp: the distance to the row before does not fit 64-bit nanoseconds",
          "remove the row, or --time-column none --rate HZ");
   if (step == 0) {
+    if (stamp < raw_last_) return backward(front, row, stamp);
     if (coarse_) return Verdict::keep;
     warnings_.add("duplicate_timestamp",
                   "rows with the stamp of the row before: the first is kept",
@@ -344,7 +347,21 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
   if (step < 0) return backward(front, row, stamp);
   watch_rate(front, row, static_cast<double>(step) / dt_);
   const std::int64_t gap = lag(front, row, stamp, ahead);
-  if (gap <= 0) return Verdict::keep;
+  if (gap <= 0) {
+    // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
+    if (static_cast<double>(step) > kWildSteps * dt_)
+      fail(front,
+           row,
+           "E0316",
+           fmt::format("wild time stamp: {} s ahead of the rows around it",
+                       shortest(static_cast<double>(step) * 1e-9)),
+           "remove the row, or --time-column none --rate HZ");
+    warnings_.add("late_stamp",
+                  "stamps far ahead of the rows behind them: the rows are placed on the grid",
+                  place(front, row));
+    stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
+    return Verdict::keep;
+  }
   if (static_cast<double>(gap) > kLargestGap)
     fail(front,
          row,

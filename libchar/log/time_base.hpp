@@ -112,6 +112,7 @@ class TimeGrid {
   double dt_ = 0;           // ns
   std::int64_t limit_ = 0;  // longest regular step, ns
   std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;
+  std::int64_t raw_last_ = 0;     // last_ as the file has it
   bool have_last_ = false;
   std::int64_t index_ = -1;  // grid index of the last row, from the first row of the file
   std::uint64_t delivered_ = 0, used_ = 0, gaps_ = 0, missing_ = 0, dropped_in_a_row_ = 0;

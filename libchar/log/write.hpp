@@ -1,5 +1,6 @@
 #pragma once
-// Writing logs, streaming: the three formats that read.hpp reads. What is written reads back to the same bits.
+// Writing logs, streaming: the three formats that read.hpp reads. What is written reads back to the
+// same bits.
 
 #include <cstdint>
 #include <memory>
@@ -13,11 +14,13 @@
 namespace libchar {
 
 struct WriteOptions {
-  std::string format = "auto";    ///< "auto" (by suffix), "csv", "npy", "raw"
-  std::string dtype = "f64";      ///< npy, raw: "f64" or "f32"
-  std::string order = "interleaved";  ///< raw: "interleaved" or "planar" (npy: C order or Fortran order)
+  std::string format = "auto";  ///< "auto" (by suffix), "csv", "npy", "raw"
+  std::string dtype = "f64";    ///< npy, raw: "f64" or "f32"
+  std::string order =
+      "interleaved";  ///< raw: "interleaved" or "planar" (npy: C order or Fortran order)
   bool big_endian = false;
-  bool time_column = true;        ///< csv: write a first column t[s] (t[ns] when the log starts at an absolute stamp), npy: none
+  bool time_column = true;  ///< csv: write a first column t[s] (t[ns] when the log starts at an
+                            ///< absolute stamp), npy: none
   bool overwrite = false;
 };
 
@@ -25,20 +28,26 @@ struct WriteOptions {
 class LogWriter {
  public:
   virtual ~LogWriter() = default;
-  /// `columns[c]` holds the block of channel c; all of the same length. Missing samples are written as empty cells / NaN.
+  /// `columns[c]` holds the block of channel c; all of the same length. Missing samples are written
+  /// as empty cells / NaN.
   virtual void write(std::span<const std::span<const double>> columns) = 0;
-  /// What only the end of reading knew better (the rate); before finish(). CSV has written its stamps by then and keeps them.
+  /// What only the end of reading knew better (the rate); before finish(). CSV has written its
+  /// stamps by then and keeps them.
   virtual void refine(const LogInfo& info) { static_cast<void>(info); }
   /// Completes and names the file (and its sidecar).
   virtual void finish() = 0;
   /// The files written, the log first.
   virtual std::vector<std::string> files() const = 0;
-  /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for them").
+  /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for
+  /// them").
   virtual std::vector<std::string> losses() const { return {}; }
 };
 
-/// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format or suffix.
-std::unique_ptr<LogWriter> open_log_writer(const std::string& path, const LogInfo& info, const WriteOptions& options = {});
+/// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format
+/// or suffix.
+std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
+                                           const LogInfo& info,
+                                           const WriteOptions& options = {});
 
 /// The format that `path` and `options` ask for: "csv", "npy" or "raw".
 std::string format_to_write(const std::string& path, const WriteOptions& options);

@@ -16,15 +16,22 @@ void refuse_other_sidecar(const std::string& path) {
   for (const char* suffix : {".yaml", ".yml"}) {
     struct stat status {};
     if (::stat((path + suffix).c_str(), &status) == 0)
-      throw Error({ErrorKind::output, "E0509", path + suffix, "is a sidecar of this name already", "", "remove it or choose another name"});
+      throw Error({ErrorKind::output,
+                   "E0509",
+                   path + suffix,
+                   "is a sidecar of this name already",
+                   "",
+                   "remove it or choose another name"});
   }
 }
 
 class RawWriter final : public LogWriter {
  public:
-  RawWriter(const std::string& path, const LogInfo& info, const WriteOptions& options) : file_(path, options.overwrite), beside_(path + ".json", options.overwrite) {
+  RawWriter(const std::string& path, const LogInfo& info, const WriteOptions& options)
+      : file_(path, options.overwrite), beside_(path + ".json", options.overwrite) {
     refuse_other_sidecar(path);
-    sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64, options.big_endian};
+    sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64,
+                       options.big_endian};
     sidecar_.planar = options.order == "planar";
     sidecar_.named = !unnamed(info.channels);
     for (const Channel& channel : info.channels) {
@@ -64,7 +71,9 @@ class RawWriter final : public LogWriter {
 
 }  // namespace
 
-std::unique_ptr<LogWriter> write_raw(const std::string& path, const LogInfo& info, const WriteOptions& options) {
+std::unique_ptr<LogWriter> write_raw(const std::string& path,
+                                     const LogInfo& info,
+                                     const WriteOptions& options) {
   return std::make_unique<RawWriter>(path, info, options);
 }
 

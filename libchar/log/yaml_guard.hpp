@@ -8,9 +8,10 @@
 
 namespace libchar {
 
-/// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys, duplicate keys or second
-/// document; depth <= 64, size <= 16 MiB. A plain scalar that reads as a decimal number becomes one ("010" and "0x10" are
-/// texts, .nan and .inf too). Throws Error(input) with FILE:LINE:COL.
+/// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys,
+/// duplicate keys or second document; depth <= 64, size <= 16 MiB. A plain scalar that reads as a
+/// decimal number becomes one ("010" and "0x10" are texts, .nan and .inf too). Throws Error(input)
+/// with FILE:LINE:COL.
 Json parse_guarded_yaml(std::string_view text, const std::string& file);
 
 }  // namespace libchar

@@ -191,7 +191,8 @@ TEST_CASE("clock recordings against Stable32") {
           worst = std::max(worst, error);
           ++rows;
         }
-        WARN(name << ": " << rows << " rows, worst relative difference " << worst);
+        INFO(name << ": worst relative difference " << worst);
+        CHECK(rows >= 90);
       };
   check_table("clock_cs5071a_vs_hmaser_phase", DataKind::phase, 1e-4, false);
   check_table("clock_ocxo10mhz_freq", DataKind::rate, 2e-3, true);
@@ -223,7 +224,6 @@ TEST_CASE("all 108 published values of the ADIS16405 run") {
   }
   CHECK(rows == 108);
   CHECK(worst <= 1e-5);
-  WARN("108 published values: worst relative difference " << worst);
 }
 
 TEST_CASE("Allan vectors of the fusion oracle to double precision") {

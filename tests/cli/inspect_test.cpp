@@ -10,10 +10,13 @@ TEST_CASE("inspect says in one line what was understood, and marks guesses") {
   const auto ran = test::run({"inspect", test::fixture("npy/structured.npy").string()});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
-  CHECK_THAT(ran.out, Contains("structured.npy: 7 channels, 200.000 Hz (jitter 0 ns), 0.025 s, 0 gaps\n"));
+  CHECK_THAT(ran.out,
+             Contains("structured.npy: 7 channels, 200.000 Hz (jitter 0 ns), 0.025 s, 0 gaps\n"));
   CHECK_THAT(ran.out, Contains("  guessed: time unit: ns"));
   CHECK_THAT(ran.out, Contains("gyr_0") && Contains("kurtosis of differences"));
-  CHECK_THAT(ran.out, Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
+  CHECK_THAT(
+      ran.out,
+      Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
 }
 
 TEST_CASE("inspect --json keeps its promise to scripts") {
@@ -29,7 +32,9 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
   CHECK(document["input"][0]["bytes"] == 146);
   CHECK(document["warnings"][0]["code"] == "infinite_value");
   const libchar::Json& recording = document["recordings"][0];
-  for (const char* key : {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"}) CHECK(recording.contains(key));
+  for (const char* key :
+       {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"})
+    CHECK(recording.contains(key));
   CHECK(recording["rows"] == 9);
   CHECK(recording["rate_hz"] == 1500.0);
   CHECK(recording["repairs"]["infinite_value"] == 1);
@@ -41,7 +46,8 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
 }
 
 TEST_CASE("several logs make one document; channels are chosen by repetition and by commas") {
-  const std::string a = test::fixture("npy/c_order.npy").string(), b = test::fixture("npy/big_endian_f4.npy").string();
+  const std::string a = test::fixture("npy/c_order.npy").string(),
+                    b = test::fixture("npy/big_endian_f4.npy").string();
   const auto ran = test::run({"inspect", "-c", "c0,c2", a, b, "-c", "c1", "--json"});
   REQUIRE(ran.code == 0);
   const libchar::Json document = libchar::parse_json(ran.out, "stdout");

@@ -7,7 +7,9 @@
 using Catch::Contains;
 
 namespace {
-std::size_t lines(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
 }  // namespace
 
 TEST_CASE("help and version go to stdout with exit code 0") {
@@ -18,30 +20,33 @@ TEST_CASE("help and version go to stdout with exit code 0") {
     CHECK_FALSE(ran.out.empty());
   }
   CHECK_THAT(test::run({"--help"}).out, Contains("inspect") && Contains("convert"));
-  CHECK_THAT(test::run({"inspect", "--help"}).out, Contains("--time-unit") && Contains("auto|s|ms|us|ns") && Contains("default: auto"));
+  CHECK_THAT(test::run({"inspect", "--help"}).out,
+             Contains("--time-unit") && Contains("auto|s|ms|us|ns") && Contains("default: auto"));
 }
 
-TEST_CASE("slips on the command line are exit code 2, one line on stderr, with the nearest right word") {
+TEST_CASE(
+    "slips on the command line are exit code 2, one line on stderr, with the nearest right word") {
   struct Slip {
     std::vector<std::string> arguments;
     std::string says;
   };
-  const std::vector<Slip> slips = {{{}, "which verb?"},
-                                   {{"inspcet", "a.csv"}, "did you mean inspect?"},
-                                   {{"--verison"}, "did you mean --version?"},
-                                   {{"inspect"}, "LOG is required"},
-                                   {{"inspect", "a.csv", "--time-unt", "s"}, "did you mean --time-unit?"},
-                                   {{"inspect", "a.csv", "--time-unit", "sec"}, "expected one of auto, s, ms, us, ns"},
-                                   {{"inspect", "a.csv", "--rate", "nan"}, "--rate"},
-                                   {{"inspect", "a.csv", "--rate", "-1"}, "--rate"},
-                                   {{"inspect", "a.csv", "--rate", "1e400"}, "--rate"},
-                                   {{"inspect", "a.csv", "--rate", "010"}, "got \"010\""},
-                                   {{"inspect", "a.csv", "--from", "3 parsecs"}, "a duration such as"},
-                                   {{"inspect", "a.csv", "--skip-rows", "-1"}, "expected a whole number"},
-                                   {{"inspect", "a.csv", "--threads", "1e3"}, "expected a whole number"},
-                                   {{"inspect", "a.csv", "--delimiter", "abc"}, "one character"},
-                                   {{"convert", "a.csv"}, "--output is required"},
-                                   {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"}};
+  const std::vector<Slip> slips = {
+      {{}, "which verb?"},
+      {{"inspcet", "a.csv"}, "did you mean inspect?"},
+      {{"--verison"}, "did you mean --version?"},
+      {{"inspect"}, "LOG is required"},
+      {{"inspect", "a.csv", "--time-unt", "s"}, "did you mean --time-unit?"},
+      {{"inspect", "a.csv", "--time-unit", "sec"}, "expected one of auto, s, ms, us, ns"},
+      {{"inspect", "a.csv", "--rate", "nan"}, "--rate"},
+      {{"inspect", "a.csv", "--rate", "-1"}, "--rate"},
+      {{"inspect", "a.csv", "--rate", "1e400"}, "--rate"},
+      {{"inspect", "a.csv", "--rate", "010"}, "got \"010\""},
+      {{"inspect", "a.csv", "--from", "3 parsecs"}, "a duration such as"},
+      {{"inspect", "a.csv", "--skip-rows", "-1"}, "expected a whole number"},
+      {{"inspect", "a.csv", "--threads", "1e3"}, "expected a whole number"},
+      {{"inspect", "a.csv", "--delimiter", "abc"}, "one character"},
+      {{"convert", "a.csv"}, "--output is required"},
+      {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"}};
   for (const Slip& slip : slips) {
     const auto ran = test::run(slip.arguments);
     INFO(slip.says << " <- " << ran.err);
@@ -77,19 +82,31 @@ TEST_CASE("control characters in a file name do not reach the terminal") {
 
 TEST_CASE("a reader that goes away is no failure") {
   const std::string log = test::fixture("npy/c_order.npy").string();
-  const auto ran = test::run_words({"bash", "-c", "set -o pipefail; \"$0\" inspect \"$1\" --json | true", SENSORCHAR_PROGRAM, log});
+  const auto ran = test::run_words({"bash",
+                                    "-c",
+                                    "set -o pipefail; \"$0\" inspect \"$1\" --json | true",
+                                    SENSORCHAR_PROGRAM,
+                                    log});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
 }
 
 TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
   const test::TemporaryFolder folder;
-  // With data the reading succeeds and writing must still not happen; without, the reading fails because it was stopped.
-  const std::string script = R"("$0" convert - -o "$1" < "$2" & pid=$!; exec 3> "$2"; printf "$3" >&3; sleep 0.3; kill -TERM $pid; exec 3>&-; wait $pid)";
+  // With data the reading succeeds and writing must still not happen; without, the reading fails
+  // because it was stopped.
+  const std::string script =
+      R"("$0" convert - -o "$1" < "$2" & pid=$!; exec 3> "$2"; printf "$3" >&3; sleep 0.3; kill -TERM $pid; exec 3>&-; wait $pid)";
   const std::string fifo = (folder / "pipe").string();
   const std::string out = (folder / "out.npy").string();
   for (const char* data : {"x\\n", "x\\n1\\n2\\n"}) {
-    const auto ran = test::run_words({"bash", "-c", "rm -f \"$2\"; mkfifo \"$2\"; " + script, SENSORCHAR_PROGRAM, out, fifo, data});
+    const auto ran = test::run_words({"bash",
+                                      "-c",
+                                      "rm -f \"$2\"; mkfifo \"$2\"; " + script,
+                                      SENSORCHAR_PROGRAM,
+                                      out,
+                                      fifo,
+                                      data});
     INFO(ran.err);
     CHECK(ran.code == 143);
     CHECK_FALSE(std::filesystem::exists(out));

@@ -1,4 +1,5 @@
-// Any bytes as a .npy file: an Error or rows, the same rows at every block size, and every byte accounted for.
+// Any bytes as a .npy file: an Error or rows, the same rows at every block size, and every byte
+// accounted for.
 
 #include <cstdint>
 #include <cstdlib>
@@ -47,7 +48,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Sum whole = read(log.path(), std::size_t{1} << 22U);
     const Sum parts = read(log.path(), block_bytes);
-    if (whole.rows != parts.rows || whole.values != parts.values || whole.hash != parts.hash) std::abort();
+    if (whole.rows != parts.rows || whole.values != parts.values || whole.hash != parts.hash)
+      std::abort();
   } catch (const libchar::Error&) {
   }
   return 0;

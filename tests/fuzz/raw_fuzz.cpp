@@ -1,4 +1,7 @@
-// Any bytes as a sidecar (JSON or YAML by the first byte) and as the raw file it describes; the two are parted by a NUL.
+// Any bytes as a sidecar (JSON or YAML by the first byte) and as the raw file it describes; the two
+// are parted by a NUL.
+
+#include <unistd.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -6,21 +9,24 @@
 #include <fstream>
 #include <string>
 
-#include <unistd.h>
-
 #include "libchar/core/error.hpp"
 #include "libchar/log/raw_rows.hpp"
 #include "libchar/log/sidecar.hpp"
 
 namespace {
 
-// open_raw finds the sidecar by its name, so that this one needs names: in memory (/dev/shm), one pair a process.
+// open_raw finds the sidecar by its name, so that this one needs names: in memory (/dev/shm), one
+// pair a process.
 const std::string& base() {
-  static const std::string path = "/dev/shm/libchar-raw-fuzz-" + std::to_string(::getpid()) + ".bin";
+  static const std::string path =
+      "/dev/shm/libchar-raw-fuzz-" + std::to_string(::getpid()) + ".bin";
   return path;
 }
 
-void put(const std::string& path, std::string_view bytes) { std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size())); }
+void put(const std::string& path, std::string_view bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
 
 std::uint64_t read(std::size_t block_bytes) {
   libchar::ReadOptions options;

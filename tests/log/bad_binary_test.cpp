@@ -1,4 +1,5 @@
-// Every npy and raw case of the shared table of bad inputs: verdict, place, and one line that says what is wrong.
+// Every npy and raw case of the shared table of bad inputs: verdict, place, and one line that says
+// what is wrong.
 
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -35,7 +36,9 @@ std::vector<Case> cases(const std::string& folder) {
 // What happened: "ok", "warn", or the message of the error.
 std::string outcome(const std::string& format, const std::string& file) {
   try {
-    return test::read_rows(format, test::shared("oracle/badinputs/" + file)).warnings.empty() ? "ok" : "warn";
+    return test::read_rows(format, test::shared("oracle/badinputs/" + file)).warnings.empty()
+               ? "ok"
+               : "warn";
   } catch (const Error& error) {
     CHECK(error.fault().kind == ErrorKind::input);
     CHECK(std::string(error.what()).find('\n') == std::string::npos);
@@ -49,15 +52,19 @@ std::string outcome(const std::string& format, const std::string& file) {
 TEST_CASE("bad .npy files get the verdict of the table") {
   NEEDS_SHARED("oracle/badinputs");
   // "or read by name" and "half or clear error" leave the choice: both are read.
-  const std::map<std::string, std::string> chosen = {{"npy/033_structured.npy", "ok"}, {"npy/046_nan_payload.npy", "warn"}};
+  const std::map<std::string, std::string> chosen = {{"npy/033_structured.npy", "ok"},
+                                                     {"npy/046_nan_payload.npy", "warn"}};
   std::size_t count = 0;
   for (const Case& c : cases("npy")) {
     const std::string got = outcome("npy", c.file);
     INFO(c.file << " " << c.why << " -> " << got);
     const std::string expected = chosen.contains(c.file) ? chosen.at(c.file) : c.verdict;
-    if (expected == "error") CHECK((got != "ok" && got != "warn"));
-    else CHECK(got == expected);
-    if (expected == "error" && c.where != "-") CHECK(got.find("(byte " + c.where) != std::string::npos);
+    if (expected == "error")
+      CHECK((got != "ok" && got != "warn"));
+    else
+      CHECK(got == expected);
+    if (expected == "error" && c.where != "-")
+      CHECK(got.find("(byte " + c.where) != std::string::npos);
     ++count;
   }
   CHECK(count == 31);
@@ -69,8 +76,10 @@ TEST_CASE("bad raw files and sidecars get the verdict of the table") {
   for (const Case& c : cases("raw")) {
     const std::string got = outcome("raw", c.file);
     INFO(c.file << " " << c.why << " -> " << got);
-    if (c.verdict == "error") CHECK((got != "ok" && got != "warn"));
-    else CHECK(got == c.verdict);
+    if (c.verdict == "error")
+      CHECK((got != "ok" && got != "warn"));
+    else
+      CHECK(got == c.verdict);
     ++count;
   }
   CHECK(count == 13);
@@ -78,11 +87,12 @@ TEST_CASE("bad raw files and sidecars get the verdict of the table") {
 
 TEST_CASE("messages about bad binary files name place, numbers and remedy") {
   NEEDS_SHARED("oracle/badinputs");
-  const auto says = [](const std::string& format, const std::string& file, const std::string& part) {
-    const std::string got = outcome(format, file);
-    INFO(file << " -> " << got);
-    CHECK(got.find(part) != std::string::npos);
-  };
+  const auto says =
+      [](const std::string& format, const std::string& file, const std::string& part) {
+        const std::string got = outcome(format, file);
+        INFO(file << " -> " << got);
+        CHECK(got.find(part) != std::string::npos);
+      };
   says("npy", "npy/007_truncated_data.npy", "2 of 4 values present");
   says("npy", "npy/006_hlen_past_eof.npy", "exceeds the file size 68");
   says("npy", "npy/048_npz.npy", "ZIP archive (.npz)");

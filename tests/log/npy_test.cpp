@@ -1,4 +1,5 @@
-// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our writer.
+// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our
+// writer.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,7 +19,9 @@ using Column = std::vector<double>;
 
 namespace {
 
-test::Rows read(const std::string& name, const ReadOptions& options = {}) { return test::read_rows("npy", test::fixture("npy/" + name), options); }
+test::Rows read(const std::string& name, const ReadOptions& options = {}) {
+  return test::read_rows("npy", test::fixture("npy/" + name), options);
+}
 
 std::string names(const LogInfo& info) {
   std::string all;
@@ -50,8 +53,10 @@ std::string fault_of(const std::string& literal) {
 }  // namespace
 
 TEST_CASE("C order, Fortran order, byte order and header version change nothing") {
-  const std::vector<Column> expected = {{0, 0.375, 0.75, 1.125}, {0.125, 0.5, 0.875, 1.25}, {0.25, 0.625, 1, 1.375}};
-  for (const char* name : {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"}) {
+  const std::vector<Column> expected = {
+      {0, 0.375, 0.75, 1.125}, {0.125, 0.5, 0.875, 1.25}, {0.25, 0.625, 1, 1.375}};
+  for (const char* name :
+       {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"}) {
     INFO(name);
     const auto got = read(name);
     CHECK(got.columns == expected);
@@ -114,9 +119,11 @@ TEST_CASE("channels are chosen by name or position, in file order; a slip is nam
   options.channels = {"gry_0"};
   CHECK_THROWS_WITH(read("structured.npy", options), Catch::Contains("did you mean gyr_0?"));
   options.channels = {"c3"};
-  CHECK_THROWS_WITH(read("c_order.npy", options), Catch::Contains("it has c0, c1, c2") || Catch::Contains("did you mean"));
+  CHECK_THROWS_WITH(read("c_order.npy", options),
+                    Catch::Contains("it has c0, c1, c2") || Catch::Contains("did you mean"));
   options.channels = {"c2"};
-  for (const char* name : {"c_order.npy", "fortran_order.npy"}) CHECK(read(name, options).columns == std::vector<Column>{{0.25, 0.625, 1, 1.375}});
+  for (const char* name : {"c_order.npy", "fortran_order.npy"})
+    CHECK(read(name, options).columns == std::vector<Column>{{0.25, 0.625, 1, 1.375}});
 }
 
 TEST_CASE("a plain array has a time column only when it is named by position") {
@@ -133,7 +140,8 @@ TEST_CASE("a real recording with time in its first column") {
   NEEDS_SHARED("data/tilt_broad_02_undisturbed_slow_rotation_B.npy");
   ReadOptions options;
   options.time_column = "c0";
-  const Recording got = read_recording(test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy").string(), options);
+  const Recording got = read_recording(
+      test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy").string(), options);
   CHECK(got.info.time.rate_hz == Approx(285.7142857142857).epsilon(1e-9));
   CHECK(got.info.samples == 53240);
   CHECK(got.info.time.gaps == 0);
@@ -144,7 +152,8 @@ TEST_CASE("a real recording with time in its first column") {
 }
 
 TEST_CASE("block size and hashing never change what is read") {
-  for (const char* name : {"structured.npy", "fortran_order.npy", "half.npy", "aligned_version_3.npy"}) {
+  for (const char* name :
+       {"structured.npy", "fortran_order.npy", "half.npy", "aligned_version_3.npy"}) {
     const auto whole = read(name);
     for (std::size_t bytes = 1; bytes < 70000; bytes = bytes * 5 / 3 + 1) {
       INFO(name << " in blocks of " << bytes);
@@ -153,7 +162,9 @@ TEST_CASE("block size and hashing never change what is read") {
       const auto got = read(name, options);
       REQUIRE(got.columns.size() == whole.columns.size());
       for (std::size_t c = 0; c < got.columns.size(); ++c)
-        CHECK(std::memcmp(got.columns[c].data(), whole.columns[c].data(), whole.columns[c].size() * 8) == 0);
+        CHECK(std::memcmp(got.columns[c].data(),
+                          whole.columns[c].data(),
+                          whole.columns[c].size() * 8) == 0);
       CHECK(got.time_ns == whole.time_ns);
       CHECK(got.sha256 == whole.sha256);
       CHECK(got.warnings.list().size() == whole.warnings.list().size());
@@ -173,27 +184,40 @@ TEST_CASE("a reading that is given up does not wait for the rest") {
 }
 
 TEST_CASE("the header is read as Python writes it and never more freely") {
-  const NpyHeader spaced = header_of("{ \"shape\" : ( 2 , 2 ) ,'fortran_order':True,'descr':'=f8'}\n");
+  const NpyHeader spaced =
+      header_of("{ \"shape\" : ( 2 , 2 ) ,'fortran_order':True,'descr':'=f8'}\n");
   CHECK(spaced.shape == std::vector<std::uint64_t>{2, 2});
   CHECK(spaced.fortran_order);
-  const NpyHeader quoted = header_of("{'descr': [('a\\'b', '<f4'), (\"c\\\\\", '|i1', 2)], 'fortran_order': False, 'shape': (3,), }");
+  const NpyHeader quoted = header_of(
+      "{'descr': [('a\\'b', '<f4'), (\"c\\\\\", '|i1', 2)], 'fortran_order': False, 'shape': (3,), "
+      "}");
   CHECK(quoted.fields[0].name == "a'b");
   CHECK(quoted.fields[1].name == "c\\");
   CHECK(quoted.item_bytes == 6);
   const std::string rest = "'fortran_order': False, 'shape': (4,), }";
-  CHECK_THAT(fault_of("{'descr': __import__('os'), " + rest), Catch::Contains("expected a quoted string"));
-  CHECK_THAT(fault_of("{'descr': '|O', " + rest), Catch::Contains("Python objects (pickled code), which are never read"));
+  CHECK_THAT(fault_of("{'descr': __import__('os'), " + rest),
+             Catch::Contains("expected a quoted string"));
+  CHECK_THAT(fault_of("{'descr': '|O', " + rest),
+             Catch::Contains("Python objects (pickled code), which are never read"));
   CHECK_THAT(fault_of("{'descr': '<c16', " + rest), Catch::Contains("complex"));
   CHECK_THAT(fault_of("{'descr': '|S5', " + rest), Catch::Contains("text"));
   CHECK_THAT(fault_of("{'descr': 'f8', " + rest), Catch::Contains("of a type that is not read"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8'), ('a', '<f8')], " + rest), Catch::Contains("two fields have one name"));
-  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')])], " + rest), Catch::Contains("record within a record"));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8'), ('a', '<f8')], " + rest),
+             Catch::Contains("two fields have one name"));
+  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')])], " + rest),
+             Catch::Contains("record within a record"));
   CHECK_THAT(fault_of("{'descr': [], " + rest), Catch::Contains("no field"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (4294967296, 4294967296, 4))], " + rest), Catch::Contains("overflows"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (200000,))], " + rest), Catch::Contains("more than 100000 columns"));
-  CHECK_THAT(fault_of("{'descr': '<f8', 'shape': (4,), }"), Catch::Contains("no key \"fortran_order\""));
-  CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': 0, 'shape': (4,), }"), Catch::Contains("neither True nor False"));
-  CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,), }"), Catch::Contains("too large"));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (4294967296, 4294967296, 4))], " + rest),
+             Catch::Contains("overflows"));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (200000,))], " + rest),
+             Catch::Contains("more than 100000 columns"));
+  CHECK_THAT(fault_of("{'descr': '<f8', 'shape': (4,), }"),
+             Catch::Contains("no key \"fortran_order\""));
+  CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': 0, 'shape': (4,), }"),
+             Catch::Contains("neither True nor False"));
+  CHECK_THAT(
+      fault_of("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,), }"),
+      Catch::Contains("too large"));
   CHECK_THAT(fault_of("{'descr': '<f8', " + rest + "x"), Catch::Contains("behind the header"));
   CHECK_THAT(fault_of("{'descr': '<f8"), Catch::Contains("does not end"));
   CHECK_THAT(fault_of(""), Catch::Contains("expected {"));
@@ -204,8 +228,10 @@ TEST_CASE("what is no regular file is said so at once") {
   CHECK_THROWS_WITH(open_npy(folder.path().string(), {}), Catch::Contains("is a folder"));
   CHECK_THROWS_WITH(open_npy((folder / "none.npy").string(), {}), Catch::Contains("No such file"));
   CHECK_THROWS_WITH(open_npy("/dev/zero", {}), Catch::Contains("not a regular file"));
-  std::ofstream(folder / "empty.npy") << npy("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }", "");
-  CHECK_THROWS_WITH(open_npy((folder / "empty.npy").string(), {}), Catch::Contains("holds no samples"));
+  std::ofstream(folder / "empty.npy")
+      << npy("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }", "");
+  CHECK_THROWS_WITH(open_npy((folder / "empty.npy").string(), {}),
+                    Catch::Contains("holds no samples"));
 }
 
 TEST_CASE("stamps that overflow, are too large or are missing") {
@@ -213,7 +239,10 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
   const auto write = [&](const std::vector<double>& values) {
     std::string data(values.size() * 8, '\0');
     std::memcpy(data.data(), values.data(), data.size());
-    std::ofstream(folder / "t.npy", std::ios::binary) << npy("{'descr': [('time_s', '<f8'), ('x', '<f8')], 'fortran_order': False, 'shape': (" + std::to_string(values.size() / 2) + ",), }", data);
+    std::ofstream(folder / "t.npy", std::ios::binary)
+        << npy("{'descr': [('time_s', '<f8'), ('x', '<f8')], 'fortran_order': False, 'shape': (" +
+                   std::to_string(values.size() / 2) + ",), }",
+               data);
     return test::read_rows("npy", folder / "t.npy");
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -221,5 +250,6 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
   CHECK(got.time_ns == std::vector<std::int64_t>{0, 200'000'000});
   CHECK(got.columns[0] == Column{1, 3});
   CHECK(got.warnings.find("missing_timestamp")->count == 1);
-  CHECK_THROWS_WITH(write({0, 1, 1e10, 2}), Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));
+  CHECK_THROWS_WITH(write({0, 1, 1e10, 2}),
+                    Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));
 }

@@ -19,11 +19,14 @@ namespace {
 struct Raw {
   test::TemporaryFolder folder;
   std::string path;
-  Raw(const std::string& bytes, const std::string& sidecar, const std::string& suffix = ".json") : path((folder / "x.bin").string()) {
+  Raw(const std::string& bytes, const std::string& sidecar, const std::string& suffix = ".json")
+      : path((folder / "x.bin").string()) {
     std::ofstream(path, std::ios::binary) << bytes;
     std::ofstream(path + suffix, std::ios::binary) << sidecar;
   }
-  test::Rows read(const ReadOptions& options = {}) const { return test::read_rows("raw", path, options); }
+  test::Rows read(const ReadOptions& options = {}) const {
+    return test::read_rows("raw", path, options);
+  }
 };
 
 std::string said(const std::string& sidecar, bool json = true) {
@@ -38,11 +41,15 @@ std::string said(const std::string& sidecar, bool json = true) {
 }  // namespace
 
 TEST_CASE("interleaved and planar, little and big, integers with scale and offset") {
-  const std::string little("\x01\x00\xFF\xFF\x02\x00\x00\x80\x03\x00\xFF\x7F", 12), big("\x00\x01\xFF\xFF\x00\x02\x80\x00\x00\x03\x7F\xFF", 12);
+  const std::string little("\x01\x00\xFF\xFF\x02\x00\x00\x80\x03\x00\xFF\x7F", 12),
+      big("\x00\x01\xFF\xFF\x00\x02\x80\x00\x00\x03\x7F\xFF", 12);
   const std::string planar("\x01\x00\x02\x00\x03\x00\xFF\xFF\x00\x80\xFF\x7F", 12);
-  const std::string tail = R"(", "rate_hz": 10, "channels": [{"name": "a", "unit": "deg/s", "scale": 0.5, "offset": 1}, {"name": "b"}])";
-  for (const Raw& raw : {Raw(little, R"({"dtype": "i16", "endian": "little)" + tail + "}"), Raw(big, R"({"dtype": "i16", "endian": "big)" + tail + "}"),
-                         Raw(planar, R"({"dtype": "i16", "endian": "little)" + tail + R"(, "order": "planar"})")}) {
+  const std::string tail =
+      R"(", "rate_hz": 10, "channels": [{"name": "a", "unit": "deg/s", "scale": 0.5, "offset": 1}, {"name": "b"}])";
+  for (const Raw& raw :
+       {Raw(little, R"({"dtype": "i16", "endian": "little)" + tail + "}"),
+        Raw(big, R"({"dtype": "i16", "endian": "big)" + tail + "}"),
+        Raw(planar, R"({"dtype": "i16", "endian": "little)" + tail + R"(, "order": "planar"})")}) {
     const auto got = raw.read();
     CHECK(got.columns == std::vector<Column>{{1.5, 2, 2.5}, {-1, -32768, 32767}});
     CHECK(got.info.channels[0].unit == "deg/s");
@@ -63,7 +70,11 @@ TEST_CASE("interleaved and planar, little and big, integers with scale and offse
 
 TEST_CASE("a YAML sidecar says the same as a JSON one") {
   const std::string bytes("\x00\x00\x80\x3F\x00\x00\x00\x40", 8);
-  const Raw yaml(bytes, "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: 1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n", ".yaml");
+  const Raw yaml(
+      bytes,
+      "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: "
+      "1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
+      ".yaml");
   const auto got = yaml.read();
   CHECK(got.columns == std::vector<Column>{{1}, {2}});
   CHECK(got.info.channels[1].name == "010");
@@ -78,12 +89,16 @@ TEST_CASE("rows, trailing bytes and truncation") {
   const auto less = Raw(four + "abc", front + R"(, "rows": 1})").read();
   CHECK(less.info.rows == 1);
   CHECK(less.warnings.find("trailing_bytes")->count == 19);
-  CHECK_THROWS_WITH(Raw(four, front + R"(, "rows": 3})").read(), Catch::Contains("2 of 3 rows present"));
-  CHECK_THROWS_WITH(Raw(four.substr(0, 15), front + "}").read(), Catch::Contains("15 bytes are less than one row of 16"));
-  CHECK_THROWS_WITH(Raw(four + "abc", front + R"(, "order": "planar"})").read(), Catch::Contains("planes cannot be found"));
+  CHECK_THROWS_WITH(Raw(four, front + R"(, "rows": 3})").read(),
+                    Catch::Contains("2 of 3 rows present"));
+  CHECK_THROWS_WITH(Raw(four.substr(0, 15), front + "}").read(),
+                    Catch::Contains("15 bytes are less than one row of 16"));
+  CHECK_THROWS_WITH(Raw(four + "abc", front + R"(, "order": "planar"})").read(),
+                    Catch::Contains("planes cannot be found"));
 }
 
-TEST_CASE("values that would be ordinary in the other byte order are pointed out, tiny ones are not") {
+TEST_CASE(
+    "values that would be ordinary in the other byte order are pointed out, tiny ones are not") {
   const auto doubtful = [](const std::vector<double>& values, bool swap) {
     std::string bytes;
     for (const double x : values) {
@@ -91,7 +106,9 @@ TEST_CASE("values that would be ordinary in the other byte order are pointed out
       std::memcpy(b, &x, 8);
       for (int i = 0; i < 8; ++i) bytes += swap ? b[7 - i] : b[i];
     }
-    return Raw(bytes, R"({"dtype": "f64", "endian": "little", "channels": 1})").read().warnings.find("implausible_magnitude") != nullptr;
+    return Raw(bytes, R"({"dtype": "f64", "endian": "little", "channels": 1})")
+               .read()
+               .warnings.find("implausible_magnitude") != nullptr;
   };
   CHECK(doubtful({1, 2, 3, -4.5}, true));
   CHECK(doubtful({0.001, 2.5, 100, 1024}, true));
@@ -103,7 +120,9 @@ TEST_CASE("values that would be ordinary in the other byte order are pointed out
 TEST_CASE("a missing sidecar is answered with one to copy; two are one too many") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "x.f64") << std::string(16, 'a');
-  CHECK_THROWS_WITH(test::read_rows("raw", folder / "x.f64"), Catch::Contains("no sidecar") && Catch::Contains(R"(write )") && Catch::Contains("x.f64.json, such as"));
+  CHECK_THROWS_WITH(test::read_rows("raw", folder / "x.f64"),
+                    Catch::Contains("no sidecar") && Catch::Contains(R"(write )") &&
+                        Catch::Contains("x.f64.json, such as"));
   CHECK(parse_sidecar(minimal_sidecar(), "x", true).channels.size() == 3);
   std::ofstream(folder / "x.f64.json") << minimal_sidecar();
   std::ofstream(folder / "x.f64.yml") << minimal_sidecar();
@@ -113,17 +132,23 @@ TEST_CASE("a missing sidecar is answered with one to copy; two are one too many"
 TEST_CASE("sidecars are refused with the key at fault") {
   const std::string front = R"({"dtype": "f64", "endian": "little", )";
   CHECK_THAT(said(front + R"("channels": -1})"), Catch::Contains("(key channels)"));
-  CHECK_THAT(said(front + R"("channels": 1000000000})"), Catch::Contains("more than the limit of 100000"));
+  CHECK_THAT(said(front + R"("channels": 1000000000})"),
+             Catch::Contains("more than the limit of 100000"));
   CHECK_THAT(said(front + R"("channels": []})"), Catch::Contains("empty"));
-  CHECK_THAT(said(front + R"("channels": [{"name": "a"}, {"name": "a"}]})"), Catch::Contains("channels[1].name") && Catch::Contains("two channels have one name"));
-  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scala": 2}]})"), Catch::Contains("did you mean scale?"));
-  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scale": 0}]})"), Catch::Contains("scale of 0"));
+  CHECK_THAT(said(front + R"("channels": [{"name": "a"}, {"name": "a"}]})"),
+             Catch::Contains("channels[1].name") && Catch::Contains("two channels have one name"));
+  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scala": 2}]})"),
+             Catch::Contains("did you mean scale?"));
+  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scale": 0}]})"),
+             Catch::Contains("scale of 0"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 0})"), Catch::Contains("(key rate_hz)"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": "100"})"), Catch::Contains("(key rate_hz)"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 1e400})"), Catch::Contains("got \"1e400\""));
-  CHECK_THAT(said(front + R"("channels": 1, "offset": -8})"), Catch::Contains("a channel's values"));
+  CHECK_THAT(said(front + R"("channels": 1, "offset": -8})"),
+             Catch::Contains("a channel's values"));
   CHECK_THAT(said(front + R"("channels": 1, "rows": 1.5})"), Catch::Contains("(key rows)"));
-  CHECK_THAT(said(front + R"("channels": 1, "t0_ns": 18446744073709551615})"), Catch::Contains("(key t0_ns)"));
+  CHECK_THAT(said(front + R"("channels": 1, "t0_ns": 18446744073709551615})"),
+             Catch::Contains("(key t0_ns)"));
   CHECK_THAT(said(R"({"dtype": "f64", "channels": 1})"), Catch::Contains("(key endian)"));
   CHECK_THAT(said(R"({"channels": 1})"), Catch::Contains("(key dtype)"));
   CHECK_THAT(said("[1]"), Catch::Contains("expected keys and values"));
@@ -132,15 +157,20 @@ TEST_CASE("sidecars are refused with the key at fault") {
 
 TEST_CASE("YAML is read without the parts that bite") {
   const auto refused = [](const std::string& text) { return said(text, false); };
-  CHECK_THAT(refused("a: &x 1\nb: *x\n"), Catch::Contains("anchors are not read") && Catch::Contains("x.json:1:"));
+  CHECK_THAT(refused("a: &x 1\nb: *x\n"),
+             Catch::Contains("anchors are not read") && Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("a: !!python/object:os.system ls\n"), Catch::Contains("tags are not read"));
-  CHECK_THAT(refused("dtype: f64\ndtype: f32\n"), Catch::Contains("twice") && Catch::Contains("x.json:2:1"));
+  CHECK_THAT(refused("dtype: f64\ndtype: f32\n"),
+             Catch::Contains("twice") && Catch::Contains("x.json:2:1"));
   CHECK_THAT(refused("<<: {dtype: f64}\n"), Catch::Contains("merge"));
   CHECK_THAT(refused("dtype: f64\n---\ndtype: f32\n"), Catch::Contains("second document"));
   CHECK_THAT(refused(std::string(200, '[')), Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("\tdtype: f64\n"), Catch::Contains("not valid YAML"));
   CHECK_THAT(refused(""), Catch::Contains("empty"));
-  const Json node = parse_guarded_yaml("a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: 18446744073709551615\n", "x");
+  const Json node = parse_guarded_yaml(
+      "a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
+      "18446744073709551615\n",
+      "x");
   CHECK(node["a"] == "010");
   CHECK(node["b"] == "0x10");
   CHECK(node["c"] == -3);

@@ -1,5 +1,7 @@
-#include <catch2/catch.hpp>
+#include "libchar/log/write.hpp"
+
 #include <bit>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -7,7 +9,6 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/log/write.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -15,7 +16,9 @@ using Column = std::vector<double>;
 
 namespace {
 
-LogInfo info_of(const std::vector<Channel>& channels, double rate_hz = 200, std::optional<std::int64_t> start = {}) {
+LogInfo info_of(const std::vector<Channel>& channels,
+                double rate_hz = 200,
+                std::optional<std::int64_t> start = {}) {
   LogInfo info;
   info.channels = channels;
   info.time.rate_hz = rate_hz;
@@ -24,11 +27,16 @@ LogInfo info_of(const std::vector<Channel>& channels, double rate_hz = 200, std:
 }
 
 // Written in blocks of uneven length, as readers deliver them.
-std::vector<std::string> write(const std::string& path, const LogInfo& info, const std::vector<Column>& samples, const WriteOptions& options = {}, std::size_t step = 1000) {
+std::vector<std::string> write(const std::string& path,
+                               const LogInfo& info,
+                               const std::vector<Column>& samples,
+                               const WriteOptions& options = {},
+                               std::size_t step = 1000) {
   const auto writer = open_log_writer(path, info, options);
   for (std::size_t at = 0; at < samples[0].size(); at += step) {
     std::vector<std::span<const double>> block;
-    for (const Column& column : samples) block.emplace_back(std::span(column).subspan(at, std::min(step, column.size() - at)));
+    for (const Column& column : samples)
+      block.emplace_back(std::span(column).subspan(at, std::min(step, column.size() - at)));
     writer->write(block);
   }
   writer->finish();
@@ -37,14 +45,23 @@ std::vector<std::string> write(const std::string& path, const LogInfo& info, con
 
 std::vector<std::uint64_t> bits(const Column& samples) {
   std::vector<std::uint64_t> all;
-  for (const double x : samples) all.push_back(std::isnan(x) ? 0x7ff8000000000000U : std::bit_cast<std::uint64_t>(x));
+  for (const double x : samples)
+    all.push_back(std::isnan(x) ? 0x7ff8000000000000U : std::bit_cast<std::uint64_t>(x));
   return all;
 }
 
 // Every bit pattern that is a finite double, and the odd missing one.
 Column any_doubles(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  Column values = {0.0, -0.0, 5e-324, -2.2250738585072014e-308, std::numeric_limits<double>::max(), 1.0 / 3, 0.1, 1e22, 123456789012345680.0};
+  Column values = {0.0,
+                   -0.0,
+                   5e-324,
+                   -2.2250738585072014e-308,
+                   std::numeric_limits<double>::max(),
+                   1.0 / 3,
+                   0.1,
+                   1e22,
+                   123456789012345680.0};
   while (values.size() < n) {
     const double x = std::bit_cast<double>(random());
     values.push_back(std::isfinite(x) && random() % 50 != 0 ? x : kMissing);
@@ -56,8 +73,10 @@ Column any_doubles(std::size_t n, std::uint64_t seed) {
 
 TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
   const test::TemporaryFolder folder;
-  const std::vector<Column> samples = {any_doubles(5000, 1), any_doubles(5000, 2), any_doubles(5000, 3)};
-  const LogInfo info = info_of({{"gyro_x", "deg/s"}, {"gyro_y", "deg/s"}, {"it's, \"odd\"", ""}}, 200);
+  const std::vector<Column> samples = {
+      any_doubles(5000, 1), any_doubles(5000, 2), any_doubles(5000, 3)};
+  const LogInfo info =
+      info_of({{"gyro_x", "deg/s"}, {"gyro_y", "deg/s"}, {"it's, \"odd\"", ""}}, 200);
   int count = 0;
   for (const char* file : {"a.csv", "b.npy", "c.f64"}) {
     for (const char* order : {"interleaved", "planar"}) {
@@ -76,7 +95,8 @@ TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
           REQUIRE(got.samples.size() == 3);
           for (std::size_t c = 0; c < 3; ++c) CHECK(bits(got.samples[c]) == bits(samples[c]));
           CHECK(got.info.time.rate_hz == Approx(200).epsilon(1e-12));
-          const bool has_names = std::string(file) != "b.npy" || std::string(order) == "interleaved";
+          const bool has_names =
+              std::string(file) != "b.npy" || std::string(order) == "interleaved";
           CHECK(got.info.channels[0].name == (has_names ? "gyro_x" : "c0"));
           CHECK(got.info.channels[2].name == (has_names ? "it's, \"odd\"" : "c2"));
           ++count;
@@ -102,7 +122,8 @@ TEST_CASE("32-bit files hold 32-bit values exactly, and say what they rounded") 
     CHECK(std::isnan(got.samples[0][2]));
     CHECK(std::signbit(got.samples[0][3]));
   }
-  CHECK_THROWS_WITH(write((folder / "b.npy").string(), info_of({{"c0", ""}}), {{1e300}}, options), Catch::Contains("does not fit 32 bits"));
+  CHECK_THROWS_WITH(write((folder / "b.npy").string(), info_of({{"c0", ""}}), {{1e300}}, options),
+                    Catch::Contains("does not fit 32 bits"));
   CHECK_FALSE(std::filesystem::exists(folder / "b.npy"));
 }
 
@@ -119,7 +140,10 @@ TEST_CASE("raw keeps names, units, rate and start; CSV too, its absolute start a
     CHECK(got.info.time.rate_hz == 200);
     CHECK(got.info.time.start_ns == 1403636579758555392);
   }
-  CHECK(test::slurp(folder / "a.csv") == "t[ns],gyro_x[deg/s]\n1403636579758555392,1\n1403636579763555392,2\n1403636579768555392,3\n1403636579773555392,4\n");
+  CHECK(test::slurp(folder / "a.csv") ==
+        "t[ns],gyro_x[deg/"
+        "s]\n1403636579758555392,1\n1403636579763555392,2\n1403636579768555392,"
+        "3\n1403636579773555392,4\n");
   write((folder / "b.csv").string(), info_of({{"c0", ""}}, 200, 2'500'000'000), {{1, kMissing, 3}});
   CHECK(test::slurp(folder / "b.csv") == "t[s],c0\n2.5,1\n2.505,\n2.51,3\n");
   CHECK(read_recording((folder / "b.csv").string()).info.time.start_ns == 2'500'000'000);
@@ -138,7 +162,9 @@ TEST_CASE("missing samples of a lone channel without stamps are not lost") {
 
 TEST_CASE("a channel name is no formula for a spreadsheet") {
   const test::TemporaryFolder folder;
-  write((folder / "a.csv").string(), info_of({{"=1+1", ""}, {"@x", "V"}, {"-y", ""}, {"a\"b", ""}}, 0), {{1}, {2}, {3}, {4}});
+  write((folder / "a.csv").string(),
+        info_of({{"=1+1", ""}, {"@x", "V"}, {"-y", ""}, {"a\"b", ""}}, 0),
+        {{1}, {2}, {3}, {4}});
   CHECK(test::slurp(folder / "a.csv") == "\"'=1+1\",\"'@x[V]\",\"'-y\",\"a\"\"b\"\n1,2,3,4\n");
 }
 
@@ -157,7 +183,8 @@ TEST_CASE("an output is whole or absent, and nothing is overwritten unasked") {
     CHECK(test::slurp(path) == before);
   }
   std::size_t files = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    ++files;
   CHECK(files == 4);  // the three and one sidecar: nothing temporary is left
 }
 
@@ -177,14 +204,16 @@ TEST_CASE("what cannot be written is refused before anything is") {
   options.dtype = "f16";
   CHECK_THAT(refuse("a.npy", options), Catch::Contains("expected f64 or f32"));
   std::ofstream(folder / "b.f64.yaml") << "dtype: f64";
-  CHECK_THROWS_WITH(open_log_writer((folder / "b.f64").string(), info_of({{"x", ""}})), Catch::Contains("is a sidecar of this name already"));
+  CHECK_THROWS_WITH(open_log_writer((folder / "b.f64").string(), info_of({{"x", ""}})),
+                    Catch::Contains("is a sidecar of this name already"));
 }
 
 TEST_CASE("thousands of named channels do not fit a .npy header and say so") {
   const test::TemporaryFolder folder;
   std::vector<Channel> channels;
   for (int i = 0; i < 2000; ++i) channels.push_back({"sensor_" + std::to_string(i), ""});
-  const auto losses = write((folder / "a.npy").string(), info_of(channels, 0), std::vector<Column>(2000, Column{1, 2}));
+  const auto losses = write(
+      (folder / "a.npy").string(), info_of(channels, 0), std::vector<Column>(2000, Column{1, 2}));
   REQUIRE(losses.size() == 1);
   CHECK_THAT(losses[0], Catch::Contains("channel names"));
   CHECK(read_recording((folder / "a.npy").string()).info.channels.size() == 2000);

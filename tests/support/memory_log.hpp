@@ -1,5 +1,6 @@
 #pragma once
-// A log in memory under a name in the file system: fuzzers read through the same door as users, without touching a disk.
+// A log in memory under a name in the file system: fuzzers read through the same door as users,
+// without touching a disk.
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,5 +1,6 @@
 #pragma once
-// All rows of a log as its format delivers them, in one piece: for tests of a format below the common part of reading.
+// All rows of a log as its format delivers them, in one piece: for tests of a format below the
+// common part of reading.
 
 #include <filesystem>
 #include <string>
@@ -18,7 +19,9 @@ struct Rows {
   std::size_t blocks = 0;
 };
 
-inline Rows read_rows(const std::string& format, const std::filesystem::path& path, const libchar::ReadOptions& options = {}) {
+inline Rows read_rows(const std::string& format,
+                      const std::filesystem::path& path,
+                      const libchar::ReadOptions& options = {}) {
   for (const libchar::Format& candidate : libchar::formats()) {
     if (candidate.name != format) continue;
     Rows all;
@@ -28,7 +31,8 @@ inline Rows read_rows(const std::string& format, const std::filesystem::path& pa
       ++all.blocks;
       all.columns.resize(block.columns.size());
       for (std::size_t c = 0; c < block.columns.size(); ++c)
-        all.columns[c].insert(all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
+        all.columns[c].insert(
+            all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
       all.time_ns.insert(all.time_ns.end(), block.time_ns.begin(), block.time_ns.end());
     }
     all.info = source->info();

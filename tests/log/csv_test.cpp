@@ -1,0 +1,320 @@
+// Dialects of CSV that must just work, and what must be refused with a sentence.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "libchar/log/csv_header.hpp"
+#include "tests/log/log_text.hpp"
+
+using namespace libchar;
+using test::count;
+using test::failure;
+using test::read_text;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+Names names(const Recording& r) {
+  Names list;
+  for (const Channel& c : r.info.channels)
+    list.push_back(c.unit.empty() ? c.name : c.name + "|" + c.unit);
+  return list;
+}
+
+bool guessed(const Recording& r, const std::string& what) {
+  for (const std::string& g : r.info.guesses)
+    if (g.find(what) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("EuRoC: the header is a comment, stamps are 19-digit nanoseconds") {
+  const Recording r = read_text(
+      "#timestamp [ns],w_RS_S_x [rad s^-1],a_RS_S_z [m s^-2]\n"
+      "1403636579758555392,-0.099134701513277898,8.1476917083333333\n"
+      "1403636579763555584,-0.099134701513277898,8.1\n1403636579768555520,-0.1,8\n");
+  CHECK(names(r) == Names{"w_RS_S_x|rad s^-1", "a_RS_S_z|m s^-2"});
+  CHECK(r.info.time.column == "timestamp");
+  CHECK(r.info.time.unit == "ns");
+  CHECK_FALSE(r.info.time.unit_guessed);
+  CHECK(r.info.time.start_ns == 1403636579758555392);
+  CHECK(r.info.time.rate_hz == Approx(200).epsilon(1e-4));
+  CHECK(r.samples[0][0] == -0.099134701513277898);
+  CHECK(r.info.warnings.empty());
+}
+
+TEST_CASE("TUM: blanks between columns, several comment lines") {
+  const Recording r = read_text(
+      "# accelerometer data\n# file: 'rgbd.bag'\n# timestamp ax ay az\n"
+      "1311868164.363181 -0.1 9.7 1.2\n1311868164.365181  -0.2   9.8 1.3 \n 1311868164.367181 -0.3 "
+      "9.9 1.4\n");
+  CHECK(names(r) == Names{"ax", "ay", "az"});
+  CHECK(r.info.time.start_ns == 1311868164363181000);
+  CHECK(r.info.time.rate_hz == Approx(500));
+  CHECK(r.samples[2] == std::vector<double>{1.2, 1.3, 1.4});
+  CHECK(guessed(r, "delimiter: blanks"));
+}
+
+TEST_CASE("phyphox: quoted names, exponents; semicolon and tab with decimal comma") {
+  const char* header[] = {"\"Time (s)\",\"Acceleration x (m/s^2)\"",
+                          "\"Time (s)\";\"Acceleration x (m/s^2)\"",
+                          "\"Time (s)\"\t\"Acceleration x (m/s^2)\""};
+  const std::string rows[] = {
+      "\n9.364549000E-3,1.5E0\n1.936454900E-2,-2.5E0\n2.936454900E-2,3.25E0\n",
+      "\n9,364549000E-3;1,5E0\n1,936454900E-2;-2,5E0\n2,936454900E-2;3,25E0\n",
+      "\n9,364549000E-3\t1,5E0\n1,936454900E-2\t-2,5E0\n2,936454900E-2\t3,25E0\n"};
+  for (int i = 0; i < 3; ++i) {
+    const Recording r = read_text(header[i] + rows[i]);
+    INFO(rows[i]);
+    CHECK(names(r) == Names{"Acceleration x|m/s^2"});
+    CHECK(r.info.time.start_ns == 9364549);
+    CHECK(r.info.time.rate_hz == Approx(100));
+    CHECK(r.samples[0] == std::vector<double>{1.5, -2.5, 3.25});
+    CHECK(guessed(r, "comma") == (i > 0));
+    CHECK(r.info.warnings.empty());
+  }
+}
+
+TEST_CASE("decimal commas inside quotes between commas") {
+  const Recording r = read_text("t,x\n\"0,00\",\"1,5\"\n\"0,01\",\"-2,25\"\n\"0,02\",\"3,0\"\n");
+  CHECK(r.samples[0] == std::vector<double>{1.5, -2.25, 3});
+  CHECK(r.info.time.rate_hz == Approx(100));
+}
+
+TEST_CASE("Xsens: the rate stands in a comment, fields that are off are empty") {
+  const Recording r = read_text(
+      "// Start Time: unknown\n// Update Rate: 100.0Hz\n// Filter Profile: human\n"
+      "PacketCounter\tAcc_X\tMag_X\tGyr_X\n65534\t0.1\t\t1\n65535\t0.2\t\t2\n0\t0.3\t\t3\n");
+  CHECK(names(r) == Names{"PacketCounter", "Acc_X", "Mag_X", "Gyr_X"});
+  CHECK(r.info.time.rate_hz == 100);
+  CHECK_FALSE(r.info.time.from_stamps);
+  CHECK(r.info.channels[0].integer);
+  CHECK_FALSE(r.info.channels[1].integer);
+  CHECK(count(r, "missing_cell") == 3);
+  CHECK(count(r, "no_finite_value") == 1);
+  CHECK(r.samples[3] == std::vector<double>{1, 2, 3});
+}
+
+TEST_CASE("Stable32: one value a line, comments, CRLF, rate from the user") {
+  ReadOptions options;
+  options.rate_hz = 1;
+  const Recording r = read_text("# PHASE\r\n# Tau 1\r\n1.5e-9\r\n2.5e-9\r\n-3e-9\r\n", options);
+  CHECK(r.samples[0] == std::vector<double>{1.5e-9, 2.5e-9, -3e-9});
+  CHECK(names(r) == Names{"c0"});
+  CHECK(r.info.time.rate_hz == 1);
+}
+
+TEST_CASE("units in names, and names that only look like it") {
+  using csv::name_and_unit;
+  using Pair = std::pair<std::string, std::string>;
+  CHECK(name_and_unit("gyro_x [deg/s]") == Pair{"gyro_x", "deg/s"});
+  CHECK(name_and_unit("imu1_gx[1/16.4 deg/s]") == Pair{"imu1_gx", "1/16.4 deg/s"});
+  CHECK(name_and_unit("speed(m/s)") == Pair{"speed", "m/s"});
+  CHECK(name_and_unit("gyro_x") == Pair{"gyro_x", ""});
+  CHECK(name_and_unit("gyro_x_dps") == Pair{"gyro_x", "dps"});
+  CHECK(name_and_unit("gyro_x_rad_s") == Pair{"gyro_x", "rad/s"});
+  CHECK(name_and_unit("acc_z_m_s2") == Pair{"acc_z", "m/s2"});
+  CHECK(name_and_unit("t_ns") == Pair{"t", "ns"});
+  CHECK(name_and_unit("o3_1") == Pair{"o3_1", ""});
+  CHECK(name_and_unit("gyro(2)") == Pair{"gyro(2)", ""});
+  CHECK(name_and_unit("node_h") == Pair{"node_h", ""});
+  CHECK(name_and_unit("temp_C") == Pair{"temp", "degC"});
+  const Recording r = read_text("t,acc_g,acc_mg\n0,1,2\n1,1,2\n");
+  CHECK(names(r) == Names{"acc_g|g", "acc_mg|mg"});  // one name twice: the full texts stay
+}
+
+TEST_CASE("the time column and its unit") {
+  const auto unit = [](const std::string& text) { return read_text(text).info.time; };
+  CHECK(unit("t_us,x\n0,1\n5000,2\n10000,3\n").rate_hz == Approx(200));
+  CHECK(unit("timestamp,x\n1700000000000,1\n1700000000010,2\n1700000000020,2\n").unit == "ms");
+  CHECK(unit("timestamp,x\n1700000000000000,1\n1700000000010000,2\n1700000000020000,2\n").unit ==
+        "us");
+  CHECK(unit("t,x\n0.00,1\n0.01,2\n0.02,4\n").unit == "s");
+  CHECK(unit("t,x\n0,1\n10,2\n20,4\n").unit == "ms");
+  CHECK(unit("t,x\n0,1\n10,2\n20,4\n").unit_guessed);
+  CHECK(unit("millis,x\n0,1\n10,2\n20,4\n").unit == "ms");
+  CHECK_FALSE(unit("millis,x\n0,1\n10,2\n20,4\n").unit_guessed);
+  CHECK(unit("x,Time [min]\n0,1\n10,2\n20,3\n").rate_hz == Approx(1.0 / 60));
+  ReadOptions options;
+  options.time_unit = "us";
+  CHECK(read_text("t,x\n0,1\n10,2\n20,4\n", options).info.time.rate_hz == Approx(1e5));
+  options = {};
+  options.time_column = "b";
+  CHECK(read_text("a,b,c\n0,0,1\n5,1,2\n", options).info.channels.size() == 2);
+  options.time_column = "none";
+  CHECK(read_text("t,x\n0,1\n1,2\n", options).info.channels.size() == 2);
+  // Without header: an evenly rising first column is time, a counter of rows is not.
+  CHECK(unit("0.5,7\n0.6,8\n0.7,9\n").rate_hz == Approx(10));
+  CHECK(read_text("0,7\n1,8\n2,9\n").info.channels.size() == 2);
+  CHECK(failure("date,x\n2024-01-01T00:00:00,1\n").empty() == false);
+  CHECK(
+      failure("time,x\n2024-01-01T00:00:00,1\n").find("log.csv:2:1: error E0321: calendar dates") ==
+      0);
+}
+
+TEST_CASE("channels are selected by name, in file order, and nothing else is parsed") {
+  ReadOptions options;
+  options.channels = {"z", "x"};
+  const Recording r = read_text("t,x,note,z\n0,1,hello,3\n1,2,\"a, b\",4\n", options);
+  CHECK(names(r) == Names{"x", "z"});
+  CHECK(r.samples[1] == std::vector<double>{3, 4});
+  options.channels = {"c2"};
+  CHECK(names(read_text("t,x,note,z\n0,1,hello,3\n", options)) == Names{"z"});
+  options.channels = {"accel"};
+  CHECK(failure("t,accel_x\n0,1\n", options).find("did you mean accel_x?") != std::string::npos);
+  options.channels = {"x"};
+  CHECK(failure("t,x,note\n0,1,a\n1,2\n", options)
+            .find("log.csv:3:4 (byte 18): error E0304: 2 fields, 3 expected") == 0);
+}
+
+TEST_CASE("the first line that cannot be is named with line, column and byte") {
+  CHECK(failure("t,x\n0,1\n1,1e400\n")
+            .find("log.csv:3:3 (byte 10): error E0312: number out of range; got \"1e400\"; hint: "
+                  "--overflow nan") == 0);
+  CHECK(failure("").find("log.csv:1:1 (byte 0): error E0301: the file is empty") == 0);
+  CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
+  CHECK(failure("\x1F\x8B\x08").find("gzip") != std::string::npos);
+  CHECK(failure("PK\x03\x04zip").find("ZIP") != std::string::npos);
+  CHECK(failure(std::string("t\0,\0x\0\n\0", 8)).find("UTF-16") != std::string::npos);
+  CHECK(failure("\xFF\xFEt").find("UTF-16") != std::string::npos);
+  CHECK(failure("t,x,x\n0,1,2\n")
+            .find("log.csv:1:5: error E0307: two columns have the same name (first at 1:3)") == 0);
+  CHECK(failure("t," + std::string(1025, 'n') + "\n0,1\n").find("1024") != std::string::npos);
+  CHECK(failure("t,x\n0,1\n" + std::string(3U << 20U, '1'))
+            .find("log.csv:3:1 (byte 8): error E0305: line longer than 1 MiB") == 0);
+  std::string wide = "c0";
+  for (int i = 1; i <= 100000; ++i) wide += ",c" + std::to_string(i);
+  CHECK(failure(wide + "\n").find("limit is 100000") != std::string::npos);
+  ReadOptions options;
+  options.delimiter = "tabs";
+  CHECK(failure("t,x\n0,1\n", options).find("unknown delimiter") != std::string::npos);
+  options = {};
+  options.channels = {"b"};
+  CHECK(failure("t,x\n0,1\n", options).find("no channel of this name") != std::string::npos);
+}
+
+TEST_CASE("options that hints name do what they say") {
+  ReadOptions options;
+  options.overflow_as_missing = true;
+  CHECK(count(read_text("t,x\n0,1\n1,1e400\n2,3\n", options), "number_out_of_range") == 1);
+  options = {};
+  options.skip_repeated_header = true;
+  const Recording joined = read_text("t,x\n0,1\n1,2\nt,x\n2,3\n", options);
+  CHECK(joined.samples[0] == std::vector<double>{1, 2, 3});
+  CHECK(count(joined, "repeated_header") == 1);
+  options = {};
+  options.skip_rows = 3;
+  CHECK(read_text("Logger v1\nSerial,77\n\nt,x\n0,1\n1,2\n", options).samples[0] ==
+        std::vector<double>{1, 2});
+  options = {};
+  options.encoding = "latin1";
+  CHECK(names(read_text("t,\xB0"
+                        "C\n0,1\n",
+                        options)) == Names{"°C"});
+  options = {};
+  options.header = "no";
+  CHECK(count(read_text("0,7\n1,8\n", options), "no_header") == 0);
+  options = {};
+  options.decimal = "comma";
+  options.delimiter = ";";
+  CHECK(read_text("t;x\n0;1\n1;2,5\n", options).samples[0] == std::vector<double>{1, 2.5});
+}
+
+TEST_CASE("a log cut by a power failure keeps its whole rows and says what was lost") {
+  const Recording r = read_text("t,x\n0,1\n1,2\n2,3.14" + std::string(5000, '\0'));
+  CHECK(r.samples[0] == std::vector<double>{1, 2});
+  CHECK(count(r, "nul_tail") == 1);
+  CHECK(read_text("t,x\n0,1\n1,2\n" + std::string(4U << 20U, '\0')).info.rows == 2);
+  CHECK(failure("t,x\n0,1\n" + std::string(50, '\0') + "1,2\n").find("log.csv:3:1 (byte 8)") == 0);
+  // A last row without its line end is a row.
+  CHECK(read_text("t,x\n0,1\n1,2").samples[0] == std::vector<double>{1, 2});
+}
+
+TEST_CASE("missing cells are counted by column with their places") {
+  const Recording r = read_text("t,x,y\n0,,1\n1,nan,\n2,3,NA\n3,4,5\n");
+  REQUIRE(count(r, "missing_cell") == 4);
+  CHECK(r.info.warnings.find("missing_cell")->message.find("x 2, y 2") != std::string::npos);
+  CHECK(r.info.warnings.find("missing_cell")->places[0] == "line 2, column 3");
+  CHECK(std::isnan(r.samples[0][0]));
+  CHECK(r.samples[1][3] == 5);
+}
+
+TEST_CASE("values, warnings and errors depend on neither block size nor threads") {
+  std::mt19937_64 random(5);
+  std::string text = "t[s];x (g);y\r\n";
+  for (int i = 0; i < 1300; ++i) {
+    const int oddity = static_cast<int>(random() % 60);
+    text += fmt::format("{:.4f};{};{}",
+                        i * 0.01 + (oddity == 1 ? 0.03 : 0),
+                        static_cast<double>(random()) * 1e-19,
+                        oddity == 2   ? ""
+                        : oddity == 3 ? "\"1.5\""
+                                      : fmt::format("{}", i));
+    text += oddity == 4 ? "\n" : "\r\n";
+    if (oddity == 5) text += "\r\n";
+    if (oddity == 6) text += "# remark\r\n";
+    if (i == 1200) text += fmt::format("{:.4f};1;2\r\n", i * 0.01);
+  }
+  const test::TemporaryFolder folder;
+  const auto outcome = [&](const std::string& path, std::size_t block, int threads) {
+    ReadOptions options;
+    options.block_bytes = block;
+    options.threads = threads;
+    std::string said;
+    try {
+      const Recording r = read_recording(path, options);
+      for (const Warning& w : r.info.warnings.list()) said += one_line(w, "") + "\n";
+      said += fmt::format("{} {} {} {} {}",
+                          r.info.rows,
+                          r.info.samples,
+                          r.info.time.rate_hz,
+                          r.info.time.max_deviation_s,
+                          r.info.sha256);
+      for (const auto& channel : r.samples)
+        for (const double x : channel) said += fmt::format(" {}", std::bit_cast<std::uint64_t>(x));
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    return said;
+  };
+  for (const std::string ending : {"", "99;oops;1\r\n"}) {
+    const std::string path = (folder / "log.csv").string();
+    std::ofstream(path, std::ios::binary) << text << ending;
+    const std::string whole = outcome(path, 1U << 24U, 1);
+    CHECK((whole.find("oops") != std::string::npos) == !ending.empty());
+    std::vector<std::size_t> sizes = {4095, 4096, 4097, 65535, 65536, 65537};
+    for (std::size_t b = 1; b <= 67; ++b) sizes.push_back(b);
+    for (const std::size_t block : sizes)
+      if (outcome(path, block, 1) != whole) FAIL("block size " << block);
+    for (int threads = 2; threads <= 8; ++threads)
+      if (outcome(path, 997, threads) != whole) FAIL("threads " << threads);
+  }
+}
+
+TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
+  const std::vector<std::vector<double>> values = {{1.5, -2.25, 1e-7}, {3, 4.125, -0.0}};
+  for (const char delimiter : {',', ';', '\t', ' ', '|'})
+    for (const char* end : {"\n", "\r\n", "\r"})
+      for (const char mark : {'.', ','}) {
+        if (delimiter == ',' && mark == ',') continue;
+        std::string text = fmt::format("t{0}x{0}y{1}", delimiter, end);
+        for (int i = 0; i < 3; ++i) {
+          std::string row = fmt::format(
+              "{:.2f}{}{:.9f}{}{:.9f}", 0.01 * i, delimiter, values[0][i], delimiter, values[1][i]);
+          for (char& c : row)
+            if (c == '.') c = mark;
+          text += row + end;
+        }
+        ReadOptions options;
+        if (delimiter == '|') options.delimiter = "|";
+        INFO(text);
+        const Recording r = read_text(text, options);
+        CHECK(r.samples == values);
+        CHECK(std::signbit(r.samples[1][2]));
+        CHECK(r.info.time.rate_hz == Approx(100));
+      }
+}

@@ -1,0 +1,135 @@
+#include "libchar/log/quality.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "libchar/core/moments.hpp"
+
+using namespace libchar;
+
+namespace {
+
+ChannelQuality meter(const std::vector<double>& x) {
+  QualityMeter m;
+  m.push(x);
+  return m.finish();
+}
+
+std::vector<double> gaussian(std::size_t n, double sd, double mean = 0) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(mean, sd);
+  std::vector<double> x(n);
+  for (double& v : x) v = noise(random);
+  return x;
+}
+
+bool suggests(const ChannelQuality& q, const char* what) {
+  for (const std::string& s : q.suggestions)
+    if (s.find(what) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("the least step of values on a grid is found in spite of rounding") {
+  for (const double lsb : {0.05, 0.00333, 1.0, 1 / 16.4, 0.0625, 9.80665 / 2048, 3e-6})
+    for (const double offset : {0.0, 9.81, -1000 * lsb}) {
+      auto x = gaussian(20000, 4 * lsb, offset);
+      for (double& v : x) v = std::round(v / lsb) * lsb;
+      INFO(lsb << " at " << offset);
+      const ChannelQuality q = meter(x);
+      REQUIRE(q.resolution);
+      CHECK(*q.resolution == Approx(lsb).epsilon(1e-6));
+      for (double& v : x) v = static_cast<double>(static_cast<float>(v));
+      const ChannelQuality f = meter(x);
+      CHECK(f.float32);
+      if (lsb > 20 * f.float32_step) {
+        REQUIRE(f.resolution);
+        CHECK(*f.resolution == Approx(lsb).epsilon(1e-3));
+      }
+    }
+}
+
+TEST_CASE("values with no common step have no resolution") {
+  CHECK_FALSE(meter(gaussian(20000, 1)).resolution);
+  CHECK_FALSE(meter(gaussian(100, 1)).resolution);
+  CHECK(meter(gaussian(20000, 1)).distinct_values == 4096);
+  CHECK_FALSE(meter(gaussian(20000, 1)).float32);
+}
+
+TEST_CASE("mean and spread agree with the moments of the core, whatever the offset") {
+  for (const double offset : {0.0, 9.81, 1e9}) {
+    const auto x = gaussian(100000, 1e-3, offset);
+    const ChannelQuality q = meter(x);
+    Moments m;
+    m.push(x);
+    CHECK(q.mean == Approx(m.mean()).epsilon(1e-15));
+    CHECK(q.standard_deviation == Approx(m.standard_deviation()).epsilon(1e-12));
+    CHECK(q.minimum == m.minimum());
+    CHECK(q.maximum == m.maximum());
+  }
+}
+
+TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {
+  auto x = gaussian(50000, 1);
+  CHECK(meter(x).saturated == 0);
+  CHECK(meter(x).longest_stuck == 1);
+  CHECK(meter(x).difference_kurtosis == Approx(3).margin(0.15));
+  auto clipped = x;
+  std::uint64_t in_runs = 0;
+  for (std::size_t i = 1000; i < 1100; ++i) clipped[i] = 8, ++in_runs;
+  for (std::size_t i = 7000; i < 7005; ++i) clipped[i] = -8, ++in_runs;
+  clipped[9000] = 8;  // alone: no run
+  CHECK(meter(clipped).saturated == in_runs);
+  CHECK(meter(clipped).longest_stuck == 100);
+  CHECK(suggests(meter(clipped), "saturated"));
+  auto spiky = x;
+  for (std::size_t i = 0; i < spiky.size(); i += 500) spiky[i] += 40;
+  CHECK(meter(spiky).difference_kurtosis > 20);
+  CHECK(suggests(meter(spiky), "spikes"));
+  std::vector<double> two(100);
+  for (std::size_t i = 0; i < two.size(); ++i) two[i] = i % 14 < 7 ? 0 : 0.0625;
+  CHECK(meter(two).distinct_values == 2);
+  CHECK(suggests(meter(two), "quantization-limited"));
+  CHECK(suggests(meter(std::vector<double>(100, 3.0)), "constant"));
+  std::vector<double> ramp(1000);
+  for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
+  CHECK(meter(ramp).difference_kurtosis == 3);
+  CHECK(*meter(ramp).resolution == 1);
+}
+
+TEST_CASE("missing samples are counted, break runs and leave the differences out") {
+  std::vector<double> x = {5, 5, kMissing, 5, 5, 5, 1, kMissing, 2};
+  const ChannelQuality q = meter(x);
+  CHECK(q.samples == 7);
+  CHECK(q.missing == 2);
+  CHECK(q.longest_stuck == 3);
+  CHECK(q.mean == Approx(4));
+  const ChannelQuality none = meter({kMissing, kMissing});
+  CHECK(none.samples == 0);
+  CHECK(none.missing == 2);
+  CHECK(meter({}).samples == 0);
+  CHECK(meter({4}).standard_deviation == 0);
+}
+
+TEST_CASE("the result does not depend on how the samples are pushed") {
+  auto x = gaussian(30000, 2);
+  for (std::size_t i = 0; i < x.size(); i += 97) x[i] = kMissing;
+  for (std::size_t i = 500; i < 540; ++i) x[i] = 9;
+  const ChannelQuality whole = meter(x);
+  for (const std::size_t step :
+       {std::size_t{1}, std::size_t{3}, std::size_t{4095}, std::size_t{4097}}) {
+    QualityMeter m;
+    for (std::size_t i = 0; i < x.size(); i += step)
+      m.push({x.data() + i, std::min(step, x.size() - i)});
+    const ChannelQuality q = m.finish();
+    CHECK(q.mean == whole.mean);
+    CHECK(q.standard_deviation == whole.standard_deviation);
+    CHECK(q.difference_kurtosis == whole.difference_kurtosis);
+    CHECK(q.saturated == whole.saturated);
+    CHECK(q.longest_stuck == whole.longest_stuck);
+    CHECK(q.suggestions == whole.suggestions);
+  }
+}

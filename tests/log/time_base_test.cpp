@@ -1,0 +1,194 @@
+// The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on
+// made-up clocks.
+#include "libchar/log/time_base.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "tests/log/log_text.hpp"
+
+using namespace libchar;
+using test::count;
+using test::failure;
+using test::read_text;
+
+namespace {
+
+std::string log_of(const std::vector<std::int64_t>& stamps, const char* name = "t_us") {
+  std::string text = std::string(name) + ",x\n";
+  for (std::size_t i = 0; i < stamps.size(); ++i) text += fmt::format("{},{}\n", stamps[i], i);
+  return text;
+}
+
+std::vector<std::int64_t> even(std::size_t n, std::int64_t step, std::int64_t start = 0) {
+  std::vector<std::int64_t> t(n);
+  for (std::size_t i = 0; i < n; ++i) t[i] = start + static_cast<std::int64_t>(i) * step;
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("missing rows become missing samples, never values") {
+  auto t = even(3000, 5000);
+  t.erase(t.begin() + 2000, t.begin() + 2007);
+  t.erase(t.begin() + 100);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.rows == 2992);
+  CHECK(r.info.samples == 3000);
+  CHECK(r.info.time.gaps == 2);
+  CHECK(r.info.time.missing_samples == 8);
+  CHECK(r.info.time.rate_hz == Approx(200).epsilon(1e-12));
+  REQUIRE(count(r, "gap") == 2);
+  CHECK(r.info.warnings.find("gap")->places[0] == "line 102");
+  CHECK(std::isnan(r.samples[0][100]));
+  CHECK(r.samples[0][99] == 99);
+  CHECK(r.samples[0][101] == 100);
+  for (std::size_t i = 2000; i < 2007; ++i) CHECK(std::isnan(r.samples[0][i]));
+  CHECK(r.samples[0][2999] == 2991);
+}
+
+TEST_CASE("the rate is exact in spite of jitter, drifts of the first rows and outliers") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 300);
+  std::vector<std::int64_t> t;
+  for (int i = 0; i < 200000; ++i)
+    t.push_back(static_cast<std::int64_t>(
+        std::llround(i * 5000.025 + noise(random) + (i % 1000 == 7 ? 1500 : 0))));
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.samples == 200000);
+  CHECK(r.info.time.rate_hz == Approx(1e6 / 5000.025).epsilon(1e-7));
+  CHECK(r.info.time.jitter_s == Approx(300e-6).epsilon(0.05));
+  CHECK(r.info.time.max_deviation_s > 1500e-6);
+  CHECK(r.info.time.max_deviation_s < 3500e-6);
+}
+
+TEST_CASE("one late row whose followers are on time is no gap") {
+  auto t = even(2000, 5000);
+  t[700] += 4000;
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.samples == 2000);
+  CHECK(r.info.time.gaps == 0);
+}
+
+TEST_CASE("doubled stamps: the first row is kept") {
+  auto t = even(50, 1000);
+  t.insert(t.begin() + 10, t[9]);
+  t.insert(t.begin(), t[0]);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.samples == 50);
+  REQUIRE(count(r, "duplicate_timestamp") == 2);
+  CHECK(r.info.warnings.find("duplicate_timestamp")->places[0] == "line 3");
+  CHECK(r.samples[0][0] == 0);
+}
+
+TEST_CASE("a clock too coarse to tell rows apart keeps all rows") {
+  std::vector<std::int64_t> t;
+  for (int i = 0; i < 4000; ++i) t.push_back(i / 2);  // 2 kHz in whole milliseconds
+  const Recording r = read_text(log_of(t, "t_ms"));
+  CHECK(r.info.samples == 4000);
+  CHECK(r.info.time.rate_hz == Approx(2000).epsilon(1e-6));
+  CHECK(count(r, "coarse_stamps") == 1);
+  // 400 Hz in whole milliseconds: steps of 2 and 3
+  t.clear();
+  for (int i = 0; i < 4000; ++i) t.push_back(i * 5 / 2);
+  const Recording s = read_text(log_of(t, "t_ms"));
+  CHECK(s.info.samples == 4000);
+  CHECK(s.info.time.rate_hz == Approx(400).epsilon(1e-6));
+}
+
+TEST_CASE("rows that step back are dropped and counted; a restarted clock is an error") {
+  auto t = even(300, 1000);
+  std::swap(t[100], t[101]);
+  const Recording r = read_text(log_of(t));
+  REQUIRE(count(r, "backward_timestamp") == 1);
+  CHECK(r.info.warnings.find("backward_timestamp")->places[0] == "line 103");
+  auto twice = even(300, 1000);
+  const auto again = even(300, 1000);
+  twice.insert(twice.end(), again.begin(), again.end());
+  CHECK(failure(log_of(twice)).find("log.csv:302:1: error E0317: the time steps back here") == 0);
+}
+
+TEST_CASE("16- and 32-bit microsecond clocks run over and go on") {
+  for (const int bits : {16, 32}) {
+    const std::int64_t range = std::int64_t{1} << bits;
+    std::vector<std::int64_t> t;
+    for (int i = 0; i < 1000; ++i) t.push_back((range - 1000 + i * 100) % range);
+    const Recording r = read_text(log_of(t));
+    INFO(bits);
+    CHECK(r.info.samples == 1000);
+    CHECK(count(r, "clock_rollover") == (bits == 16 ? 2U : 1U));
+    CHECK(r.info.time.rate_hz == Approx(10000));
+    CHECK(r.info.time.gaps == 0);
+  }
+}
+
+TEST_CASE("stamps that are no time axis") {
+  CHECK(failure("t_us,x\n5,1\n5,2\n5,3\n")
+            .find("log.csv:3:1: error E0315: no time axis: all stamps are equal") == 0);
+  CHECK(failure("t_us,x\n5,1\n4,2\n3,3\n").find("never rise") != std::string::npos);
+  CHECK(failure("t_ns,x\n0,1\n100,2\n200,3\n4000000000000000000,4\n300,5\n")
+            .find("log.csv:5:1: error E0316: wild time stamp") == 0);
+  CHECK(failure("t_ns,x\n-9000000000000000000,1\n9000000000000000000,2\n").find("error E031") !=
+        std::string::npos);
+  CHECK(failure("t,x\n0,1\n,2\n").find("log.csv:3:1 (byte 8): error E0313: missing time stamp") ==
+        0);
+}
+
+TEST_CASE("one and two rows") {
+  const Recording one = read_text("t,x\n5,1\n");
+  CHECK(one.info.samples == 1);
+  CHECK(one.info.time.rate_hz == 0);
+  CHECK(one.info.time.start_ns == 5000000000);
+  const Recording two = read_text("t,x\n5,1\n5.5,2\n");
+  CHECK(two.info.time.rate_hz == 2);
+  CHECK(two.info.time.jitter_s == 0);
+}
+
+TEST_CASE("a window gives the same samples as the whole") {
+  auto t = even(5000, 10000, 77);
+  t.erase(t.begin() + 1200, t.begin() + 1300);
+  const Recording whole = read_text(log_of(t));
+  for (const auto& [from, to] : {std::pair{0.0, 50.0},
+                                 {3.0, 4.0},
+                                 {12.5, 12.7},
+                                 {11.9, 13.2},
+                                 {12.35, 20.0},
+                                 {49.0, 99.0}}) {
+    ReadOptions options;
+    options.from_s = from;
+    options.to_s = to;
+    const Recording part = read_text(log_of(t), options);
+    const auto first = static_cast<std::size_t>(std::llround(from * 100));
+    const auto last = std::min<std::size_t>(whole.samples[0].size(),
+                                            static_cast<std::size_t>(std::llround(to * 100)));
+    INFO(from << " " << to);
+    REQUIRE(part.samples[0].size() == last - first);
+    for (std::size_t i = first; i < last; ++i) {
+      const double a = whole.samples[0][i], b = part.samples[0][i - first];
+      if (!(a == b || (std::isnan(a) && std::isnan(b)))) FAIL("sample " << i);
+    }
+    CHECK(part.info.sha256 == whole.info.sha256);
+    CHECK(part.info.time.start_ns == 77000 + static_cast<std::int64_t>(first) * 10000000);
+  }
+  ReadOptions options;
+  options.from_s = 2;
+  options.to_s = 1;
+  CHECK_THROWS_AS(read_text(log_of(t), options), Error);
+}
+
+TEST_CASE("windows without stamps go by the given rate") {
+  std::string text = "x,y\n";
+  for (int i = 0; i < 1000; ++i) text += fmt::format("{},{}\n", i, -i);
+  ReadOptions options;
+  options.rate_hz = 100;
+  options.from_s = 2.5;
+  options.to_s = 2.6;
+  const Recording r = read_text(text, options);
+  REQUIRE(r.info.samples == 10);
+  CHECK(r.samples[0][0] == 250);
+  options.rate_hz.reset();
+  CHECK(failure(text, options).find("--rate HZ") != std::string::npos);
+}
