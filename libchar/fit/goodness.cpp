@@ -7,7 +7,6 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
-
 namespace libchar {
 
 double normal_deviate(double energy_ratio, double dof) {

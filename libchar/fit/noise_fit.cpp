@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/fit/allan_fit.hpp"
@@ -100,6 +101,47 @@ Goodness goodness_between(const NoiseFit& fit, double low_hz, double high_hz) {
   return goodness_of(part, 0);
 }
 
+/// Median of measured/model over bins from..to-1, +infinity when there are fewer than three.
+double median_ratio(const std::vector<FitResidual>& residual, std::size_t from, std::size_t to) {
+  if (to < from + 3) return std::numeric_limits<double>::infinity();
+  std::vector<double> ratio;
+  for (std::size_t i = from; i < to; ++i) ratio.push_back(residual[i].measured / residual[i].model);
+  const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
+  std::nth_element(ratio.begin(), middle, ratio.end());
+  return *middle;
+}
+
+/// Bins of a broad hump (vibration, a wandering line): on the scale of the model a quarter and six
+/// standard deviations above the median of the ten bins before as well as of the ten after, so that
+/// a slope or a rising end is none.
+std::vector<PowerBin> without_humps(const Attempt& now) {
+  constexpr std::size_t kReach = 10;
+  const std::vector<FitResidual>& residual = now.fit.residuals;
+  std::vector<PowerBin> kept;
+  for (std::size_t j = 0; j < now.bins.size(); ++j) {
+    const double before = median_ratio(residual, j < kReach ? 0 : j - kReach, j);
+    const double after = median_ratio(residual, j + 1, std::min(j + 1 + kReach, residual.size()));
+    const double excess = residual[j].measured / residual[j].model / std::max(before, after) - 1;
+    const double limit = std::max(0.25, 6 * std::sqrt(2 / now.bins[j].dof));
+    if (now.bins[j].dof <= 32 || excess <= limit) kept.push_back(now.bins[j]);
+  }
+  return kept;
+}
+
+/// Humps are left out before anything else is read from the residuals.
+void answer_humps(Attempt& now) {
+  if (!(now.fit.goodness.p < kAlarmP)) return;
+  std::vector<PowerBin> kept = without_humps(now);
+  const std::uint64_t count = now.bins.size() - kept.size();
+  if (count == 0 || kept.size() < now.bins.size() / 2) return;
+  now = attempt(std::move(kept), now.fit.rate_hz, now.fit.samples, now.options);
+  now.fit.remedies.push_back(
+      {"lines",
+       fmt::format("{} bins a quarter and six standard deviations above their neighbours", count),
+       fmt::format("{} bins of broad humps left out", count),
+       count});
+}
+
 /// High frequencies misfit: quantization or a low-pass, whichever explains more.
 void answer_high_frequencies(Attempt& now) {
   const double rate_hz = now.fit.rate_hz;
@@ -122,6 +164,7 @@ void answer_high_frequencies(Attempt& now) {
   if (std::max(gain_quantized, gain_low_pass) < kRemedyRatio) return;
 
   if (gain_quantized >= gain_low_pass) {
+    quantized->fit.remedies = now.fit.remedies;
     now = std::move(*quantized);
     now.fit.remedies.push_back(
         {"quantization",
@@ -131,8 +174,10 @@ void answer_high_frequencies(Attempt& now) {
          1});
     return;
   }
+  const std::vector<Remedy> before = now.fit.remedies;
   now = attempt(
       low_passed(now.bins, low_pass->corner_hz, rate_hz), rate_hz, now.fit.samples, now.options);
+  now.fit.remedies = before;
   now.fit.bandwidth_hz = low_pass->corner_hz;
   const double spread = std::exp(1.959963984540054 * low_pass->log_sd);
   now.fit.bandwidth_ci95 = Interval{low_pass->corner_hz / spread, low_pass->corner_hz * spread};
@@ -251,6 +296,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         const FitOptions& options) {
   Attempt now = attempt(bins, rate_hz, samples, options);
   if (options.remedies) {
+    answer_humps(now);
     answer_high_frequencies(now);
     answer_low_frequencies(now);
   }

@@ -1,8 +1,7 @@
-// A smaller, seeded version of tests/bench/fit_bench.cpp. With R records an efficiency scatters by sqrt(2/R) relative and a
-// coverage by sqrt(.95 .05/R): limits are three of these below the targets, so that a right program fails one seed in about a
-// hundred; the seed is fixed.
+// A smaller, seeded version of tests/bench/fit_bench.cpp. With R records an efficiency scatters by
+// sqrt(2/R) relative and a coverage by sqrt(.95 .05/R): limits are three of these below the
+// targets, so that a right program fails one seed in about a hundred; the seed is fixed.
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "libchar/fit/bin_likelihood.hpp"
@@ -18,12 +17,18 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
   };
   constexpr std::size_t kSamples = 32768;
   constexpr int kRecords = 150;
-  for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 1e-2}, Scene{"c", 1000, 1e-3, 4e-3, 0}, Scene{"e", 200, 5e-3, 0, 2e-2}, Scene{"d", 200, 5e-3, 0, 0}}) {
+  for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 1e-2},
+                             Scene{"c", 1000, 1e-3, 4e-3, 0},
+                             Scene{"e", 200, 5e-3, 0, 2e-2},
+                             Scene{"d", 200, 5e-3, 0, 0}}) {
     test::NoiseSource source(kSamples, scene.rate_hz, 77);
     test::Gaussian starts(1);
     const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
     const TermSet present = {true, scene.b > 0, scene.k > 0, false, false};
-    const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0}, scene.rate_hz, kSamples, present);
+    const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0},
+                                  scene.rate_hz,
+                                  kSamples,
+                                  present);
     std::array<double, 3> square{}, covered{};
     int false_terms = 0, remedies = 0;
     for (int r = 0; r < kRecords; ++r) {
@@ -38,7 +43,8 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
           any_false = any_false || c.status != Status::not_detected;
           continue;
         }
-        square[i] += std::pow((c.value.value_or(0) - truth[i]) / (*bound[i] * truth[i]), 2) / kRecords;
+        square[i] +=
+            std::pow((c.value.value_or(0) - truth[i]) / (*bound[i] * truth[i]), 2) / kRecords;
         covered[i] += c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1.0 / kRecords : 0.0;
       }
       false_terms += any_false ? 1 : 0;
@@ -48,14 +54,17 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       const BinProblem problem = bin_problem(binner.finish(scene.rate_hz));
       for (int s = 0; s < 4; ++s) {
         Mixture start{};
-        for (std::size_t i = 0; i < 3; ++i) start[i] = fit.theta[i] > 0 ? fit.theta[i] * std::exp(4 * starts()) : 0;
-        CHECK(score(problem, only_positive(start), &start, 1e-12).half_deviance > half_deviance(problem, fit.theta) - 1e-3);
+        for (std::size_t i = 0; i < 3; ++i)
+          start[i] = fit.theta[i] > 0 ? fit.theta[i] * std::exp(4 * starts()) : 0;
+        CHECK(score(problem, only_positive(start), &start, 1e-12).half_deviance >
+              half_deviance(problem, fit.theta) - 1e-3);
       }
     }
     const std::array<double, 3> wanted = {0.90, 0.88, 0.85};
     for (std::size_t i = 0; i < 3; ++i) {
       if (!present[i]) continue;
-      INFO(scene.name << " " << kTermNames[i].letter << " bound " << *bound[i] << " efficiency " << 1 / square[i] << " coverage " << covered[i]);
+      INFO(scene.name << " " << kTermNames[i].letter << " bound " << *bound[i] << " efficiency "
+                      << 1 / square[i] << " coverage " << covered[i]);
       if (*bound[i] <= 0.13) CHECK(1 / square[i] > wanted[i] * (1 - 3 * std::sqrt(2.0 / kRecords)));
       CHECK(covered[i] > 0.95 - 3 * std::sqrt(0.95 * 0.05 / kRecords));
     }

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <limits>
 
@@ -33,29 +32,38 @@ std::vector<PowerBin> noise_free(const Mixture& theta, double rate_hz) {
 TEST_CASE("noise-free bins give their coefficients back to nine digits") {
   const Mixture theta = {1e-6, 1e-4, 25e-6, 0, 0};
   const NoiseFit fit = fit_power_bins(noise_free(theta, 200), 200, 30000, nullptr);
-  for (std::size_t i = 0; i < 3; ++i) CHECK(fit.term[i].value.value() == Approx(std::sqrt(theta[i])).epsilon(1e-9));
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(fit.term[i].value.value() == Approx(std::sqrt(theta[i])).epsilon(1e-9));
   CHECK(fit.converged);
   CHECK(fit.remedies.empty());
 }
 
 TEST_CASE("the deviance residual and its slope") {
-  for (const double u : {1e-3, 0.5, 0.98999, 0.9901, 1 - 1e-9, 1.0, 1 + 1e-9, 1.0099, 1.0101, 3.0, 50.0}) {
+  for (const double u :
+       {1e-3, 0.5, 0.98999, 0.9901, 1 - 1e-9, 1.0, 1 + 1e-9, 1.0099, 1.0101, 3.0, 50.0}) {
     const long double d = static_cast<long double>(u) - 1;
     const auto r = deviance_residual(u, 1, 8);
-    if (u != 1) CHECK(r.value * r.value == Approx(static_cast<double>(8 * (d - std::log1p(d)))).epsilon(u > 0.9 && u < 1.1 ? 1e-7 : 1e-12));
+    if (u != 1)
+      CHECK(r.value * r.value == Approx(static_cast<double>(8 * (d - std::log1p(d))))
+                                     .epsilon(u > 0.9 && u < 1.1 ? 1e-7 : 1e-12));
     const double h = 1e-6;
-    const double slope = (deviance_residual(u, 1 + h, 8).value - deviance_residual(u, 1 - h, 8).value) / (std::log1p(h) - std::log1p(-h));
+    const double slope =
+        (deviance_residual(u, 1 + h, 8).value - deviance_residual(u, 1 - h, 8).value) /
+        (std::log1p(h) - std::log1p(-h));
     CHECK(r.slope == Approx(slope).epsilon(1e-7));
   }
 }
 
-TEST_CASE("scaling a record scales the coefficients; an offset of 1e6 sigma changes nothing that matters") {
+TEST_CASE(
+    "scaling a record scales the coefficients; an offset of 1e6 sigma changes nothing that "
+    "matters") {
   test::NoiseSource source(50000, 200, 4);
   const std::vector<double> y = source.record(1e-3, 1e-2, 5e-3);
   std::vector<double> scaled = y, shifted = y;
   for (double& value : scaled) value *= 1024;
   for (double& value : shifted) value += 1e6;
-  const NoiseFit fit = fit_record(y, 200, nullptr), big = fit_record(scaled, 200, nullptr), off = fit_record(shifted, 200, nullptr);
+  const NoiseFit fit = fit_record(y, 200, nullptr), big = fit_record(scaled, 200, nullptr),
+                 off = fit_record(shifted, 200, nullptr);
   for (std::size_t i = 0; i < 3; ++i) {
     REQUIRE(fit.term[i].value);
     CHECK(big.term[i].value.value() == Approx(1024 * *fit.term[i].value).epsilon(1e-9));
@@ -94,7 +102,8 @@ TEST_CASE("a long gap starts a new segment") {
   CHECK(fit.samples == 15000);
 }
 
-TEST_CASE("spikes are replaced, counted, the same for pieces of any size; clean noise is untouched") {
+TEST_CASE(
+    "spikes are replaced, counted, the same for pieces of any size; clean noise is untouched") {
   test::Gaussian gauss(6);
   std::vector<double> y(50000);
   for (double& value : y) value = gauss();
@@ -107,8 +116,11 @@ TEST_CASE("spikes are replaced, counted, the same for pieces of any size; clean 
   CHECK(clean_spikes(once) == put);
   SpikeCleaner cleaner = SpikeCleaner::with_limit(spike_limit(y, 6));
   std::vector<double> pieces;
-  const auto keep = [&](std::span<const double> part) { pieces.insert(pieces.end(), part.begin(), part.end()); };
-  for (std::size_t from = 0, n = 1; from < y.size(); from += n, n = n * 5 % 911 + 1) keep(cleaner.push(std::span<const double>(y).subspan(from, std::min(n, y.size() - from))));
+  const auto keep = [&](std::span<const double> part) {
+    pieces.insert(pieces.end(), part.begin(), part.end());
+  };
+  for (std::size_t from = 0, n = 1; from < y.size(); from += n, n = n * 5 % 911 + 1)
+    keep(cleaner.push(std::span<const double>(y).subspan(from, std::min(n, y.size() - from))));
   keep(cleaner.finish());
   CHECK(pieces == once);
   SpikeCleaner streaming;  // limit from the pilot
@@ -166,9 +178,11 @@ TEST_CASE("bounds: the table of the theory, and the length for 10 %") {
   CHECK(100 * *bound[0] == Approx(0.350).epsilon(0.01));
   CHECK(100 * *bound[1] == Approx(0.646).epsilon(0.01));
   CHECK(100 * *bound[2] == Approx(8.40).epsilon(0.01));
-  const auto white = cramer_rao({25e-6, 0, 0, 0, 0}, 200, 200000, {true, false, false, false, false});
+  const auto white =
+      cramer_rao({25e-6, 0, 0, 0, 0}, 200, 200000, {true, false, false, false, false});
   CHECK(*white[0] == Approx(1 / std::sqrt(2 * 199999.0)).epsilon(1e-6));
-  const NoiseFit fit = fit_power_bins(noise_free({1e-6, 1e-4, 25e-6, 0, 0}, 200), 200, 30000, nullptr);
+  const NoiseFit fit =
+      fit_power_bins(noise_free({1e-6, 1e-4, 25e-6, 0, 0}, 200), 200, 30000, nullptr);
   const double seconds = fit[Term::flicker].seconds_for_10_percent.value();
   CHECK(*cramer_rao(fit.theta, 200, seconds * 200, all)[1] == Approx(0.1).epsilon(0.01));
 }
@@ -179,7 +193,8 @@ TEST_CASE("what cannot be fitted is refused in a sentence") {
   CHECK_THROWS_AS(fit_record(std::vector<double>{}, 10, nullptr), Error);
   FitOptions none;
   none.terms = {};
-  CHECK_THROWS_AS(fit_record(test::NoiseSource(100, 1, 1).record(1, 0, 0), 1, nullptr, none), Error);
+  CHECK_THROWS_AS(fit_record(test::NoiseSource(100, 1, 1).record(1, 0, 0), 1, nullptr, none),
+                  Error);
 }
 
 TEST_CASE("an absent term has no value, only a limit, in the JSON too") {
