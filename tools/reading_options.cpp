@@ -110,6 +110,16 @@ void add_accepting_flag(CLI::App& verb,
 }  // namespace
 
 void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options) {
+  verb.add_option("--names", options.names, "names for the channels that are read, in order, where the log has none (default: c0, c1…)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,…")
+      ->group("Reading");
+  verb.add_option("--units", options.units, "units of the channels that are read, in order, or one for all (default: as in the log)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("UNIT,…")
+      ->group("Reading");
   verb.add_option("-c,--channel",
                   options.channels,
                   "channel to read, by name or position c0, c1…; repeat it or separate by commas "
@@ -166,6 +176,8 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };
   for (const std::string& channel : options.channels) word("-c", channel, "");
+  for (const std::string& name : options.names) word("--names", name, "");
+  for (const std::string& unit : options.units) word("--units", unit, "");
   number("--from", options.from_s, "s");
   number("--to", options.to_s, "s");
   number("--rate", options.rate_hz, "Hz");

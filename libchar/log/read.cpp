@@ -1,6 +1,7 @@
 #include "libchar/log/read.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -91,12 +92,27 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
                "--format csv|npy|raw, or write FILE.json (docs: raw binary)"});
 }
 
+// What the user knows of the channels and the log does not say.
+void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
+  const auto refuse = [&](const char* flag, std::size_t given) {
+    throw Error({ErrorKind::usage, "", flag, fmt::format("{} were given for {} channels", given, channels.size()), "", "one for each channel that is read, in order"});
+  };
+  if (!options.names.empty() && options.names.size() != channels.size()) refuse("--names", options.names.size());
+  if (options.units.size() > 1 && options.units.size() != channels.size()) refuse("--units", options.units.size());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (!options.names.empty()) channels[c].name = options.names[c];
+    if (!options.units.empty()) channels[c].unit = options.units[options.units.size() == 1 ? 0 : c];
+  }
+}
+
 // Passes blocks on and remembers which channels had a value at all.
 struct Watch final : BlockSink {
-  explicit Watch(BlockSink& sink) : next(sink) {}
+  Watch(BlockSink& sink, const ReadOptions& reading) : next(sink), options(reading) {}
   void begin(const LogInfo& so_far) override {
     seen.assign(so_far.channels.size(), false);
-    next.begin(so_far);
+    LogInfo named = so_far;
+    name_channels(named.channels, options);
+    next.begin(named);
   }
   void block(const SampleBlock& samples) override {
     for (std::size_t c = 0; c < seen.size(); ++c)
@@ -105,6 +121,7 @@ struct Watch final : BlockSink {
     next.block(samples);
   }
   BlockSink& next;
+  const ReadOptions& options;
   std::vector<bool> seen;
 };
 
@@ -123,7 +140,7 @@ LogInfo read_log(const std::string& path,
                  ""});
   const auto source = format_of(path, options).open(path, options);
   Warnings warnings;
-  Watch watch(sink);
+  Watch watch(sink, options);
   TimeGrid grid(*source, options, watch, warnings);
   RowBlock block;
   const std::string what = "reading " + path;
@@ -139,6 +156,7 @@ LogInfo read_log(const std::string& path,
   grid.finish(known);
   source->finish(warnings);
   LogInfo info = source->info();
+  name_channels(info.channels, options);
   info.rows = known.rows;
   info.samples = known.samples;
   if (known.rows == 0) throw Error({ErrorKind::input, "E0301", info.file, "no data rows", "", ""});
@@ -148,6 +166,7 @@ LogInfo read_log(const std::string& path,
     time.column = info.time.column;
     time.unit = info.time.unit;
     time.unit_guessed = info.time.unit_guessed;
+    if (!time.start_ns) time.start_ns = info.time.start_ns;
   }
   info.time = time;
   for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)

@@ -14,6 +14,8 @@ namespace libchar {
 
 struct ReadOptions {
   std::vector<std::string> channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
+  std::vector<std::string> names;  ///< new names of the channels read, in order; empty = as in the log
+  std::vector<std::string> units;  ///< units of the channels read, in order, or one for all; empty = as in the log
   std::optional<double> from_s;       ///< first instant to use, seconds after the first stamp
   std::optional<double> to_s;         ///< first instant not to use
   std::optional<double> rate_hz;      ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only

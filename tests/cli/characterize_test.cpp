@@ -1,0 +1,168 @@
+// The main job, run as people run it.
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using namespace libchar;
+
+namespace {
+
+Json report_of(const std::filesystem::path& folder) { return parse_json(test::slurp(folder / "report.json"), "report.json"); }
+
+const Json& fit_of(const Json& report, const std::string& channel) {
+  for (const Json& c : report.at("fit").at("channels"))
+    if (c.at("name") == channel) return c;
+  FAIL("no fit of " << channel);
+  return report;
+}
+
+bool inside(const Json& term, double truth) {
+  return term.at("ci95").at(0).get<double>() <= truth && truth <= term.at("ci95").at(1).get<double>();
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+}  // namespace
+
+TEST_CASE("characterize the fixture: every file, and intervals that hold the truth") {
+  const test::TemporaryFolder folder;
+  const auto out = folder / "out";
+  const auto ran = test::run({"characterize", test::fixture("imu_at_rest.csv").string(), "-o", out.string()});
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  for (const char* name : {"report.html", "report.json", "curves.csv", "gyro_z.sensor.yaml", "accel_z.sensor.yaml"})
+    CHECK(std::filesystem::file_size(out / name) > 500);
+  const Json report = report_of(out);
+  CHECK(report.at("fit").at("format") == "noise-fit");
+  const Json& gyro = fit_of(report, "gyro_z");
+  CHECK(inside(gyro.at("white_noise"), 4e-3));
+  CHECK(inside(gyro.at("bias_instability"), 4e-3));
+  CHECK(inside(gyro.at("random_walk"), 1.5e-3));
+  const Json& accel = fit_of(report, "accel_z");
+  CHECK(inside(accel.at("white_noise"), 1e-4));
+  for (const char* absent : {"bias_instability", "random_walk"}) {
+    CHECK(accel.at(absent).at("status") == "not_detected");
+    CHECK(accel.at(absent).at("value").is_null());
+    CHECK(accel.at(absent).at("upper95").get<double>() > 0);
+  }
+}
+
+TEST_CASE("characterize gives the same bytes for the same input, measured times apart") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  for (const char* threads : {"1", "2"}) {
+    const auto out = folder / "out";  // the same place each time: paths are part of the command
+    REQUIRE(test::run({"characterize", log, "-o", out.string(), "--force", "--threads", threads}).code == 0);
+    std::filesystem::rename(out, folder / (std::string("threads") + threads));
+  }
+  const auto a = folder / "threads1", b = folder / "threads2";
+  CHECK(test::slurp(a / "curves.csv") == test::slurp(b / "curves.csv"));
+  CHECK(test::slurp(a / "gyro_z.sensor.yaml") == test::slurp(b / "gyro_z.sensor.yaml"));
+  Json first = report_of(a), second = report_of(b);
+  for (Json* document : {&first, &second}) {
+    document->erase("measured");
+    document->erase("command");  // differs by --threads
+  }
+  CHECK(first == second);
+}
+
+TEST_CASE("kept and streamed records agree") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto kept = folder / "kept", streamed = folder / "streamed";
+  REQUIRE(test::run({"characterize", log, "-o", kept.string(), "--segment", "4096"}).code == 0);
+  REQUIRE(test::run({"characterize", log, "-o", streamed.string(), "--segment", "4096", "--memory", "1k"}).code == 0);
+  const Json a = report_of(kept), b = report_of(streamed);
+  for (const char* term : {"white_noise", "bias_instability", "random_walk"}) {
+    const Json &x = fit_of(a, "gyro_z").at(term), &y = fit_of(b, "gyro_z").at(term);
+    // A streamed record is one block here, so the likelihood is the same; only the Allan curve uses fewer terms.
+    CHECK(x.at("value").get<double>() == Approx(y.at("value").get<double>()).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("characterize never overwrites unasked, and never its input") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto out = folder / "out";
+  std::filesystem::create_directory(out);
+  write_text(out / "curves.csv", "precious");
+  const auto ran = test::run({"characterize", log, "-o", out.string()});
+  CHECK(ran.code == 5);
+  CHECK(test::slurp(out / "curves.csv") == "precious");
+  CHECK_FALSE(std::filesystem::exists(out / "report.html"));
+  std::filesystem::copy_file(log, folder / "curves.csv");
+  const std::string before = test::slurp(folder / "curves.csv");
+  CHECK(test::run({"characterize", (folder / "curves.csv").string(), "-o", folder.path().string(), "--force"}).code == 5);
+  CHECK(test::slurp(folder / "curves.csv") == before);
+}
+
+TEST_CASE("a broken log leaves nothing behind and says where it broke") {
+  const test::TemporaryFolder folder;
+  write_text(folder / "broken.csv", "t[s],x\n0,1\n0.01,2\n0.02,1.2.3\n");
+  const auto ran = test::run({"characterize", (folder / "broken.csv").string(), "-o", (folder / "out").string()});
+  CHECK(ran.code == 3);
+  CHECK(ran.err.find("broken.csv:4:") != std::string::npos);
+  CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST_CASE("a record that is too short, or has no time axis, is a numeric refusal with its reason") {
+  const test::TemporaryFolder folder;
+  write_text(folder / "one.csv", "t[s],x\n0,1\n");
+  const auto one = test::run({"characterize", (folder / "one.csv").string(), "-o", (folder / "out").string()});
+  CHECK(one.code == 4);
+  CHECK_FALSE(one.err.empty());
+  std::string text = "x\n";
+  for (int i = 0; i < 1000; ++i) text += std::to_string(i * 7919 % 101) + "\n";
+  write_text(folder / "untimed.csv", text);
+  const auto untimed = test::run({"characterize", (folder / "untimed.csv").string(), "-o", (folder / "out2").string()});
+  CHECK(untimed.code == 4);
+  CHECK(untimed.out.find("--rate") + untimed.err.find("--rate") != 2 * std::string::npos);
+}
+
+TEST_CASE("names and units for a log that has none") {
+  const test::TemporaryFolder folder;
+  const auto ran = test::run({"characterize", test::fixture("npy/c_order.npy").string(), "--rate", "10Hz", "--names", "a,b,c,d,e", "-o", (folder / "out").string()});
+  CHECK(ran.code == 2);  // not five channels
+  std::string text;
+  for (int i = 0; i < 2000; ++i) text += std::to_string(i * 7919 % 1013) + "," + std::to_string(i * 104729 % 997) + "\n";
+  write_text(folder / "bare.csv", text);
+  const auto named = test::run({"allan", (folder / "bare.csv").string(), "--time-column", "none", "--rate", "10Hz", "--names", "gyro_x,gyro_y", "--units", "deg/s"});
+  CAPTURE(named.err);
+  REQUIRE(named.code == 0);
+  CHECK(named.out.find("gyro_y,deg/s,0.1,") != std::string::npos);
+}
+
+TEST_CASE("allan as JSON has the keys that scripts rely on") {
+  const auto ran = test::run({"allan", test::fixture("imu_at_rest.csv").string(), "--json"});
+  REQUIRE(ran.code == 0);
+  const Json document = parse_json(ran.out, "stdout");
+  CHECK(document.at("format") == "allan");
+  CHECK(document.at("version") == 1);
+  CHECK(document.at("type") == "oadev");
+  const Json& channel = document.at("channels").at(0);
+  for (const char* key : {"name", "unit", "tau_s", "deviation", "ci95", "edf", "terms"}) CHECK(channel.contains(key));
+  CHECK(channel.at("tau_s").size() == channel.at("deviation").size());
+  CHECK(channel.at("terms").at(0) == 49999);
+}
+
+TEST_CASE("allan of phase data is the allan of its rate") {
+  const test::TemporaryFolder folder;
+  std::string rate, phase = "0\n";
+  long long sum = 0;
+  for (int i = 0; i < 500; ++i) {
+    const int y = i * 7919 % 1013;
+    rate += std::to_string(y) + "\n";
+    sum += y;
+    phase += std::to_string(sum) + "\n";
+  }
+  write_text(folder / "rate.csv", rate);
+  write_text(folder / "phase.csv", phase);
+  const auto a = test::run({"allan", (folder / "rate.csv").string(), "--time-column", "none", "--rate", "1", "--taus", "decade"});
+  const auto b = test::run({"allan", (folder / "phase.csv").string(), "--time-column", "none", "--rate", "1", "--taus", "decade", "--data", "phase"});
+  REQUIRE(a.code == 0);
+  CHECK(a.out == b.out);
+}
