@@ -6,9 +6,9 @@
 #include <set>
 
 #include "analysis_options.hpp"
+#include "fit_table.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/core/units.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/model/from_fit.hpp"
 #include "libchar/model/model_file.hpp"
@@ -61,41 +61,13 @@ void write_outputs(const std::vector<Output>& outputs, const fs::path& folder, c
   for (WholeFile& file : files) file.commit();
 }
 
-std::string interval(const Coefficient& c) {
-  if (c.value) return fmt::format("{} … {}", significant(c.ci95.low, 4), significant(c.ci95.high, 4));
-  return c.upper95 ? "≤ " + significant(*c.upper95, 3) : "";
-}
-
-std::string habitual(const Coefficient& c, std::string_view term, const std::string& unit) {
-  if (!c.value) return "";
-  const auto habits = habitual_units(term, unit);
-  return habits.empty() ? "" : fmt::format("{} {}", significant(*c.value * habits[0].factor, 4), habits[0].symbol);
-}
-
-std::string summary(const ChannelResult& c) {
-  std::vector<std::vector<std::string>> rows = {{"term", "value", "unit", "95 % interval", "status", "as the field says it", "10 % needs"}};
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    const Coefficient& k = c.fit->term[t];
-    if (k.status == Status::not_fitted) continue;
-    rows.push_back({fmt::format("{} ({})", kTermNames[t].key, kTermNames[t].letter), k.value ? significant(*k.value, 4) : "–",
-                    term_unit(kTermNames[t].key, c.channel.unit), interval(k), std::string(name_of(k.status)), habitual(k, kTermNames[t].key, c.channel.unit),
-                    k.seconds_for_10_percent ? significant(*k.seconds_for_10_percent, 2) + " s" : ""});
-  }
-  return table(rows);
-}
-
 std::string text_for_people(const Characterization& result) {
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
   std::string text = fmt::format("{}: {} channel{}, {} Hz, {} s, {} gap{}\n", printable(log.file), log.channels.size(), log.channels.size() == 1 ? "" : "s",
                                  significant(rate, 6), rate > 0 ? significant(static_cast<double>(log.samples) / rate, 6) : "?", log.time.gaps, log.time.gaps == 1 ? "" : "s");
   for (const ChannelResult& c : result.channels) {
-    text += fmt::format("\n{}{}\n", printable(c.channel.name), c.channel.unit.empty() ? "" : " [" + printable(c.channel.unit) + "]");
-    if (c.fit) {
-      text += summary(c);
-      for (const Remedy& r : c.fit->remedies) text += fmt::format("  {}: {} → {}\n", r.kind, r.alarm, r.action);
-      for (const std::string& sentence : c.fit->sentences) text += fmt::format("  {}\n", sentence);
-    }
+    text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
     for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
   }
   return text;

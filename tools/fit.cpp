@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "analysis_options.hpp"
+#include "fit_table.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/core/units.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "reading_options.hpp"
@@ -30,49 +29,6 @@ struct ChannelFit {
   Channel channel;
   NoiseFit fit;
 };
-
-std::string length_for_people(double seconds) {
-  if (seconds < 120) return fmt::format("{} s", significant(seconds, 2));
-  if (seconds < 7200) return fmt::format("{} min", significant(seconds / 60, 2));
-  if (seconds < 172800) return fmt::format("{} h", significant(seconds / 3600, 2));
-  if (seconds < 3.2e8) return fmt::format("{} d", significant(seconds / 86400, 2));
-  return "> 10 years";
-}
-
-std::string habits(const Coefficient& term, std::size_t i, const std::string& unit) {
-  std::string text;
-  for (const HabitualValue& habit : habitual_units(kTermNames[i].key, unit)) {
-    const double value = term.value ? *term.value : term.upper95.value_or(0);
-    text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", term.value ? "" : "≤ ", significant(habit.factor * value, 4), habit.symbol);
-  }
-  return text;
-}
-
-std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const std::string& unit) {
-  const std::string value = term.value ? significant(*term.value, 5) : term.upper95 ? "≤ " + significant(*term.upper95, 3) : "–";
-  const std::string interval = term.value ? fmt::format("{} … {}", significant(term.ci95.low, 4), significant(term.ci95.high, 4)) : "";
-  std::string status(name_of(term.status));
-  std::replace(status.begin(), status.end(), '_', ' ');
-  return {fmt::format("{} {}", kTermNames[i].key, kTermNames[i].letter), value, interval, term_unit(kTermNames[i].key, printable(unit)), status,
-          term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "", term.seconds_for_10_percent ? length_for_people(*term.seconds_for_10_percent) : "",
-          habits(term, i, unit)};
-}
-
-std::string for_people(const ChannelFit& result) {
-  const NoiseFit& fit = result.fit;
-  std::string text = fmt::format("{}{}\n", printable(result.channel.name), result.channel.unit.empty() ? "" : fmt::format(" [{}]", printable(result.channel.unit)));
-  std::vector<std::vector<std::string>> rows = {{"term", "value", "95 % interval", "unit", "status", "at best", "10 % needs", "in other words"}};
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    if (fit.term[i].status != Status::not_fitted) rows.push_back(row_of(fit.term[i], i, result.channel.unit));
-  }
-  text += table(rows);
-  if (fit.bandwidth_hz) text += fmt::format("  low-pass corner {} Hz ({} … {})\n", significant(*fit.bandwidth_hz, 4), significant(fit.bandwidth_ci95->low, 4), significant(fit.bandwidth_ci95->high, 4));
-  text += fmt::format("  {}; goodness of fit: chi-square {} for {} degrees of freedom, p = {}\n", fit.method, significant(fit.goodness.chi2, 4), significant(fit.goodness.dof, 4), significant(fit.goodness.p, 2));
-  if (fit.second_opinion) text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n", fit.second_opinion->sentence);
-  for (const Remedy& remedy : fit.remedies) text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
-  for (const std::string& sentence : fit.sentences) text += fmt::format("  {}\n", sentence);
-  return text;
-}
 
 std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log) {
   CharacterizeOptions options = finish(verb.analysis);
@@ -127,7 +83,7 @@ void run_fit(Session& session, const FitVerb& verb) {
     for (const ChannelFit& c : fits) document["channels"].push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
     text = dump_json(document);
   } else {
-    for (const ChannelFit& c : fits) text += (text.empty() ? "" : "\n") + for_people(c);
+    for (const ChannelFit& c : fits) text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
   }
   if (verb.output.empty()) {
     print(text);

@@ -124,7 +124,7 @@ void Terminal::note(std::string_view line) {
   say(line);
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent) {
+std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent, bool words_last) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
@@ -136,7 +136,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::string
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string blanks(widths[c] - width(row[c]), ' ');
       if (c > 0) line += "  ";
-      line += c == 0 ? row[c] + blanks : blanks + row[c];
+      const bool words = c == 0 || (words_last && c + 1 == row.size());
+      line += words ? row[c] + blanks : blanks + row[c];
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

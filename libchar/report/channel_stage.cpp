@@ -130,9 +130,16 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
     });
 }
 
+// Differenced phase and fractional frequency have other units than the samples in the log.
+std::string ChannelStage::unit_of_rate(const std::string& unit) const {
+  if (options_->data == SampleKind::phase) return unit.empty() || unit == "s" ? "" : unit + "/s";
+  return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "" : unit;
+}
+
 ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   ChannelResult result;
   result.channel = channel;
+  result.channel.unit = unit_of_rate(channel.unit);
   if (options_->wanted.quality) result.quality = quality_.finish();
   if (rate_hz <= 0) {
     result.problems.push_back("no curves and no fit: the log has no time axis (give --rate)");

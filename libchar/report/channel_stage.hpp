@@ -30,6 +30,7 @@ class ChannelStage {
     std::optional<WelchStream> spectrum;
     PowerBinner bins;
   };
+  std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
   void finish_kept(ChannelResult& result, double rate_hz);
