@@ -1,0 +1,32 @@
+#pragma once
+// Curves that another program (or our own allan, psd and characterize) wrote as a table with named columns.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+struct NamedCurve {
+  std::string name, unit;
+  DigitisedCurve curve;
+};
+
+struct CurveTable {
+  std::vector<NamedCurve> curves;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// Curves of a table with a header that names them: averaging time (tau, tau_s, x) or frequency (frequency_hz, frequency, f, x),
+/// values (deviation, adev, oadev, sigma, value; avar, variance; psd), and if present: channel, unit, curve, edf or dof, low68 and
+/// high68. One curve for each name in the channel column, in the order of their first rows. Nothing when the header does not
+/// name an abscissa and a value: such a file is a plain table of numbers.
+/// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
+std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
+
+}  // namespace libchar

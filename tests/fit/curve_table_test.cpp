@@ -1,0 +1,76 @@
+#include "libchar/fit/curve_table.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "libchar/core/error.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::optional<CurveTable> read(const std::string& text, bool is_allan) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "curve.csv").string();
+  std::ofstream(path, std::ios::binary) << text;
+  return read_curve_table(path, is_allan);
+}
+
+std::string fault_of(const std::string& text) {
+  try {
+    read(text, true);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+}  // namespace
+
+TEST_CASE("a published table with a channel column gives one curve a channel") {
+  NEEDS_SHARED("data/avarcurve_navchip_published.csv");
+  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  REQUIRE(table);
+  REQUIRE(table->curves.size() == 6);
+  const NamedCurve& first = table->curves[0];
+  CHECK(first.name == "Gyroscope_X");
+  CHECK(first.curve.root);
+  REQUIRE(first.curve.x.size() == 20);
+  CHECK(first.curve.x[0] == 0.008);
+  CHECK(first.curve.y[0] == 0.0013025587815325);
+}
+
+TEST_CASE("names of columns as people write them, with units, quotes, BOM, other delimiters") {
+  const auto table = read("\xEF\xBB\xBF# made by hand\r\n\"Tau [s]\";\"AVAR\"\r\n0.1;4\r\n0.2;2\r\n\r\n", true);
+  REQUIRE(table);
+  REQUIRE(table->curves.size() == 1);
+  CHECK_FALSE(table->curves[0].curve.root);
+  CHECK(table->curves[0].curve.x == std::vector<double>{0.1, 0.2});
+  CHECK(table->curves[0].curve.y == std::vector<double>{4, 2});
+}
+
+TEST_CASE("degrees of freedom become the relative uncertainty of the deviation") {
+  const auto table = read("tau_s,deviation,edf\n1,2,50\n2,1,8\n", true);
+  REQUIRE(table);
+  CHECK(table->curves[0].curve.relative_sd == std::vector<double>{0.1, 0.25});
+}
+
+TEST_CASE("a density in the square of a unit is a curve of a channel in that unit, and zero frequency is left out") {
+  const auto table = read("curve,channel,unit,x,value\noadev,a,deg/s,1,2\npsd,a,(deg/s)²/Hz,0,9\npsd,a,(deg/s)²/Hz,1,3\n", false);
+  REQUIRE(table);
+  REQUIRE(table->curves.size() == 1);
+  CHECK(table->curves[0].unit == "deg/s");
+  CHECK(table->curves[0].curve.x == std::vector<double>{1});
+}
+
+TEST_CASE("a table of bare numbers is not a named one") {
+  CHECK_FALSE(read("0.1,4\n0.2,2\n", true));
+  CHECK_FALSE(read("time,gyro_x\n0.1,4\n", true));
+}
+
+TEST_CASE("rows that do not fit are named with their place") {
+  CHECK(fault_of("tau_s,adev\n1,2\n2,x1\n").find("curve.csv:3:3: error E0311") != std::string::npos);
+  CHECK(fault_of("tau_s,adev\n1,2,3\n").find("curve.csv:2:1: error E0304") != std::string::npos);
+  CHECK(fault_of("tau_s,adev\n").find("holds no Allan curve") != std::string::npos);
+}
