@@ -165,4 +165,14 @@ Eigen::MatrixXd allan_covariance(const AllanCurve& curve, const Mixture& theta) 
   return AllanCovariance(curve).at(theta);
 }
 
+std::shared_ptr<const AllanCovariance> AllanCovarianceCache::of(const AllanCurve& curve) {
+  std::vector<std::uint64_t> key = {static_cast<std::uint64_t>(curve.type), curve.stride_divisor};
+  for (const AllanPoint& point : curve.points) key.insert(key.end(), {point.m, point.terms});
+  const std::lock_guard lock(mutex_);
+  for (const Entry& entry : entries_)
+    if (entry.dt_s == curve.dt_s && entry.key == key) return entry.covariance;
+  entries_.push_back({std::move(key), curve.dt_s, std::make_shared<const AllanCovariance>(curve)});
+  return entries_.back().covariance;
+}
+
 }  // namespace libchar

@@ -4,6 +4,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
@@ -44,6 +47,21 @@ class AllanCovariance {
   double dt_s_;
   std::vector<double> tau_;
   std::vector<Products> products_;  ///< of the lower triangle, row by row
+};
+
+/// Remembers what was prepared: the channels of one log have the same points and share it. May be used from several threads.
+class AllanCovarianceCache {
+ public:
+  std::shared_ptr<const AllanCovariance> of(const AllanCurve& curve);
+
+ private:
+  struct Entry {
+    std::vector<std::uint64_t> key;  ///< type, stride divisor, then m and terms of each point
+    double dt_s = 0;
+    std::shared_ptr<const AllanCovariance> covariance;
+  };
+  std::mutex mutex_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace libchar

@@ -2,9 +2,8 @@
 // model's exact covariance:
 //   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
 //   fitted curve stands still
-// (accuracy.md 3-5). C is a quadratic form in theta: its matrices are computed once, by
-// polarisation about the start. There is no objective behind the reweighting, so that it may swing:
-// damped by a half after 25 rounds.
+// (accuracy.md 3-5). There is no objective behind the reweighting, so that it may swing: damped by a
+// half after 25 rounds.
 #include "libchar/fit/allan_fit.hpp"
 
 #include <fmt/format.h>
@@ -21,45 +20,6 @@
 
 namespace libchar {
 namespace {
-
-/// C(theta) = sum_ab x_a x_b M_ab with x = theta / start.
-class CovarianceForm {
- public:
-  CovarianceForm(const AllanCurve& curve, const Mixture& start, const TermSet& terms)
-      : start_(start) {
-    for (std::size_t a = 0; a < kTerms; ++a) {
-      if (!terms[a]) continue;
-      form_[a][a] = allan_covariance(curve, single(start, a));
-      for (std::size_t b = 0; b < a; ++b) {
-        if (!terms[b]) continue;
-        Mixture both = single(start, a);
-        both[b] = start[b];
-        form_[a][b] = allan_covariance(curve, both) - form_[a][a] - form_[b][b];
-      }
-    }
-  }
-
-  Eigen::MatrixXd at(const Mixture& theta) const {
-    Eigen::MatrixXd sum;
-    for (std::size_t a = 0; a < kTerms; ++a) {
-      for (std::size_t b = 0; b <= a; ++b) {
-        if (form_[a][b].size() == 0) continue;
-        const Eigen::MatrixXd part = theta[a] / start_[a] * (theta[b] / start_[b]) * form_[a][b];
-        sum = sum.size() == 0 ? part : Eigen::MatrixXd(sum + part);
-      }
-    }
-    return sum;
-  }
-
- private:
-  static Mixture single(const Mixture& start, std::size_t a) {
-    Mixture one{};
-    one[a] = start[a];
-    return one;
-  }
-  Mixture start_;
-  std::array<std::array<Eigen::MatrixXd, kTerms>, kTerms> form_;
-};
 
 /// The points that the terms can explain: below 150 time constants of a low-pass the curve is
 /// another one.
@@ -79,7 +39,9 @@ struct Solution {
   bool settled = false;
 };
 
-std::optional<Solution> solve(const AllanCurve& curve, const Mixture& start) {
+std::optional<Solution> solve(const AllanCurve& curve,
+                              const AllanCovariance& covariance,
+                              const Mixture& start) {
   const TermSet terms = only_positive(start);
   const auto n = static_cast<Eigen::Index>(curve.points.size());
   Eigen::MatrixXd design = Eigen::MatrixXd::Zero(n, static_cast<int>(kTerms));
@@ -93,11 +55,10 @@ std::optional<Solution> solve(const AllanCurve& curve, const Mixture& start) {
             unit_allan_variance(static_cast<Term>(i), static_cast<double>(point.m), curve.dt_s);
     }
   }
-  const CovarianceForm form(curve, start, terms);
   Solution solution{start, TermMatrix::Zero(), 0, false};
   constexpr int kMost = 50, kDampAfter = 25;
   for (int round = 0; round < kMost && !solution.settled; ++round) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(form.at(solution.theta));
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance.at(solution.theta));
     if (factor.info() != Eigen::Success) return std::nullopt;
     const Eigen::MatrixXd whitened = factor.matrixL().solve(design);
     const Eigen::VectorXd target = factor.matrixL().solve(variance);
@@ -152,12 +113,16 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
 
 }  // namespace
 
-std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first) {
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
+                                            const NoiseFit& first,
+                                            AllanCovarianceCache* cache) {
   const AllanCurve kept = usable(curve, first);
   const std::size_t terms = count_of(only_positive(first.theta));
   const bool plain = kept.type == DeviationType::oadev || kept.type == DeviationType::adev;
   if (!plain || terms == 0 || kept.points.size() < terms + 1) return std::nullopt;
-  const std::optional<Solution> solution = solve(kept, first.theta);
+  AllanCovarianceCache own;
+  const auto covariance = (cache != nullptr ? *cache : own).of(kept);
+  const std::optional<Solution> solution = solve(kept, *covariance, first.theta);
   if (!solution) return std::nullopt;
   SecondOpinion second;
   second.goodness.chi2 = solution->chi2;

@@ -7,6 +7,9 @@ namespace libchar {
 
 /// Generalised least squares of the Allan variances with the model's own covariance, on the terms
 /// of `first` that have a value; compared with `first`. Nothing when the curve has too few points.
-std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first);
+/// `cache` may be null.
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
+                                            const NoiseFit& first,
+                                            AllanCovarianceCache* cache);
 
 }  // namespace libchar

@@ -302,8 +302,21 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   }
   judge(now.fit);
   if (options.second_opinion && allan != nullptr)
-    now.fit.second_opinion = second_opinion(*allan, now.fit);
+    now.fit.second_opinion = second_opinion(*allan, now.fit, options.covariances);
   return std::move(now.fit);
+}
+
+NoiseFit fit_binned(const PowerBinner& binner,
+                    double rate_hz,
+                    std::uint64_t samples,
+                    const AllanCurve* allan,
+                    const FitOptions& options) {
+  std::uint64_t clipped = 0;
+  const std::vector<PowerBin> bins =
+      options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
+  NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options);
+  if (clipped > 0) fit.remedies.insert(fit.remedies.begin(), lines_remedy(clipped));
+  return fit;
 }
 
 NoiseFit fit_record(std::span<const double> record,
@@ -330,13 +343,9 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   binner.push(data);
-  std::uint64_t clipped = 0;
-  const std::vector<PowerBin> bins =
-      options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
-  if (clipped > 0) remedies.push_back(lines_remedy(clipped));
   const auto missing = static_cast<std::uint64_t>(
       std::count_if(record.begin(), record.end(), [](double x) { return std::isnan(x); }));
-  NoiseFit fit = fit_power_bins(bins, rate_hz, record.size() - missing, allan, options);
+  NoiseFit fit = fit_binned(binner, rate_hz, record.size() - missing, allan, options);
   fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
   return fit;
 }

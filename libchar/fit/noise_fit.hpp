@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -96,6 +97,7 @@ struct FitOptions {
   double threshold = 5.41;       ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;   ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;    ///< covariance-weighted Allan fit beside the first
+  AllanCovarianceCache* covariances = nullptr;  ///< shared by the channels of one log; none: prepared for each fit
   int threads = 1;
 };
 
@@ -131,6 +133,10 @@ class PowerBinner {
 /// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` feeds the second opinion (may be null).
 /// Throws Error(numeric) when there are fewer bins than terms.
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples, const AllanCurve* allan, const FitOptions& options = {});
+
+/// The same on what a binner has seen, spectral lines clipped when remedies are on: the fit of a record that was streamed.
+/// `samples` without the missing ones. Spikes need the samples: SpikeCleaner before the binner.
+NoiseFit fit_binned(const PowerBinner& binner, double rate_hz, std::uint64_t samples, const AllanCurve* allan, const FitOptions& options = {});
 
 /// Whole record in memory: bins, alarms, remedies, fit, second opinion.
 NoiseFit fit_record(std::span<const double> record, double rate_hz, const AllanCurve* allan, const FitOptions& options = {});

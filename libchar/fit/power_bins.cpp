@@ -167,7 +167,8 @@ struct PowerBinner::State {
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
   std::vector<double>
       means;  ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  double shift = 0, partial = 0;  ///< first sample of the segment; sum of the mean being filled
+  double shift = 0;                 ///< first sample of the segment
+  std::array<double, 4> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<Power> done;  ///< of finished segments (their tails and series of means)
 
@@ -176,23 +177,45 @@ struct PowerBinner::State {
     pending.reserve(std::min<std::uint64_t>(block, 1U << 16U));
   }
 
-  void push(double sample) {
-    if (std::isnan(sample)) {
-      ++gap;
-      return;
+  void push(std::span<const double> values) {
+    while (!values.empty()) {
+      if (std::isnan(values[0])) {
+        ++gap;
+        values = values.subspan(1);
+        continue;
+      }
+      if (gap > std::max(kLongGap, samples / 100)) end_segment();
+      gap = 0;
+      if (segment_samples == 0) shift = values[0];
+      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
+      push_run(values.first(run));
+      values = values.subspan(run);
     }
-    if (gap > std::max(kLongGap, samples / 100)) end_segment();
-    gap = 0;
-    if (segment_samples == 0) shift = sample;
-    pending.push_back(sample);
-    partial += sample - shift;
-    if (++partial_count == per_mean) {
-      means.push_back(partial / std::sqrt(static_cast<double>(per_mean)));
-      partial = 0;
+  }
+
+  static std::size_t length_of_run(std::span<const double> samples) {
+    std::size_t n = 1;
+    while (n < samples.size() && !std::isnan(samples[n])) ++n;
+    return n;
+  }
+
+  // Samples without a missing one, at most up to the end of the mean and one beyond the end of the block.
+  void push_run(std::span<const double> run) {
+    pending.insert(pending.end(), run.begin(), run.end());
+    // Four sums, by position in the mean: the bits do not depend on how the samples came.
+    std::size_t i = 0;
+    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i) partial[(partial_count + i) % 4] += run[i] - shift;
+    for (; i + 4 <= run.size(); i += 4)
+      for (std::size_t lane = 0; lane < 4; ++lane) partial[lane] += run[i + lane] - shift;
+    for (std::size_t lane = 0; i < run.size(); ++i, ++lane) partial[lane] += run[i] - shift;
+    partial_count += run.size();
+    segment_samples += run.size();
+    samples += run.size();
+    if (partial_count == per_mean) {
+      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) / std::sqrt(static_cast<double>(per_mean)));
+      partial.fill(0);
       partial_count = 0;
     }
-    ++segment_samples;
-    ++samples;
     // The block is transformed only when a further sample shows that the record is longer than a
     // block.
     if (pending.size() > block) flush_block();
@@ -234,7 +257,7 @@ struct PowerBinner::State {
     for (Power& power : segment_powers()) done.push_back(std::move(power));
     pending.clear();
     means.clear();
-    partial = 0;
+    partial.fill(0);
     partial_count = segment_samples = segment_blocks = 0;
   }
 
@@ -269,7 +292,7 @@ PowerBinner::PowerBinner(PowerBinner&&) noexcept = default;
 PowerBinner& PowerBinner::operator=(PowerBinner&&) noexcept = default;
 
 void PowerBinner::push(std::span<const double> samples) {
-  for (const double sample : samples) state_->push(sample);
+  state_->push(samples);
 }
 
 std::vector<PowerBin> PowerBinner::finish(double rate_hz) const {

@@ -7,6 +7,7 @@
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fit/remedies.hpp"
 
 namespace libchar {
 namespace {
@@ -40,7 +41,8 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
 }  // namespace
 
 void ChannelStage::push(std::span<const double> samples) {
-  if (options_->wanted.quality) quality_.push(samples);
+  const bool second = streams_ && streams_->cleaner;
+  if (!second) quality_.push(samples);
   if (options_->data == SampleKind::rate) {
     stream(samples);
   } else {
@@ -64,6 +66,10 @@ void ChannelStage::as_rate(std::span<const double> samples) {
 }
 
 void ChannelStage::stream(std::span<const double> samples) {
+  if (streams_ && streams_->cleaner) {
+    streams_->bins.push(streams_->cleaner->push(samples));
+    return;
+  }
   samples_ += samples.size();
   if (keeping_) {
     kept_.insert(kept_.end(), samples.begin(), samples.end());
@@ -86,6 +92,17 @@ void ChannelStage::stop_keeping() {
   kept_ = {};
   samples_ = 0;
   stream(kept);
+}
+
+bool ChannelStage::needs_second_pass() const {
+  if (keeping_ || !options_->fit.remedies || !(options_->wanted.fit || options_->wanted.allan)) return false;
+  const ChannelQuality quality = quality_.finish();
+  return quality.difference_kurtosis > spike_alarm(quality.samples);
+}
+
+void ChannelStage::begin_second_pass() {
+  streams_->bins = PowerBinner();
+  streams_->cleaner.emplace();
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
@@ -126,7 +143,11 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
     });
   if (options_->wanted.fit || options_->wanted.allan)
     attempt(result, "noise fit", [&] {
-      result.fit = fit_power_bins(streams_->bins.finish(rate_hz), rate_hz, samples_, result.allan.points.empty() ? nullptr : &result.allan, options_->fit);
+      const ChannelQuality quality = quality_.finish();
+      if (streams_->cleaner) streams_->bins.push(streams_->cleaner->finish());
+      result.fit = fit_binned(streams_->bins, rate_hz, quality.samples, result.allan.points.empty() ? nullptr : &result.allan, options_->fit);
+      if (streams_->cleaner && streams_->cleaner->count() > 0)
+        result.fit->remedies.insert(result.fit->remedies.begin(), spikes_remedy(quality.difference_kurtosis, spike_alarm(quality.samples), streams_->cleaner->count()));
     });
 }
 

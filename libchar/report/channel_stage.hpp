@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "libchar/fit/spike_cleaner.hpp"
 #include "libchar/report/characterization.hpp"
 
 namespace libchar {
@@ -21,6 +22,11 @@ class ChannelStage {
   /// Room for a record of this length, so that growing does not take twice the memory.
   void reserve(std::size_t samples) { kept_.reserve(samples); }
 
+  /// After the last push: do spikes ask for a second pass over the log, which cleans them on the way into the fit? Never for
+  /// samples that were kept.
+  bool needs_second_pass() const;
+  void begin_second_pass();
+
   /// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
   ChannelResult finish(const Channel& channel, double rate_hz);
 
@@ -29,6 +35,7 @@ class ChannelStage {
     AllanPyramid allan;
     std::optional<WelchStream> spectrum;
     PowerBinner bins;
+    std::optional<SpikeCleaner> cleaner;  // in the second pass
   };
   std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);

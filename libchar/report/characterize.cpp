@@ -32,6 +32,30 @@ class Stages : public BlockSink {
     });
   }
 
+  // Feeds only the stages that asked for the second pass.
+  void second_pass(const std::string& path, Progress& progress) {
+    std::vector<std::size_t> wanted;
+    for (std::size_t c = 0; c < stages_.size(); ++c)
+      if (stages_[c].needs_second_pass()) wanted.push_back(c);
+    if (wanted.empty() || path == "-") return;
+    struct Again final : BlockSink {
+      std::vector<ChannelStage*> stages;
+      std::vector<std::size_t> channels;
+      void begin(const LogInfo&) override {}
+      void block(const SampleBlock& samples) override {
+        tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t k) { stages[k]->push({samples.channels[channels[k]], samples.rows}); });
+      }
+    } again;
+    for (const std::size_t c : wanted) {
+      stages_[c].begin_second_pass();
+      again.stages.push_back(&stages_[c]);
+      again.channels.push_back(c);
+    }
+    ReadOptions reading = options_.reading;
+    reading.hash = false;
+    read_log(path, reading, again, progress);
+  }
+
   std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress) {
     std::vector<ChannelResult> results(stages_.size());
     // Two channels at a time: memory stays bounded however many there are.
@@ -52,11 +76,15 @@ class Stages : public BlockSink {
 
 }  // namespace
 
-Characterization characterize(const std::string& path, const CharacterizeOptions& options, Progress& progress) {
+Characterization characterize(const std::string& path, const CharacterizeOptions& given, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  AllanCovarianceCache covariances;
+  CharacterizeOptions options = given;
+  options.fit.covariances = &covariances;
   Characterization result;
   Stages stages(options);
   result.log = read_log(path, options.reading, stages, progress);
+  stages.second_pass(path, progress);
   result.channels = stages.finish(result.log, progress);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
