@@ -78,11 +78,13 @@ double fold(const Lanes& lane) {
 // (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
 // sample need not pay).
 struct MeanAndSpread {
+  double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
 
   void block(const double* x, std::size_t count) {
     Lanes sum{}, square{};
     const double shift = x[0];
+    if (n == 0) origin = shift;
     const std::size_t whole = count - count % kLanes;
     for (std::size_t i = 0; i < whole; i += kLanes)
       for (std::size_t k = 0; k < kLanes; ++k) sum[k] += x[i + k] - shift;
@@ -97,7 +99,7 @@ struct MeanAndSpread {
       const double d = (x[i] - shift) - offset;
       square[i % kLanes] += d * d;
     }
-    const double other = static_cast<double>(count), total = n + other, d = shift + offset - mean;
+    const double other = static_cast<double>(count), total = n + other, d = (shift - origin) + offset - mean;
     m2 += fold(square) + d * d * n * other / total;
     mean += d * other / total;
     n = total;
