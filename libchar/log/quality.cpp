@@ -382,7 +382,7 @@ ChannelQuality QualityMeter::finish() const {
   q.samples = static_cast<std::uint64_t>(state.values.n);
   q.missing = state.missing;
   if (q.samples > 0) {
-    q.mean = state.values.mean;
+    q.mean = state.values.origin + state.values.mean;
     if (q.samples > 1) q.standard_deviation = std::sqrt(state.values.m2 / (state.values.n - 1));
     q.minimum = state.minimum;
     q.maximum = state.maximum;
