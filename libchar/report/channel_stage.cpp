@@ -101,7 +101,7 @@ bool ChannelStage::needs_second_pass() const {
 }
 
 void ChannelStage::begin_second_pass() {
-  streams_->bins = PowerBinner();
+  streams_->bins = Streams().bins;
   streams_->cleaner.emplace();
 }
 

@@ -34,7 +34,8 @@ class ChannelStage {
   struct Streams {
     AllanPyramid allan;
     std::optional<WelchStream> spectrum;
-    PowerBinner bins;
+    // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
+    PowerBinner bins{std::uint64_t{1} << 13U};
     std::optional<SpikeCleaner> cleaner;  // in the second pass
   };
   std::string unit_of_rate(const std::string& unit) const;
