@@ -52,7 +52,12 @@ std::string fit_for_people(const Channel& channel, const NoiseFit& fit) {
   }
   text += table(rows, "  ", true);
   if (fit.bandwidth_hz) text += fmt::format("  low-pass corner {} Hz ({} … {})\n", significant(*fit.bandwidth_hz, 4), significant(fit.bandwidth_ci95->low, 4), significant(fit.bandwidth_ci95->high, 4));
-  text += fmt::format("  {}; goodness of fit: chi-square {} for {} degrees of freedom, p = {}\n", fit.method, significant(fit.goodness.chi2, 4), significant(fit.goodness.dof, 4), significant(fit.goodness.p, 2));
+  // A curve without uncertainties is scaled to its own scatter: its chi-square says nothing.
+  const bool judged = fit.goodness.p < 1 || fit.goodness.chi2 != fit.goodness.dof;
+  text += "  " + fit.method;
+  if (judged)
+    text += fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}", significant(fit.goodness.chi2, 4), significant(fit.goodness.dof, 4), significant(fit.goodness.p, 2));
+  text += "\n";
   if (fit.second_opinion) text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n", fit.second_opinion->sentence);
   for (const Remedy& remedy : fit.remedies) text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
   for (const std::string& sentence : fit.sentences) text += fmt::format("  {}\n", sentence);

@@ -46,7 +46,7 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
                                   double largest,
                                   std::vector<std::string>& notes) {
   std::vector<std::uint64_t> factors;
-  std::uint64_t too_long = 0;
+  std::uint64_t too_long = 0, moved = 0;
   for (const double tau : taus) {
     if (!(tau > 0) || !std::isfinite(tau))
       throw Error({ErrorKind::usage,
@@ -56,6 +56,7 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
                    shortest(tau),
                    ""});
     const double m = std::max(1.0, std::round(tau / dt_s));
+    moved += std::abs(m * dt_s / tau - 1) > 1e-6 ? 1 : 0;
     if (m > largest)
       ++too_long;
     else
@@ -65,6 +66,9 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
     notes.push_back(std::to_string(too_long) +
                     " of the listed averaging times left out: longer than the record allows (" +
                     significant(largest * dt_s, 4) + " s)");
+  if (moved > 0)
+    notes.push_back(std::to_string(moved) + " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
+                    significant(dt_s, 4) + " s)");
   return factors;
 }
 

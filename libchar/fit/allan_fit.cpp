@@ -107,7 +107,11 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
         apart,
         *term.value);
   }
-  if (second.agrees) second.sentence = "agrees";
+  if (second.agrees && second.goodness.p < 0.01) {
+    second.sentence = fmt::format("agrees on the coefficients, but does not describe the Allan curve itself (p = {:.2g})", second.goodness.p);
+  } else if (second.agrees) {
+    second.sentence = "agrees";
+  }
   if (!solution.settled) second.sentence += " (the reweighting did not settle in 50 rounds)";
 }
 

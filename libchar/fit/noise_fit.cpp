@@ -9,6 +9,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/fit/allan_fit.hpp"
 #include "libchar/fit/coefficients.hpp"
+#include "libchar/fit/contradiction.hpp"
 #include "libchar/fit/goodness.hpp"
 #include "libchar/fit/low_pass.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -303,6 +304,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   judge(now.fit);
   if (options.second_opinion && allan != nullptr)
     now.fit.second_opinion = second_opinion(*allan, now.fit, options.covariances);
+  if (allan != nullptr) answer_contradictions(now.fit, *allan);
   return std::move(now.fit);
 }
 

@@ -330,7 +330,7 @@ void choose_time(Dialect& dialect,
          fmt::format("{}:{}:{}", info.file, dialect.first_data_line, rows[0][index].offset + 1),
          "calendar dates and clock times are not read as stamps, a number was expected",
          rows[0][index].text,
-         "--time-column none --rate HZ with --channels leaves the column out, or convert it to "
+         "--time-column none --rate HZ with --channel leaves the column out, or convert it to "
          "seconds"});
   if (options.time_unit != "auto") {
     unit = options.time_unit == "s" || options.time_unit == "ms" || options.time_unit == "us" ||

@@ -470,7 +470,7 @@ class RowParser {
       return "--decimal point, if '.' is the decimal mark";
     const bool word =
         !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
-    return word ? "--channels reads only the columns named there; --skip-rows, if the table starts "
+    return word ? "--channel reads only the columns named there; --skip-rows, if the table starts "
                   "later"
                 : "";
   }

@@ -598,6 +598,20 @@ void TimeGrid::finish(LogInfo& info) {
                   fmt::format("stamps scatter by {:.0f} % of the sampling interval: the samples "
                               "are treated as evenly spaced",
                               100 * deviation.robust / interval));
+  const double stamped_s = static_cast<double>(last_ - first_stamp_) * 1e-9;
+  const double grid_s = static_cast<double>(index_) * interval * 1e-9;
+  if (index_ > 0 && std::abs(grid_s - stamped_s) > 0.01 * stamped_s)
+    warnings_.add("uneven_sampling",
+                  fmt::format("the stamps span {:.4g} s, the samples at one even rate {:.4g} s: the "
+                              "sampling is uneven and times on the axes are off by that",
+                              stamped_s,
+                              grid_s));
+  if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
+    warnings_.add("rate_ignored",
+                  fmt::format("the stamps give {:.6g} Hz; the rate of {:.6g} Hz that was given is not "
+                              "used (--time-column none ignores the stamps)",
+                              1e9 / interval,
+                              *options_.rate_hz));
 }
 
 }  // namespace libchar

@@ -153,8 +153,8 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string ChannelStage::unit_of_rate(const std::string& unit) const {
-  if (options_->data == SampleKind::phase) return unit.empty() || unit == "s" ? "" : unit + "/s";
-  return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "" : unit;
+  if (options_->data == SampleKind::phase) return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "1" : unit;
 }
 
 ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {

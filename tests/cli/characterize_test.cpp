@@ -1,6 +1,8 @@
 // The main job, run as people run it.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 
 #include "libchar/core/json.hpp"
@@ -78,8 +80,10 @@ TEST_CASE("kept and streamed records agree") {
   const Json a = report_of(kept), b = report_of(streamed);
   for (const char* term : {"white_noise", "bias_instability", "random_walk"}) {
     const Json &x = fit_of(a, "gyro_z").at(term), &y = fit_of(b, "gyro_z").at(term);
-    // A streamed record is one block here, so the likelihood is the same; only the Allan curve uses fewer terms.
-    CHECK(x.at("value").get<double>() == Approx(y.at("value").get<double>()).epsilon(1e-6));
+    // One transform of the whole against transforms of blocks: the same information but for the seams, so the estimates may differ
+    // by a small part of their uncertainty.
+    const double half_width = (x.at("ci95").at(1).get<double>() - x.at("ci95").at(0).get<double>()) / 2;
+    CHECK(std::abs(x.at("value").get<double>() - y.at("value").get<double>()) < 0.25 * half_width);
   }
 }
 
@@ -165,4 +169,22 @@ TEST_CASE("allan of phase data is the allan of its rate") {
   const auto b = test::run({"allan", (folder / "phase.csv").string(), "--time-column", "none", "--rate", "1", "--taus", "decade", "--data", "phase"});
   REQUIRE(a.code == 0);
   CHECK(a.out == b.out);
+}
+
+TEST_CASE("options that cannot be followed are said, not swallowed") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto window = test::run({"characterize", log, "--from", "2000s", "-o", (folder / "out").string()});
+  CHECK(window.code == 2);
+  CHECK(window.err.find("holds no sample") != std::string::npos);
+  CHECK(test::run({"allan", log, "--rate", "10Hz", "--taus", "1s"}).err.find("is not used") != std::string::npos);
+  CHECK(test::run({"allan", log, "--taus", "0.027s"}).err.find("nearest multiple") != std::string::npos);
+  std::string uneven = "t[s],x\n";
+  double t = 0;
+  for (int i = 0; i < 3000; ++i) {
+    uneven += std::to_string(t) + "," + std::to_string(i * 7919 % 101) + "\n";
+    t += i % 3 == 0 ? 0.004 : 0.01;
+  }
+  write_text(folder / "uneven.csv", uneven);
+  CHECK(test::run({"allan", (folder / "uneven.csv").string(), "--taus", "1s"}).err.find("uneven") != std::string::npos);
 }
