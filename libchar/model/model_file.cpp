@@ -53,7 +53,7 @@ std::string status_comment(Status status) {
     case Status::not_detected:
       return "  # no value: only an upper limit is known";
     case Status::undetermined:
-      return "  # present, but the record cannot tell it apart from another term";
+      return "  # undetermined: the record cannot tell it from another term, or contradicts it";
     case Status::given:
       return "  # stated, not fitted";
     case Status::not_fitted:

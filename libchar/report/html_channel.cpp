@@ -250,7 +250,9 @@ std::string second_opinion_table(const NoiseFit& fit, const std::string& unit) {
          term_unit(kTermNames[t].key, unit),
          c.value && sd > 0 ? people((*opinion.value[t] - *c.value) / sd, 2) + " sd" : "–"});
   }
-  return out + "</tbody></table></div>\n<p>" + html_text(opinion.sentence) + "</p>\n";
+  out += "</tbody></table></div>\n";
+  // The badge above says that much already.
+  return opinion.sentence == "agrees" ? out : out + "<p>" + html_text(opinion.sentence) + "</p>\n";
 }
 
 std::string trust(const ChannelResult& c, std::size_t index) {

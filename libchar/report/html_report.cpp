@@ -168,7 +168,7 @@ std::string overview(const Characterization& result) {
     out += overview_row(result.channels[i], i, result.log.time.rate_hz);
   return out +
          "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
-         "upper 95 % limit. ?: the record cannot tell this term from another. "
+         "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or contradicts it. "
          "All else stands with each channel.</p>\n</section>\n";
 }
 

@@ -34,7 +34,7 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
                          value,
                          people(100 * c.relative_sd, 2));
     case Status::undetermined:
-      return fmt::format("{} {} = {}, but the record cannot tell it apart from another term.",
+      return fmt::format("{} {} = {}, but undetermined: the record cannot tell it from another term, or contradicts it.",
                          term_title(term),
                          name.letter,
                          value);
