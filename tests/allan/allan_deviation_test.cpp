@@ -134,8 +134,9 @@ TEST_CASE("grids") {
   const AllanCurve curve = allan_deviation(y, 0.5, options);
   REQUIRE(curve.points.size() == 2);  // 0.5 and 1e-9 are both m = 1; 3.1 and 2.9 both m = 6
   CHECK(curve.points[1].m == 6);
-  REQUIRE(curve.notes.size() == 1);
+  REQUIRE(curve.notes.size() == 2);
   CHECK(curve.notes[0].find("longer than the record") != std::string::npos);
+  CHECK(curve.notes[1].find("nearest multiple") != std::string::npos);
   options = {};
   options.tau_min_s = 2;
   options.tau_max_s = 16;
