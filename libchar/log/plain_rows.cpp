@@ -182,7 +182,7 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Co
     if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
-      behind |= 1;
+      behind |= static_cast<std::uint32_t>(slow.good);  // a field that is refused says nothing about the column
       return slow.good;
     }
     behind |= field.behind;

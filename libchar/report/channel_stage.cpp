@@ -101,7 +101,7 @@ bool ChannelStage::needs_second_pass() const {
 }
 
 void ChannelStage::begin_second_pass() {
-  streams_->bins = Streams().bins;
+  streams_->bins = ChannelStreams().bins;
   streams_->cleaner.emplace();
 }
 

@@ -10,6 +10,15 @@
 
 namespace libchar {
 
+/// The fixed-size stages of a channel whose samples are not kept.
+struct ChannelStreams {
+  AllanPyramid allan;
+  std::optional<WelchStream> spectrum;
+  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
+  PowerBinner bins{std::uint64_t{1} << 13U};
+  std::optional<SpikeCleaner> cleaner;  // in the second pass
+};
+
 class ChannelStage {
  public:
   explicit ChannelStage(const CharacterizeOptions& options) : options_(&options) {}
@@ -31,13 +40,6 @@ class ChannelStage {
   ChannelResult finish(const Channel& channel, double rate_hz);
 
  private:
-  struct Streams {
-    AllanPyramid allan;
-    std::optional<WelchStream> spectrum;
-    // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
-    PowerBinner bins{std::uint64_t{1} << 13U};
-    std::optional<SpikeCleaner> cleaner;  // in the second pass
-  };
   std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
@@ -48,7 +50,7 @@ class ChannelStage {
   QualityMeter quality_;
   bool keeping_ = true;
   std::vector<double> kept_;
-  std::optional<Streams> streams_;
+  std::optional<ChannelStreams> streams_;
   std::vector<double> differenced_;       // scratch of as_rate
   std::optional<double> previous_phase_;
   std::uint64_t samples_ = 0;
