@@ -117,15 +117,17 @@ template <class T>
 struct Slow {
   T value{};
   bool good = false;
+  bool integer = false;  // written with digits only
 };
 
 // Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite". Very long fields
 // and numbers beyond 2^53 (integers there may not be exact) are for the general parser to judge.
 __attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
   Slow<double> out;
-  if (end - begin > 64) return out;
+  if (begin == end || end - begin > 64) return out;
   const auto [stop, status] = std::from_chars(begin, end, out.value);
   out.good = status == std::errc() && stop == end && std::fabs(out.value) < 0x1p53;
+  out.integer = std::all_of(begin + (*begin == '-'), end, [](char c) { return c >= '0' && c <= '9'; });
   return out;
 }
 
@@ -182,7 +184,7 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"))) std::size_t take_values(const Co
     if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
-      behind |= static_cast<std::uint32_t>(slow.good);  // a field that is refused says nothing about the column
+      behind |= static_cast<std::uint32_t>(slow.good && !slow.integer);  // a refused field says nothing about the column
       return slow.good;
     }
     behind |= field.behind;

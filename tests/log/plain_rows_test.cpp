@@ -51,6 +51,7 @@ TEST_CASE("plain rows: known numbers") {
   CHECK(parse("0,5.\n").fractional);
   CHECK(parse("0,1e3\n").fractional);
   CHECK_FALSE(parse("0,1\n0,\n").fractional);  // found by fuzzing: a refused field made its column fractional
+  CHECK_FALSE(parse("0,00000000000000000007\n").fractional);  // the same, 20 digits
   CHECK(parse("0,1\r\n", true).result.rows == 1);
   CHECK(parse("0,1\n", true).result.rows == 0);
   CHECK(parse("0,1\r\n", false).result.rows == 0);
