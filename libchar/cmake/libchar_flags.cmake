@@ -11,7 +11,7 @@ target_compile_options(
             -Wshadow
             -Wconversion
             -Wno-sign-conversion
-            -Wno-restrict # GCC 12 warns falsely inside std::string (GCC bug 105329)
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely inside std::string (GCC bug 105329)
             -Wdouble-promotion
             -Wold-style-cast
             -Wnon-virtual-dtor
