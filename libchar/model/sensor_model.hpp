@@ -1,5 +1,11 @@
 #pragma once
-// A sensor model: what is needed to simulate one sensor (design.md 4), and where each number came from.
+// A sensor model: what is needed to simulate one sensor (design.md 4, [RV 2.2]), and where each
+// number came from.
+//
+//   y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))
+//
+// Blocks in order; each is skipped when it is the identity. dT = temperature - reference
+// temperature.
 
 #include <array>
 #include <optional>
@@ -10,21 +16,99 @@
 
 namespace libchar {
 
+/// Block 1: alpha = N(value, spread) * (1 + tc1 dT + tc2 dT^2), drawn once a device.
+struct ScaleFactor {
+  double value = 1;       ///< output per input
+  double spread = 0;      ///< standard deviation from device to device
+  double tc1_per_k = 0;   ///< 1/K
+  double tc2_per_k2 = 0;  ///< 1/K^2
+  bool operator==(const ScaleFactor&) const = default;
+};
+
+/// Block 2: quadratic (1 + tc dT) x^2 + cubic (1 + tc dT) x^3, of the raw input x.
+struct Nonlinearity {
+  double quadratic = 0;  ///< 1/U
+  double quadratic_tc_per_k = 0;
+  double cubic = 0;  ///< 1/U^2
+  double cubic_tc_per_k = 0;
+  bool operator==(const Nonlinearity&) const = default;
+};
+
+/// Block 3: beta = N(value, spread) + tc1 dT + tc2 dT^2, drawn once a device; all in U.
+struct Bias {
+  double value = 0;
+  double spread = 0;
+  double tc1_per_k = 0;   ///< U/K
+  double tc2_per_k2 = 0;  ///< U/K^2
+  bool operator==(const Bias&) const = default;
+};
+
+/// Block 8: the output is gain * U, in `unit` (empty: the unit U of the input).
+struct Sensitivity {
+  double gain = 1;
+  std::string unit;
+  bool operator==(const Sensitivity&) const = default;
+};
+
+/// What stands between the noise and the samples (docs/theory/simulation.md).
+enum class NoiseSampling {
+  per_sample,    ///< noise is made at the sampling rate and goes through the low-pass with the
+                 ///< signal: what the fit assumes
+  band_limited,  ///< white noise is continuous, low-passed before sampling: its aliases are in the
+                 ///< samples
+};
+
+enum class NoiseStart {
+  stationary,  ///< flicker has run for ever before the first sample
+  zero,        ///< it starts at the first sample, as published [RV app. A]
+};
+
 struct SensorModel {
   std::string channel;
   std::string unit;
+  std::string kind;  ///< "gyroscope", "accelerometer"…; empty: `kind_of` says it from the unit
+  std::string axis;  ///< "x", "y", "z"; empty: `axis_of` says it from the channel's name
   double rate_hz = 0;
-  std::array<Coefficient, kTerms> noise;      ///< status, value, 95 % interval of the five terms
-  std::optional<double> bandwidth_hz;         ///< first-order low-pass, when the fit needed one
-  std::optional<double> resolution;           ///< quantization step of the output (LSB)
-  std::optional<double> saturation_low, saturation_high;  ///< when the recording reached them
-  double mean = 0;                            ///< of the recording, removed before analysis: contains the true input at rest
-  double tau_min_s = 0, tau_max_s = 0;        ///< range of averaging times that the coefficients were fitted on
-  std::string obtained;                       ///< "fit of a recording", "fit of an Allan curve", "data sheet"
+
+  ScaleFactor scale_factor;
+  Nonlinearity nonlinearity;
+  Bias bias;
+  double reference_temperature_degc = 25;
+  std::array<Coefficient, kTerms>
+      noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
+  NoiseSampling noise_sampling = NoiseSampling::per_sample;
+  NoiseStart noise_start = NoiseStart::stationary;
+  std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"
+  std::optional<double> white_hold_s;        ///< white noise renewed this often and held, as a
+                                             ///< simulator's band-limited white noise block
+  std::optional<double> flicker_hold_s;      ///< flicker made at this step and held, as published
+  std::optional<double> bandwidth_hz;        ///< first-order low-pass behind the noise
+  std::optional<double> saturation_low, saturation_high;  ///< in U
+  Sensitivity sensitivity;
+  std::optional<double>
+      resolution;  ///< quantization step of the output (LSB), in the output's unit
+
+  double mean = 0;  ///< of the recording, removed before analysis: contains the true input at rest
+  double tau_min_s = 0,
+         tau_max_s = 0;  ///< range of averaging times that the coefficients were fitted on
+  std::string obtained;  ///< "fit of a recording", "fit of an Allan curve", "data sheet"
   std::string method;
   std::string recording_file, recording_sha256;
   double duration_s = 0;
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks;  ///< conversions on reading, findings of the fit
+
+  const Coefficient& operator[](Term t) const { return noise[static_cast<std::size_t>(t)]; }
 };
+
+/// The coefficient that a simulation uses: its value, 0 for a term without one.
+double simulated_value(const Coefficient& coefficient);
+
+/// "gyroscope", "accelerometer", "magnetometer", "barometer"…, by `kind` or else by the unit's
+/// quantity; "sensor" when unknown.
+std::string kind_of(const SensorModel& model);
+
+/// "x", "y" or "z", by `axis` or else by the end of the channel's name ("gyr_x", "ax", "Gyro Y
+/// [deg/s]", "wz"); empty when it says none.
+std::string axis_of(const SensorModel& model);
 
 }  // namespace libchar
