@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
@@ -73,11 +75,11 @@ std::string term_block(const Coefficient& c, std::size_t t, const std::string& u
   out += fmt::format("  value: {}\n", c.value ? number(*c.value) : "null");
   out += fmt::format("  unit: {}\n", quoted(term_unit(name.key, unit)));
   if (c.value && c.status != Status::given) {
-    out += fmt::format(
-        "  ci95: [{}, {}]  # {}\n",
-        number(c.ci95.low),
-        number(c.ci95.high),
-        c.profile ? "by profile likelihood" : "log-normal, from the covariance of the fit");
+    out +=
+        fmt::format("  ci95: [{}, {}]\n  ci95_by: {}\n",
+                    number(c.ci95.low),
+                    number(c.ci95.high),
+                    c.profile ? "profile  # likelihood" : "covariance  # of the fit, log-normal");
   } else {
     out += "  ci95: null\n";
   }
@@ -90,6 +92,67 @@ std::string optional_line(const char* key,
                           const std::optional<double>& value,
                           const std::string& comment) {
   return value ? fmt::format("{}: {}  # {}\n", key, number(*value), comment) : std::string();
+}
+
+// One line of a map in flow style, only what differs from the identity.
+std::string flow(const char* key,
+                 const std::vector<std::pair<const char*, double>>& values,
+                 const std::string& comment) {
+  std::string inside;
+  for (const auto& [name, value] : values)
+    inside += fmt::format("{}{}: {}", inside.empty() ? "" : ", ", name, number(value));
+  return fmt::format("{}: {{{}}}  # {}\n", key, inside, comment);
+}
+
+std::string sampling_block(const SensorModel& m) {
+  const bool limited = m.noise_sampling == NoiseSampling::band_limited;
+  std::string out = fmt::format(
+      "noise_sampling: {}\n",
+      limited
+          ? "band-limited  # continuous white noise, low-passed before sampling: aliases included"
+          : "per-sample  # noise is made at rate_hz, then low-passed with the signal");
+  if (m.noise_start == NoiseStart::zero)
+    out += "noise_start: zero  # flicker starts at the first sample\n";
+  if (m.flicker_method != "recursive") out += fmt::format("flicker_method: {}\n", m.flicker_method);
+  out +=
+      optional_line("white_hold_s", m.white_hold_s, "white noise is renewed this often and held");
+  out += optional_line("flicker_hold_s", m.flicker_hold_s, "flicker is made at this step and held");
+  return out;
+}
+
+std::string deterministic_blocks(const SensorModel& m, const std::string& u) {
+  std::string out;
+  if (m.scale_factor != ScaleFactor{})
+    out += flow("scale_factor",
+                {{"value", m.scale_factor.value},
+                 {"spread", m.scale_factor.spread},
+                 {"tc1_per_k", m.scale_factor.tc1_per_k},
+                 {"tc2_per_k2", m.scale_factor.tc2_per_k2}},
+                "N(value, spread) a device, times 1 + tc1 dT + tc2 dT^2");
+  if (m.nonlinearity != Nonlinearity{})
+    out += flow("nonlinearity",
+                {{"quadratic", m.nonlinearity.quadratic},
+                 {"quadratic_tc_per_k", m.nonlinearity.quadratic_tc_per_k},
+                 {"cubic", m.nonlinearity.cubic},
+                 {"cubic_tc_per_k", m.nonlinearity.cubic_tc_per_k}},
+                "of the input x: quadratic (1 + tc dT) x^2 + cubic (1 + tc dT) x^3");
+  if (m.bias != Bias{})
+    out += flow("bias",
+                {{"value", m.bias.value},
+                 {"spread", m.bias.spread},
+                 {"tc1_per_k", m.bias.tc1_per_k},
+                 {"tc2_per_k2", m.bias.tc2_per_k2}},
+                "N(value, spread) a device, plus tc1 dT + tc2 dT^2, in " + u);
+  if (m.reference_temperature_degc != 25)
+    out += fmt::format("reference_temperature_degc: {}\n", number(m.reference_temperature_degc));
+  return out;
+}
+
+std::string sensitivity_line(const SensorModel& m) {
+  if (m.sensitivity == Sensitivity{}) return "";
+  return fmt::format("sensitivity: {{gain: {}, unit: {}}}  # output = gain times the above\n",
+                     number(m.sensitivity.gain),
+                     m.sensitivity.unit.empty() ? "null" : quoted(m.sensitivity.unit));
 }
 
 std::string provenance_block(const SensorModel& m) {
@@ -121,6 +184,8 @@ std::string model_yaml(const SensorModel& m) {
       quoted(version()),
       quoted(m.channel),
       m.unit.empty() ? "null  # the log names none: U below" : quoted(m.unit));
+  if (!m.kind.empty()) out += fmt::format("kind: {}\n", quoted(m.kind));
+  if (!m.axis.empty()) out += fmt::format("axis: {}\n", m.axis);
   out += fmt::format(
       "rate_hz: {}\nsampling: point  # samples at an instant, not averages over the sampling "
       "interval\n",
@@ -129,17 +194,20 @@ std::string model_yaml(const SensorModel& m) {
       "density: two-sided  # a data sheet's noise density is one-sided: sqrt(2) times "
       "white_noise\n\n";
   for (std::size_t t = 0; t < kTerms; ++t) out += term_block(m.noise[t], t, unit);
-  out += "\n";
+  out += sampling_block(m) + "\n" + deterministic_blocks(m, u);
   out += optional_line(
       "bandwidth_hz", m.bandwidth_hz, "corner of a first-order low-pass behind the noise");
-  out += optional_line("resolution", m.resolution, "least step between two values, in " + u);
   if (m.saturation_low && m.saturation_high) {
-    out +=
-        fmt::format("saturation: [{}, {}]  # ends of the range that the recording reached, in {}\n",
-                    number(*m.saturation_low),
-                    number(*m.saturation_high),
-                    u);
+    out += fmt::format("saturation: [{}, {}]  # ends of the range, in {}\n",
+                       number(*m.saturation_low),
+                       number(*m.saturation_high),
+                       u);
   }
+  out += sensitivity_line(m);
+  out += optional_line("resolution",
+                       m.resolution,
+                       "least step between two values of the output, in " +
+                           (m.sensitivity.unit.empty() ? u : printable(m.sensitivity.unit)));
   out += fmt::format(
       "mean: {}  # of the recording, in {}; holds the true input at rest as well as the bias\n\n",
       number(m.mean),

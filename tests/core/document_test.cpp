@@ -1,0 +1,111 @@
+#include "libchar/core/document.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/schema.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_yaml_document(text, "f");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string schema_refusal(const std::string& text,
+                           const std::function<void(const MapReader&)>& read) {
+  const Document document = parse_yaml_document(text, "f");
+  try {
+    read(MapReader(document, "f", "", {"alpha", "beta", "list"}));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("document: every key and value remembers its place") {
+  const Document d = parse_yaml_document("a: 1\nb:\n  - x: 2.5\n    y: no\n", "f");
+  REQUIRE(d.find("b") != nullptr);
+  const Document& item = d.find("b")->value.list.at(0);
+  CHECK(item.find("y")->line == 4);
+  CHECK(item.find("y")->column == 5);
+  CHECK(item.find("y")->value.column == 8);
+  CHECK(item.find("y")->value.text == "no");
+  CHECK(item.find("x")->value.number == 2.5);
+  CHECK_FALSE(item.find("x")->value.whole);
+  CHECK(d.find("a")->value.whole);
+  CHECK(as_json(d).dump() == R"({"a":1,"b":[{"x":2.5,"y":"no"}]})");
+}
+
+TEST_CASE("document: what YAML allows and nobody means is refused with its place") {
+  CHECK(refusal("a: &a 1\nb: *a\n").starts_with("f:1:4"));
+  CHECK(refusal("version: 1\nversion: 2\n").starts_with("f:2:1"));
+  CHECK(refusal("version: 1\n---\nversion: 1\n").find("second document") != std::string::npos);
+  CHECK(refusal("version: 1\nx: !!python/object 1\n").starts_with("f:2:4"));
+  CHECK(refusal(std::string("version: 1\0\n", 12)).starts_with("f:1:11"));
+  CHECK(refusal("a: {x: 1}\nb: {<<: 1}\n").starts_with("f:2:5"));
+  CHECK(refusal("").starts_with("f:1:1"));
+  CHECK(refusal("version: 1\nchannels:\n\tgx: 1\n").starts_with("f:3:1"));
+  CHECK(refusal("version: 1\n" + std::string(1100, 'k') + ": 1\n").starts_with("f:2:1"));
+  CHECK(refusal(std::string(400, '[') + std::string(400, ']')).find("64 levels") !=
+        std::string::npos);
+  CHECK(refusal("version: 1\nchannels: {gx: {N: 1.0e-").starts_with("f:2:"));
+}
+
+TEST_CASE("document: JSON gives the same tree") {
+  const Document json =
+      parse_json_document(R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})", "f.json");
+  CHECK(as_json(json).dump() == R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})");
+  CHECK(json.find("a")->value.whole);
+  CHECK_FALSE(json.find("b")->value.list[0].find("x")->value.whole);
+}
+
+TEST_CASE("schema: refusals name place, key and the nearest valid key") {
+  const auto number = [](const MapReader& m) { m.number("alpha", kNotNegative); };
+  CHECK(schema_refusal("alpha: 1\nbetta: 2\n", number) ==
+        "f:2:1: error E0540: unknown key; got \"betta\"; hint: did you mean beta?");
+  for (const char* value :
+       {"010", "1:30", ".inf", ".nan", "1e400", "-1e-3", "1,5", "1e-3 rad/s", "[1]", "true"}) {
+    INFO(value);
+    CHECK(schema_refusal(std::string("beta: 1\nalpha: ") + value + "\n", number)
+              .starts_with("f:2:8: error"));
+  }
+  CHECK(schema_refusal("alpha: 1e-05\n", number).empty());
+  CHECK(schema_refusal("beta: 1\n", number).find("alpha is missing") != std::string::npos);
+  CHECK(schema_refusal("alpha: null\n", number).find("alpha is missing") != std::string::npos);
+  CHECK_FALSE(schema_refusal("alpha: 1.0\n", [](const MapReader& m) { m.count("alpha"); }).empty());
+  CHECK(schema_refusal("alpha: 18446744073709551615\n", [](const MapReader& m) {
+          CHECK(m.count("alpha") == 18446744073709551615ULL);
+        }).empty());
+  CHECK(schema_refusal("alpha: scael\n", [](const MapReader& m) {
+          m.word("alpha", {"scale", "bias"});
+        }).find("did you mean scale?") != std::string::npos);
+  CHECK_FALSE(
+      schema_refusal("alpha: [2, 1]\n", [](const MapReader& m) { m.interval("alpha"); }).empty());
+}
+
+TEST_CASE("schema: another format and a newer version are refused by name") {
+  const auto check = [](const std::string& text) -> std::string {
+    try {
+      check_format(parse_yaml_document(text, "f"), "f", "scene", 1);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(check("format: scene\nversion: 1\n").empty());
+  CHECK(check("format: scene\nversion: 99\n").starts_with("f:2:10: error E0546: version 99"));
+  CHECK(check("format: scene\n").starts_with("f:1:1"));
+  CHECK(check("format: scene\nversion: 1.0\n").starts_with("f:2:10"));
+  CHECK(check("format: sensor-model\nversion: 1\n").starts_with("f:1:9"));
+  CHECK(check("hello").starts_with("f:1:1"));
+}

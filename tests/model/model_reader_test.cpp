@@ -1,0 +1,161 @@
+#include "libchar/model/model_reader.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/error.hpp"
+#include "libchar/model/from_fit.hpp"
+#include "libchar/model/model_file.hpp"
+#include "libchar/model/noise_units.hpp"
+#include "tests/report/synthetic.hpp"
+
+using namespace libchar;
+
+namespace {
+
+const std::string kHead = "format: sensor-model\nversion: 1\nunit: rad/s\nrate_hz: 200\n";
+
+SensorModel parse(const std::string& body) {
+  return parse_sensor_model(kHead + body, "m.yaml");
+}
+
+std::string refusal(const std::string& text, const std::string& file = "m.yaml") {
+  try {
+    parse_sensor_model(text, file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+double white_of(const std::string& unit, const std::string& density, double value = 1) {
+  return *parse("density: " + density + "\nwhite_noise: {value: " + std::to_string(value) +
+                ", unit: \"" + unit + "\"}\n")
+              .noise[0]
+              .value;
+}
+
+}  // namespace
+
+TEST_CASE("model reader: what the writer wrote reads back to the same file") {
+  const auto result = test::synthetic_imu();
+  for (const ChannelResult& c : result.channels) {
+    SensorModel m = sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan);
+    m.scale_factor = {1.02, 0.01, 1e-4, 2e-6};
+    m.nonlinearity = {0.01, 0.003, -0.02, -0.001};
+    m.bias = {0.05, 0.2, 1e-3, -2e-5};
+    m.reference_temperature_degc = 20;
+    m.sensitivity = {0.8, "V"};
+    m.noise_start = NoiseStart::zero;
+    m.flicker_hold_s = 1;
+    m.kind = "gyroscope";
+    m.axis = "x";
+    const std::string text = model_yaml(m);
+    CHECK(model_yaml(parse_sensor_model(text, "m.yaml")) == text);
+  }
+}
+
+TEST_CASE("model reader: units of data sheets become the two-sided density of the channel") {
+  const double degree = std::numbers::pi / 180, root2 = std::numbers::sqrt2;
+  CHECK(white_of("deg/√h", "one-sided") == Approx(degree / 60).epsilon(1e-14));
+  CHECK(white_of("deg/sqrt(hr)", "two-sided") == Approx(degree / 60).epsilon(1e-14));
+  CHECK(white_of("deg/s/√Hz", "one-sided") == Approx(degree / root2).epsilon(1e-14));
+  CHECK(white_of("mdps/rtHz", "two-sided", 3.5) == Approx(3.5e-3 * degree).epsilon(1e-14));
+  CHECK(white_of("(rad/s)/√Hz", "two-sided") == 1);
+  CHECK(white_of("rad/s·√s", "one-sided") == 1);  // Q itself: no side to take
+  CHECK(white_of("deg/h/√Hz", "two-sided") == Approx(degree / 3600).epsilon(1e-14));
+  const SensorModel m = parse(
+      "density: one-sided\nbias_instability: {value: 7, unit: deg/h, reading: floor}\nrandom_walk: "
+      "{value: 2, unit: "
+      "deg/h/√h}\nquantization: {value: 3, unit: arcsec}\nrate_ramp: {value: 4, unit: deg/h/h}\n");
+  CHECK(*m.noise[1].value == Approx(7 * degree / 3600 / 0.66428247).epsilon(1e-8));
+  CHECK(*m.noise[2].value == Approx(2 * degree / 3600 / 60).epsilon(1e-14));
+  CHECK(*m.noise[3].value == Approx(3 * std::numbers::pi / 648000).epsilon(1e-14));
+  CHECK(*m.noise[4].value == Approx(4 * degree / 3600 / 3600).epsilon(1e-14));
+  CHECK(m.remarks.size() == 4);
+  CHECK(m.remarks[0].find("divided by 0.6643") != std::string::npos);
+  const auto unit = find_noise_unit(Term::white, "µg/√Hz", "m/s^2");
+  REQUIRE(unit);
+  CHECK(unit->factor == Approx(9.80665e-6).epsilon(1e-14));
+  CHECK(find_noise_unit(Term::white, "m/s/√h", "g")->factor ==
+        Approx(1 / 60.0 / 9.80665).epsilon(1e-14));
+  CHECK(find_noise_unit(Term::walk, "m/s^3/√Hz", "m/s^2")->factor == 1);
+  CHECK(find_noise_unit(Term::white, "counts/√Hz", "counts")->factor == 1);
+  CHECK(find_noise_unit(Term::white, "U/√Hz", "")->density);
+  CHECK(find_noise_unit(Term::white, "mV/√Hz", "V")->factor == Approx(1e-3).epsilon(1e-14));
+  CHECK_FALSE(find_noise_unit(Term::white, "deg/h", "rad/s"));
+  CHECK_FALSE(find_noise_unit(Term::walk, "deg/√h", "rad/s"));
+  CHECK_FALSE(find_noise_unit(Term::white, "µg/√Hz", "rad/s"));
+  for (const std::string channel : {"rad/s", "m/s²", "µT", ""})
+    for (std::size_t t = 0; t < kTerms; ++t)
+      for (const std::string& text : noise_unit_examples(static_cast<Term>(t), channel))
+        CHECK(find_noise_unit(static_cast<Term>(t), text, channel));
+}
+
+TEST_CASE("model reader: a density without its side is asked for") {
+  CHECK(refusal(kHead + "white_noise: 0.005\n")
+            .starts_with("m.yaml:5:14: error E0545: white_noise: a density"));
+  CHECK(refusal(kHead + "white_noise: {value: 1, unit: \"rad/s/√Hz\"}\n")
+            .find("density: one-sided") != std::string::npos);
+  CHECK(refusal(kHead + "white_noise: {value: 1, unit: \"deg/√h\"}\n").empty());
+}
+
+TEST_CASE("model reader: a term without a value keeps its status") {
+  const SensorModel m = parse(
+      "random_walk: {value: null, unit: \"rad/s/√s\", upper95: 2.0e-05, status: not_detected}\n");
+  CHECK(m.noise[2].status == Status::not_detected);
+  CHECK_FALSE(m.noise[2].value);
+  CHECK(*m.noise[2].upper95 == 2e-5);
+  CHECK(m.noise[0].status == Status::not_fitted);
+  CHECK(simulated_value(m.noise[2]) == 0);
+}
+
+TEST_CASE("model reader: bad files name place, key and what would be right") {
+  const auto starts = [](const std::string& body, const std::string& begin) {
+    INFO(body);
+    CHECK(refusal(kHead + body).starts_with("m.yaml:" + begin));
+  };
+  starts("white_niose: 1\n",
+         "5:1: error E0540: unknown key; got \"white_niose\"; hint: did you mean white_noise?");
+  starts("density: two-sided\nwhite_noise: -1e-3\n", "6:14: error E0543");
+  starts("density: two-sided\nwhite_noise: .inf\n", "6:14: error E0541");
+  starts("density: two-sided\nwhite_noise: 1,5\n", "6:14: error E0541");
+  starts("bandwidth_hz: 0\n", "5:15: error E0543");
+  starts("saturation: [1, -1]\n", "5:13: error E0543");
+  starts("noise_sampling: band-limited\n", "5:17: error E0545");
+  starts("white_noise: {value: 1, unit: deg/h}\n", "5:31: error E0545");
+  starts("white_noise: {value: 1, unit: \"rad/s·√s\", status: detectd}\n", "5:54: error E0544");
+  starts("white_noise: {status: detected}\n", "5:14: error E0545");
+  starts("scale_factor: {value: 1, sprad: 0.1}\n",
+         "5:26: error E0540: unknown key in scale_factor");
+  starts("bias: 3\n", "5:7: error E0541");
+  CHECK(refusal("format: sensor-model\nversion: 2\n").starts_with("m.yaml:2:10: error E0546"));
+  CHECK(refusal("version: 1\n").starts_with("m.yaml:1:1: error E0546"));
+  CHECK(refusal(R"({"format":"sensor-model","version":1,"unit":"rad/s","white_noise":null})",
+                "m.json")
+            .empty());
+  CHECK(refusal(R"({"format":"sensor-model","version":1.0})", "m.json")
+            .starts_with("m.json: error E0546"));
+  CHECK(refusal(R"({"format":"sensor-model","version":1,"bandwidth_hz":"x"})", "m.json")
+            .find("bandwidth_hz") != std::string::npos);
+}
+
+TEST_CASE("model reader: kind and axis from unit and name") {
+  SensorModel m;
+  const auto axis = [&](const char* name) {
+    m.channel = name;
+    return axis_of(m);
+  };
+  CHECK(axis("gyr_x") == "x");
+  CHECK(axis("ax") == "x");
+  CHECK(axis("Gyro Y [deg/s]") == "y");
+  CHECK(axis("accelZ") == "z");
+  CHECK(axis("imu0.wz") == "z");
+  CHECK(axis("x") == "x");
+  CHECK(axis("flux") == "");
+  CHECK(axis("index") == "");
+  CHECK(axis("temp") == "");
+  m.unit = "mg";
+  CHECK(kind_of(m) == "accelerometer");
+}
