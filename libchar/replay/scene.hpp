@@ -1,0 +1,73 @@
+#pragma once
+// A scene: a recording (or a simulation of one) plus what is known about it (design.md 1, 6.2).
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/document.hpp"
+#include "libchar/core/warnings.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/simulate/fault.hpp"
+#include "libchar/simulate/sensor_array.hpp"
+
+namespace libchar {
+
+struct SceneSensor {
+  std::string name;                  ///< unique in the scene
+  std::string channel;               ///< of the recording; the name when the file does not say
+  std::optional<SensorModel> model;  ///< inline or from a file beside the scene
+  std::vector<double> h = {1};       ///< row of the observation matrix
+};
+
+/// A stretch of the recording, in seconds from its first sample.
+struct Window {
+  double from_s = 0;
+  double to_s = std::numeric_limits<double>::infinity();
+};
+
+struct SceneReference {
+  std::vector<std::string>
+      channels;  ///< one a truth input; or several whose mean is the truth (`mean`)
+  bool mean = false;
+  std::optional<std::string>
+      recording;     ///< in a log of its own (resolved path), else in the scene's
+  double lag_s = 0;  ///< the sensors lag the reference by this
+  bool estimate_lag = false;
+};
+
+struct SceneAlgorithm {
+  std::string name;
+  std::vector<std::pair<std::string, double>>
+      options;  ///< numbers, as the algorithm's table names them
+  int line = 0, column = 0;
+};
+
+struct Scene {
+  std::string file;  ///< of the scene
+  std::string name;
+  std::string recording;  ///< resolved path; empty for a simulation
+  ReadOptions reading;    ///< rate, delimiter, names… of the recording
+  std::optional<ArraySimulation> simulate;
+  std::vector<SceneSensor> sensors;
+  std::optional<SceneReference> reference;
+  std::optional<Window> learning, evaluation;
+  std::vector<Fault> faults;
+  std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
+  Warnings warnings;
+};
+
+struct SceneReadOptions {
+  bool allow_outside = false;  ///< files outside the scene's folder may be named
+};
+
+/// Reads `format: scene`, `version: 1`, YAML or JSON (docs/formats.md). Paths are relative to the
+/// scene's folder and stay inside it. Throws Error(input) with place, key and the nearest valid
+/// key.
+Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
+
+/// The scene as YAML; paths relative to the folder of `scene.file`; models inline.
+std::string scene_yaml(const Scene& scene);
+
+}  // namespace libchar

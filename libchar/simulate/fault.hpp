@@ -1,0 +1,55 @@
+#pragma once
+// Faults that a sensor shows over an interval, injected into simulated or recorded samples.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace libchar {
+
+enum class FaultKind {
+  scale,       ///< y * value
+  bias,        ///< y + value
+  ramp,        ///< y + value * (t - from), value in U/s
+  stuck,       ///< the last sample before the fault, held
+  saturation,  ///< clamped to +-value
+  noise,       ///< y + white noise of standard deviation `value`
+  dropout,     ///< missing
+};
+
+struct Fault {
+  std::size_t sensor = 0;  ///< index into the sensors of the scene
+  FaultKind kind = FaultKind::bias;
+  double value = 0;
+  double from_s = 0;
+  double to_s =
+      std::numeric_limits<double>::infinity();  ///< the first sample at or after it is sound again
+};
+
+std::string_view name_of(FaultKind kind);
+/// Nothing for an unknown word.
+const std::vector<std::string>& fault_kinds();
+FaultKind fault_kind(const std::string& word);
+
+/// Applies the faults of one sensor to consecutive blocks, in the order of the list.
+class FaultInjector {
+ public:
+  FaultInjector(std::vector<Fault> faults,
+                double rate_hz,
+                std::uint64_t seed,
+                std::uint64_t sensor);
+  bool idle() const { return faults_.empty(); }
+  /// `y` holds the samples that follow those of the last call.
+  void apply(std::span<double> y);
+
+ private:
+  std::vector<Fault> faults_;
+  double rate_hz_;
+  std::uint64_t seed_, sensor_, done_ = 0;
+  double last_ =
+      std::numeric_limits<double>::quiet_NaN();  ///< last sample outside every stuck fault
+};
+
+}  // namespace libchar
