@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/simulate/random.hpp"
+
 namespace libchar {
 
 enum class FaultKind {
@@ -29,8 +31,8 @@ struct Fault {
 };
 
 std::string_view name_of(FaultKind kind);
-/// Nothing for an unknown word.
 const std::vector<std::string>& fault_kinds();
+/// `word` is one of them.
 FaultKind fault_kind(const std::string& word);
 
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
@@ -46,8 +48,9 @@ class FaultInjector {
 
  private:
   std::vector<Fault> faults_;
+  std::vector<DeviateStream> noise_;
   double rate_hz_;
-  std::uint64_t seed_, sensor_, done_ = 0;
+  std::uint64_t done_ = 0;
   double last_ =
       std::numeric_limits<double>::quiet_NaN();  ///< last sample outside every stuck fault
 };
