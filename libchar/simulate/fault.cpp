@@ -48,7 +48,7 @@ FaultKind fault_kind(const std::string& word) {
   return FaultKind::bias;
 }
 
-FaultInjector::FaultInjector(std::vector<Fault> faults,
+FaultInjector::FaultInjector(std::vector<SensorFault> faults,
                              double rate_hz,
                              std::uint64_t seed,
                              std::uint64_t sensor)
@@ -65,7 +65,7 @@ void FaultInjector::apply(std::span<double> y) {
     bool stuck = false;
     const double sound = sample;
     for (std::size_t i = 0; i < faults_.size(); ++i) {
-      const Fault& fault = faults_[i];
+      const SensorFault& fault = faults_[i];
       if (k < first_sample(fault.from_s, rate_hz_) || k >= first_sample(fault.to_s, rate_hz_))
         continue;
       switch (fault.kind) {

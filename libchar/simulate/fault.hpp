@@ -21,7 +21,7 @@ enum class FaultKind {
   dropout,     ///< missing
 };
 
-struct Fault {
+struct SensorFault {
   std::size_t sensor = 0;  ///< index into the sensors of the scene
   FaultKind kind = FaultKind::bias;
   double value = 0;
@@ -38,7 +38,7 @@ FaultKind fault_kind(const std::string& word);
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
 class FaultInjector {
  public:
-  FaultInjector(std::vector<Fault> faults,
+  FaultInjector(std::vector<SensorFault> faults,
                 double rate_hz,
                 std::uint64_t seed,
                 std::uint64_t sensor);
@@ -47,7 +47,7 @@ class FaultInjector {
   void apply(std::span<double> y);
 
  private:
-  std::vector<Fault> faults_;
+  std::vector<SensorFault> faults_;
   std::vector<DeviateStream> noise_;
   double rate_hz_;
   std::uint64_t done_ = 0;

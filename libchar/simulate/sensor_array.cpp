@@ -93,7 +93,7 @@ void check(const ArraySimulation& s) {
       refuse(fmt::format("two channels would be called {}", sensor.name));
     check_sensor(s, sensor);
   }
-  for (const Fault& fault : s.faults)
+  for (const SensorFault& fault : s.faults)
     if (fault.sensor >= s.sensors.size())
       refuse(
           fmt::format("a fault is of sensor {}, and there are {}", fault.sensor, s.sensors.size()));
@@ -129,8 +129,8 @@ struct ArraySimulator::State {
       chains.emplace_back(spec.sensors[i].model,
                           ChainOptions{rate, spec.seed, i, length, spec.low_pass_starts_at_zero});
       draws.push_back(chains.back().draw());
-      std::vector<Fault> own;
-      for (const Fault& fault : spec.faults)
+      std::vector<SensorFault> own;
+      for (const SensorFault& fault : spec.faults)
         if (fault.sensor == i) own.push_back(fault);
       faults.emplace_back(std::move(own), spec.rate_hz, spec.seed, i);
     }

@@ -99,7 +99,7 @@ TEST_CASE("signals: a walk spreads as its step says, and block sizes do not matt
     end.push({&last, 1});
   }
   CHECK(end.standard_deviation() == Approx(2 * std::sqrt(4.0)).epsilon(0.06));
-  for (const std::string& kind : {"noise", "uniform", "random_walk", "sine", "chirp"})
+  for (const std::string kind : {"noise", "uniform", "random_walk", "sine", "chirp"})
     CHECK(run(of_kind(kind), 100, 3000, 1) == run(of_kind(kind), 100, 3000, 999));
 }
 
