@@ -13,6 +13,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/model/from_fit.hpp"
 #include "libchar/report/channel_stage.hpp"
+#include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
 #include "libchar/report/people.hpp"
 #include "libchar/report/verdict.hpp"
 #include "libchar/simulate/sensor_array.hpp"
@@ -149,6 +151,7 @@ ChannelVerification compared(const ChannelResult& recorded,
           term_sentence(out.terms.back(), std::string(term_title(static_cast<Term>(t)))));
   }
   out.agrees = disagreements.empty() && simulated.fit.has_value();
+
   const auto good = std::count_if(
       out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });
   out.sentences.push_back(fmt::format(
@@ -160,6 +163,9 @@ ChannelVerification compared(const ChannelResult& recorded,
       std::count_if(
           out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
       out.terms.size()));
+  if (!disagreements.empty() && !recorded.lines.empty())
+    disagreements.push_back(fmt::format(
+        "The model holds none of the {} spectral lines of the recording.", recorded.lines.size()));
   for (std::string& sentence : disagreements) out.sentences.push_back(std::move(sentence));
   out.allan = std::move(simulated.allan);
   out.spectrum = std::move(simulated.spectrum);
@@ -169,27 +175,57 @@ ChannelVerification compared(const ChannelResult& recorded,
 
 }  // namespace
 
-std::vector<std::optional<ChannelVerification>> verify(const Characterization& recorded,
-                                                       const CharacterizeOptions& options,
-                                                       const VerifyOptions& how,
-                                                       Progress& progress) {
-  std::vector<std::optional<ChannelVerification>> out(recorded.channels.size());
+bool verify(Characterization& recorded,
+            const CharacterizeOptions& options,
+            const VerifyOptions& how,
+            Progress& progress) {
   const std::uint64_t bytes = recorded.log.samples * sizeof(double);
   const bool kept = bytes * 2 <= options.memory_bytes;
   AllanCovarianceCache covariances;
   CharacterizeOptions same = options;
   same.fit.covariances = &covariances;
+  auto& channels = recorded.channels;
   const std::size_t group =
       2;  // as in characterize: memory stays bounded however many channels there are
-  for (std::size_t first = 0; first < out.size(); first += group) {
-    progress.update(static_cast<double>(first) / static_cast<double>(out.size()), "simulating");
-    const std::size_t last = std::min(out.size(), first + group);
+  for (std::size_t first = 0; first < channels.size(); first += group) {
+    progress.update(static_cast<double>(first) / static_cast<double>(channels.size()),
+                    "simulating");
+    const std::size_t last = std::min(channels.size(), first + group);
     tbb::parallel_for(first, last, [&](std::size_t c) {
-      const ChannelResult& channel = recorded.channels[c];
+      ChannelResult& channel = channels[c];
       if (!channel.fit) return;
-      out[c] = compared(channel, simulated_channel(channel, recorded.log, same, how, c, kept), how);
+      channel.verification = std::make_shared<ChannelVerification>(
+          compared(channel, simulated_channel(channel, recorded.log, same, how, c, kept), how));
     });
   }
+  return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {
+    return !channel.verification || channel.verification->agrees;
+  });
+}
+
+Json verification_json(const ChannelResult& channel) {
+  const ChannelVerification& v = *channel.verification;
+  Json out = {{"name", json_text(channel.channel.name)}, {"agrees", v.agrees}};
+  out["sentences"] = Json::array();
+  for (const std::string& sentence : v.sentences) out["sentences"].push_back(json_text(sentence));
+  out["terms"] = Json::array();
+  for (const TermVerification& t : v.terms) {
+    const auto value = [](const Coefficient& c) {
+      return c.value ? Json(*c.value) : Json(nullptr);
+    };
+    out["terms"].push_back({{"term", kTermNames[static_cast<std::size_t>(t.term)].key},
+                            {"model", value(t.model)},
+                            {"simulated", value(t.simulated)},
+                            {"agrees", t.agrees}});
+    if (t.simulated.value)
+      out["terms"].back()["simulated_ci95"] = {t.simulated.ci95.low, t.simulated.ci95.high};
+  }
+  out["points"] = Json::array();
+  for (const PointVerification& point : v.points)
+    out["points"].push_back(
+        {{"tau_s", point.tau_s}, {"ratio", point.ratio}, {"p", point.p}, {"agrees", point.agrees}});
+  out["allan"] = allan_channel_json(channel.channel, v.allan, nullptr);
+  out["spectrum"] = spectrum_channel_json(channel.channel, v.spectrum, nullptr);
   return out;
 }
 

@@ -46,11 +46,14 @@ struct VerifyOptions {
       0.03;  ///< relative difference of deviations that is never called a disagreement
 };
 
-/// Simulates every fitted channel for as long as the recording, with the missing samples of none,
-/// and characterizes it with the same options. Nothing for a channel without a fit.
-std::vector<std::optional<ChannelVerification>> verify(const Characterization& recorded,
-                                                       const CharacterizeOptions& options,
-                                                       const VerifyOptions& how = {},
-                                                       Progress& progress = no_progress());
+/// Simulates every fitted channel for as long as its samples went, characterizes it with the same
+/// options and leaves the comparison in `verification`. Returns whether all of them agree.
+bool verify(Characterization& recorded,
+            const CharacterizeOptions& options,
+            const VerifyOptions& how = {},
+            Progress& progress = no_progress());
+
+/// The comparison as JSON: {"name","agrees","sentences","terms":[…],"allan":{…},"spectrum":{…}}.
+Json verification_json(const ChannelResult& channel);
 
 }  // namespace libchar
