@@ -54,9 +54,10 @@ TEST_CASE("impulse response, spectrum and variogram of the filter are those of f
       variogram = std::max(variogram, std::fabs(flicker_variogram(filter, k) / exact - 1));
     }
     for (const double nu : spread(std::min(0.49, 0.5 / n), 0.5, 3000))
-      power = std::max(power, std::fabs(flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
-    UNSCOPED_INFO("length " << length << ", " << filter.loss.size() << " sections: response " << response
-                   << ", power " << power << ", variogram " << variogram);
+      power = std::max(
+          power, std::fabs(flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
+    UNSCOPED_INFO("length " << length << ", " << filter.loss.size() << " sections: response "
+                            << response << ", power " << power << ", variogram " << variogram);
     CHECK(response < 6e-7);
     CHECK(power < 6e-7);
     CHECK(variogram < 6e-7);
@@ -70,7 +71,8 @@ TEST_CASE("the Allan variance of the filter's output is flicker's to 1e-6") {
   constexpr std::size_t most = 1U << 13U;
   std::vector<long double> s(2 * most + 1, 0.0L);
   for (std::size_t n = 1; n < 2 * most; ++n)
-    s[n + 1] = 2 * s[n] - s[n - 1] + static_cast<long double>(flicker_variogram(filter, double(n))) / 2;
+    s[n + 1] =
+        2 * s[n] - s[n - 1] + static_cast<long double>(flicker_variogram(filter, double(n))) / 2;
   for (std::size_t m = 1; m <= most; m *= 2) {
     const long double avar = (s[2 * m] - 4 * s[m]) / static_cast<long double>(m * m);
     CHECK(static_cast<double>(avar) ==
@@ -132,7 +134,8 @@ TEST_CASE("started at rest, the record is that of the exact convolution") {
   CHECK(std::sqrt(error / power) < 5e-7);
 }
 
-TEST_CASE("a stationary start draws the states' joint distribution and counts from the level before") {
+TEST_CASE(
+    "a stationary start draws the states' joint distribution and counts from the level before") {
   const FlickerFilter filter = design_flicker(10'000);
   DeviateStream one({9, 0, Purpose::flicker_start}), two({9, 0, Purpose::flicker_start});
   std::vector<double> states = stationary_states(filter, one);
@@ -153,8 +156,8 @@ TEST_CASE("a stationary start draws the states' joint distribution and counts fr
 }
 
 // E (y_{t+n} - y_t)^2 of the stream, from the map that takes start and driving deviates to the
-// samples: it must be (4/pi) H_n wherever in the record it is taken, also across the start (y_{-1} =
-// 0).
+// samples: it must be (4/pi) H_n wherever in the record it is taken, also across the start (y_{-1}
+// = 0).
 TEST_CASE("the increments of a stationary start are stationary") {
   constexpr std::size_t length = 200;
   const FlickerFilter filter = design_flicker(length);
@@ -179,7 +182,8 @@ TEST_CASE("the increments of a stationary start are stationary") {
 }
 
 TEST_CASE("flicker does not depend on the size of the blocks, bit for bit") {
-  for (const std::uint64_t length : {std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{0}}) {
+  for (const std::uint64_t length :
+       {std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{0}}) {
     const FlickerFilter filter = design_flicker(length);
     std::vector<double> whole = normals(4, 5000), parts = whole;
     FlickerStream one(filter), two(filter);
@@ -194,8 +198,8 @@ TEST_CASE("flicker does not depend on the size of the blocks, bit for bit") {
   }
 }
 
-// The sum is written out lane by lane as sections.cpp promises it; run under
-// GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2 this test holds for the other clone.
+// The sum is written out lane by lane as sections.cpp promises it: what a processor without AVX2
+// computes, compared with the clone that this processor takes.
 TEST_CASE("the vector code adds in the stated order, bit for bit") {
   const FlickerFilter filter = design_flicker(0);
   std::vector<double> loss = filter.loss, weight = filter.weight;
