@@ -10,10 +10,10 @@
 //
 //   h_k = sum_j w_j p_j^k,  s_j = e^(j a),  p_j = 1/(1 + s_j),  w_j = (a/pi) sqrt(s_j)/(1 + s_j).
 //
-// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its own
-// Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on the
-// discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a polynomial
-// of low degree there.
+// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its
+// own Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on
+// the discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a
+// polynomial of low degree there.
 //
 // Every section x_j[t] = p_j x_j[t-1] + g[t] is driven by the same deviate. Jointly stationary, the
 // states have covariance C_ij = 1/(1 - p_i p_j), the Gram matrix of Szego kernels; the

@@ -4,15 +4,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <set>
 #include <vector>
 
 #include "libchar/allan/chi_square.hpp"
 
 using namespace libchar;
-
-static_assert(std::uniform_random_bit_generator<BitStream>);
 
 namespace {
 
@@ -64,11 +61,33 @@ TEST_CASE("philox gives the published known answers") {
 }
 
 TEST_CASE("a stream is the philox blocks of its key in order") {
-  BitStream stream({7, 3, Purpose::walk});
+  DeviateStream stream({7, 3, Purpose::walk});
   for (std::uint64_t block = 0; block < 40; ++block)
     for (const std::uint64_t word :
          philox({block, 0, 0, static_cast<std::uint64_t>(Purpose::walk)}, {7, 3}))
-      CHECK(stream() == word);
+      CHECK(stream.uniform() == static_cast<double>(word >> 11U) * 0x1.0p-53);
+}
+
+// Rejections included: a deviate that needs more words than one takes none from its neighbours.
+TEST_CASE("a deviate depends on its position alone") {
+  const StreamKey key{2, 9, Purpose::flicker};
+  const std::vector<double> whole = normals(key, 20'000);
+  DeviateStream stream(key);
+  for (std::size_t position = 17; position < whole.size(); position += 113) {
+    stream.seek(position);
+    REQUIRE(stream.normal() == whole[position]);
+  }
+  stream.seek(0);
+  for (std::size_t position = 0; position < 1000; ++position) {
+    if (position % 3 == 0)
+      stream.uniform();
+    else
+      REQUIRE(stream.normal() == whole[position]);
+  }
+  // far out, where a simulation of years would be: the blocks there are those of philox
+  stream.seek(std::uint64_t{1} << 62U);
+  const auto far = philox({std::uint64_t{1} << 60U, 0, 0, 2}, {2, 9});
+  CHECK(stream.uniform() == static_cast<double>(far[0] >> 11U) * 0x1.0p-53);
 }
 
 TEST_CASE("deviates do not depend on the size of the blocks they are drawn in") {
