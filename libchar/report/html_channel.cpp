@@ -318,7 +318,8 @@ std::string quality(const ChannelResult& c) {
                                       people_count(q.missing),
                                       people(100 * static_cast<double>(q.missing) / all, 2))});
   out += table_row({"Mean", people(q.mean, 6) + " " + unit});
-  out += table_row({"Standard deviation", people(q.standard_deviation, 4) + " " + unit});
+  const bool constant = q.samples > 0 && q.minimum == q.maximum;
+  out += table_row({"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
   if (q.samples > 0)
     out += table_row(
         {"Range", fmt::format("{} … {} {}", people(q.minimum, 5), people(q.maximum, 5), unit)});
@@ -331,9 +332,10 @@ std::string quality(const ChannelResult& c) {
   out +=
       table_row({"Longest run of one value",
                  people_count(q.longest_stuck) + (q.longest_stuck == 1 ? " sample" : " samples")});
-  out += table_row({"Kurtosis of differences",
-                    people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
-  if (q.float32)
+  if (!constant)
+    out += table_row({"Kurtosis of differences",
+                      people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
+  if (q.float32 && !constant)
     out += table_row(
         {"Number format", "32-bit floats, in steps of " + people(q.float32_step, 2) + " " + unit});
   out += "</tbody></table>\n" + lines_table(c);
