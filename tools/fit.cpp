@@ -109,7 +109,7 @@ void run_fit(Session& session, const FitVerb& verb) {
   const std::vector<ChannelFit> fits = verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
   session.terminal.clear();
   report_warnings(session, log);
-  if (fits.empty()) throw Error({ErrorKind::numeric, "E0711", verb.input, "no channel could be fitted", "", log.time.rate_hz > 0 ? "" : "the log has no time axis: give --rate"});
+  if (fits.empty()) throw Error({ErrorKind::numeric, "E0711", verb.input, "no channel could be fitted", "", log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate"});
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});

@@ -188,3 +188,17 @@ TEST_CASE("options that cannot be followed are said, not swallowed") {
   write_text(folder / "uneven.csv", uneven);
   CHECK(test::run({"allan", (folder / "uneven.csv").string(), "--taus", "1s"}).err.find("uneven") != std::string::npos);
 }
+
+TEST_CASE("channels whose names make one file name get a model file each, letters kept") {
+  const test::TemporaryFolder folder;
+  std::string text = "a/b,A b,größe\n";
+  std::uint32_t state = 1;
+  for (int i = 0; i < 400; ++i) {
+    for (int c = 0; c < 3; ++c) text += std::to_string((state = state * 1664525U + 1013904223U) >> 12U) + (c < 2 ? "," : "\n");
+  }
+  write_text(folder / "x.csv", text);
+  const auto ran = test::run({"characterize", (folder / "x.csv").string(), "--rate", "100", "-o", (folder / "out").string()});
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  for (const char* name : {"a_b.sensor.yaml", "A_b_2.sensor.yaml", "größe.sensor.yaml"}) CHECK(std::filesystem::exists(folder / "out" / name));
+}
