@@ -78,6 +78,35 @@ std::string spectrum_axis(const Spectrum& s) {
   return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
 }
 
+std::string window_title(Window window) {
+  switch (window) {
+    case Window::hann:
+      return "Hann window";
+    case Window::rectangular:
+      return "no window";
+    case Window::blackman_harris:
+      return "Blackman–Harris window";
+    case Window::flat_top:
+      return "flat-top window";
+    case Window::hann_nonzero:
+      return "Hann window without its zeros";
+  }
+  return "";
+}
+
+// What is drawn, in full: two programs agree only when these do.
+std::string spectrum_caption(const Spectrum& s) {
+  return fmt::format(
+      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width on the "
+      "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean was removed. "
+      "Line: fitted model. Dashed: its terms.",
+      people_count(s.segments),
+      s.segments == 1 ? "" : "s",
+      people_count(s.segment),
+      people_seconds(static_cast<double>(s.segment) / s.rate_hz),
+      window_title(s.window));
+}
+
 struct PlotText {
   std::string title, axis, unit, caption;  // `axis`: short, the title says it in full
 };
@@ -130,8 +159,7 @@ std::string plots(const ChannelResult& c, std::size_t index) {
                 {spectrum_title(s),
                  spectrum_axis(s),
                  spectrum_unit(s.scaling, c.channel.unit),
-                 "Blue: measured, averaged in logarithmic bins, with its 95 % interval. Line: "
-                 "fitted model. Dashed: its terms."},
+                 spectrum_caption(s)},
                 name);
   }
   return out + "</div>\n";
@@ -266,7 +294,7 @@ std::string trust(const ChannelResult& c, std::size_t index) {
                  "sd",
                  "Each point: measured against model in one bin, as a standard normal deviate. "
                  "They should scatter evenly, 95 % within "
-                 "the grey band."},
+                 "the grey band; triangles on the edge lie beyond it."},
                 c.channel.name);
   }
   out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" +
