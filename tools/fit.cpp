@@ -113,8 +113,9 @@ void run_fit(Session& session, const FitVerb& verb) {
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});
-    document["channels"] = Json::array();
-    for (const ChannelFit& c : fits) document["channels"].push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    Json channels = Json::array();
+    for (const ChannelFit& c : fits) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    document.update(noise_fit_document(std::move(channels)));
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits) text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
