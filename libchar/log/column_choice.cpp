@@ -122,7 +122,7 @@ ColumnChoice choose_columns(const std::vector<std::string>& names,
     if (!index) refuse_unknown(names, name, "channel of this name", file, options);
     if (index == choice.time)
       throw Error({ErrorKind::usage,
-                   "E0311",
+                   "E0320",
                    file,
                    "the time column cannot be a channel too",
                    name,
@@ -133,7 +133,7 @@ ColumnChoice choose_columns(const std::vector<std::string>& names,
     if (wanted[i] && choice.time != i) choice.values.push_back(i);
   if (choice.values.empty())
     throw Error(
-        {ErrorKind::input, "E0312", file, "has no channel besides its time column", "", ""});
+        {ErrorKind::input, "E0310", file, "has no channel besides its time column", "", ""});
   return choice;
 }
 

@@ -163,8 +163,8 @@ struct Study {
     const char* what = nullptr;
     const char* hint = "";
     if (head.empty())
-      what = "the file is empty";
-    else if (begins("\x93NUMPY"))
+      throw Error({ErrorKind::input, "E0322", at(info.file, 1, 1, 0), "the file is empty", "", ""});
+    if (begins("\x93NUMPY"))
       what = "content is a NumPy array (NPY), not CSV", hint = "read it with --format npy";
     else if (begins("\x1F\x8B"))
       what = "content is compressed (gzip), not CSV", hint = "unpack it first: gunzip";
@@ -524,7 +524,7 @@ struct Study {
     collect(offset, number);
     if (sample.empty())
       throw Error({ErrorKind::input,
-                   "E0301",
+                   "E0322",
                    at(info.file, 1, 1, 0),
                    "no data: the file holds only blank lines and comments",
                    "",

@@ -166,7 +166,7 @@ LogInfo read_log(const std::string& path,
   name_channels(info.channels, options);
   info.rows = known.rows;
   info.samples = known.samples;
-  if (known.rows == 0) throw Error({ErrorKind::input, "E0301", info.file, "no data rows", "", ""});
+  if (known.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
   if (known.samples == 0 && (options.from_s || options.to_s))
     throw Error({ErrorKind::usage, "E0319", info.file, "the window of --from and --to holds no sample", "", "inspect says how long the log is"});
   TimeBase time = info.time;
