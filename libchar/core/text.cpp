@@ -9,8 +9,15 @@
 namespace libchar {
 namespace {
 
-// Length of the valid UTF-8 sequence at text[i], 0 when there is none; `code` receives the code point.
-std::size_t decode(std::string_view text, std::size_t i, std::uint32_t& code) {
+bool is_control(std::uint32_t c) {
+  return c < 0x20 || (c >= 0x7F && c <= 0x9F) ||      // C0, DEL, C1
+         c == 0x061C || (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
+         (c >= 0x2060 && c <= 0x2069) || c == 0xFEFF;  // zero-width, line separators, bidirectional
+}
+
+}  // namespace
+
+std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t& code) {
   const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k])); };
   const std::uint32_t lead = byte(i);
   if (lead < 0x80) {
@@ -30,21 +37,13 @@ std::size_t decode(std::string_view text, std::size_t i, std::uint32_t& code) {
   return overlong || surrogate || code > 0x10FFFF ? 0 : length;
 }
 
-bool is_control(std::uint32_t c) {
-  return c < 0x20 || (c >= 0x7F && c <= 0x9F) ||      // C0, DEL, C1
-         c == 0x061C || (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
-         (c >= 0x2060 && c <= 0x2069) || c == 0xFEFF;  // zero-width, line separators, bidirectional
-}
-
-}  // namespace
-
 std::string printable(std::string_view text, std::size_t limit) {
   std::string out;
   std::size_t shown = 0;
   for (std::size_t i = 0; i < text.size();) {
     if (limit != 0 && shown++ == limit) return out + "…";
     std::uint32_t code = 0;
-    const std::size_t length = decode(text, i, code);
+    const std::size_t length = decode_utf8(text, i, code);
     if (length == 0) {
       out += fmt::format("\\x{:02X}", static_cast<unsigned char>(text[i]));
       ++i;
@@ -124,21 +123,11 @@ std::optional<double> parse_double(std::string_view text) {
 std::size_t first_invalid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     std::uint32_t code = 0;
-    const std::size_t length = decode(text, i, code);
+    const std::size_t length = decode_utf8(text, i, code);
     if (length == 0) return i;
     i += length;
   }
   return std::string_view::npos;
-}
-
-std::string file_name_for(std::string_view channel) {
-  std::string name;
-  for (const char c : channel.substr(0, 100)) {
-    const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
-    name += kept ? c : '_';
-  }
-  if (name.empty() || name[0] == '.') name.insert(0, "_");
-  return name;
 }
 
 }  // namespace libchar

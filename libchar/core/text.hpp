@@ -35,8 +35,7 @@ std::optional<double> parse_double(std::string_view text);
 /// Position of the first byte that is not valid UTF-8, or npos.
 std::size_t first_invalid_utf8(std::string_view text);
 
-/// A file name for a channel: letters, digits, '.', '_' and '-' are kept, every other byte becomes '_'; never empty, never
-/// starting with '.', at most 100 characters.
-std::string file_name_for(std::string_view channel);
+/// Length of the valid UTF-8 sequence that starts at text[i], 0 when there is none; `code` receives the code point.
+std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t& code);
 
 }  // namespace libchar
