@@ -4,6 +4,8 @@
 //   build/tests/bench/noise_bench --memory SAMPLES      streams so many samples, prints the peak
 //   RSS build/tests/bench/noise_bench --error               error of the flicker filter by length
 //   build/tests/bench/noise_bench --spectrum RECORDS    spectrum of simulated flicker by decade
+//   build/tests/bench/noise_bench --allan RECORDS       Allan curve of flicker, 2^25 samples a
+//   record
 // tests/bench/noise_bench.py adds the same record made with numpy and scipy.
 
 #include <fmt/format.h>
@@ -19,6 +21,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/confidence.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/dct_means.hpp"
 #include "libchar/simulate/kasdin.hpp"
@@ -266,6 +270,43 @@ void spectrum(std::size_t records) {
                (sum[d] / lines[d] - 1) / std::sqrt(2 / lines[d]));
 }
 
+/// Mean Allan variances of long records of flicker against the exact curve, with the exact edf.
+void allan(std::size_t records) {
+  constexpr std::size_t kSamples = std::size_t{1} << 25U;
+  NoiseDesign design;
+  design.coefficient = {0, 1, 0, 0, 0};
+  const Mixture theta = {0, 1, 0, 0, 0};
+  std::vector<double> block(kBlock), sum;
+  AllanCurve curve;
+  for (std::size_t r = 0; r < records; ++r) {
+    NoiseGenerator generator(design, 2, r);
+    AllanPyramid pyramid;
+    for (std::size_t t = 0; t < kSamples; t += kBlock) {
+      std::fill(block.begin(), block.end(), 0.0);
+      generator.add(block, {});
+      pyramid.push(block);
+    }
+    curve = pyramid.finish(1);
+    sum.resize(curve.points.size(), 0.0);
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      sum[j] += curve.points[j].deviation * curve.points[j].deviation;
+  }
+  fmt::print("{} records of {} samples of flicker\n", records, kSamples);
+  for (std::size_t j = 0; j < sum.size(); ++j) {
+    const AllanPoint& point = curve.points[j];
+    const double m = static_cast<double>(point.m), count = static_cast<double>(records);
+    const double ratio = sum[j] / count / unit_allan_variance(Term::flicker, m, 1);
+    const double edf =
+        count * equivalent_dof(curve.type, theta, point.m, point.terms, stride_of(curve, point), 1);
+    fmt::print("m {:>9}: variance/exact {:.5f} +- {:.5f} ({:+.2f} sd), p {:.3f}\n",
+               point.m,
+               ratio,
+               std::sqrt(2 / edf),
+               (ratio - 1) / std::sqrt(2 / edf),
+               2 * std::min(chi_square_cdf(ratio * edf, edf), chi_square_tail(ratio * edf, edf)));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -283,6 +324,8 @@ int main(int argc, char** argv) {
                sum);
   } else if (mode == "--error") {
     error();
+  } else if (mode == "--allan") {
+    allan(number(32));
   } else if (mode == "--spectrum") {
     spectrum(number(200));
   } else {

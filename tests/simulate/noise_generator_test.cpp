@@ -342,6 +342,8 @@ TEST_CASE("designs that make no sense are refused in a sentence") {
   CHECK(refused(design).find("random_walk") != std::string::npos);
   design.coefficient[2] = std::numeric_limits<double>::quiet_NaN();
   CHECK(refused(design).find("random_walk") != std::string::npos);
+  design.coefficient[2] = 1e308;
+  CHECK(refused(design).find("too large") != std::string::npos);
   design.coefficient[2] = 0;
   design.flicker_method = "recursiv";
   CHECK(refused(design).find("`rv-truncated-iir`") != std::string::npos);
