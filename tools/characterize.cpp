@@ -13,6 +13,7 @@
 #include "libchar/model/from_fit.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/outputs.hpp"
+#include "libchar/report/verification.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
 
@@ -25,7 +26,8 @@ namespace fs = std::filesystem;
 struct CharacterizeVerb {
   std::vector<std::string> logs;
   std::string folder;
-  bool json = false, force = false;
+  bool json = false, force = false, verify = false;
+  std::uint64_t seed = 1;
   AnalysisOptions analysis;
 };
 
@@ -68,6 +70,8 @@ std::string text_for_people(const Characterization& result) {
                                  significant(rate, 6), rate > 0 ? significant(static_cast<double>(log.samples) / rate, 6) : "?", log.time.gaps, log.time.gaps == 1 ? "" : "s");
   for (const ChannelResult& c : result.channels) {
     text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    if (c.verification)
+      for (const std::string& sentence : c.verification->sentences) text += fmt::format("  {}\n", printable(sentence));
     for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
   }
   return text;
@@ -85,11 +89,17 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
   const CharacterizeOptions options = finish(verb.analysis);
   std::set<std::string> taken;
   Json documents = Json::array();
-  bool any_fit = false;
+  bool any_fit = false, agrees = true;
   for (const std::string& log : verb.logs) {
     Characterization result = characterize(log, options, session.terminal);
     result.command = session.command;
     result.settings = settings_json(options);
+    if (verb.verify) {
+      VerifyOptions how;
+      how.seed = verb.seed;
+      result.settings["verify"] = {{"seed", verb.seed}};
+      agrees = verify(result, options, how, session.terminal) && agrees;
+    }
     session.terminal.clear();
     report_warnings(session, result.log);
     const fs::path folder = folder_for(verb, log, taken);
@@ -107,6 +117,8 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
   if (!any_fit) throw Error({ErrorKind::numeric, "E0711", verb.logs[0], "no channel could be fitted; the report says why", "", ""});
+  if (!agrees)
+    throw Error({ErrorKind::check, "E0713", verb.logs[0], "a simulation of the model does not agree with the recording; the report says where", "", ""});
 }
 
 }  // namespace
@@ -119,6 +131,8 @@ void add_characterize(CLI::App& app, Session& session) {
   sub->add_option("-o,--output", verb->folder, "folder for the results (made when absent; with several logs one folder each inside)")->required();
   sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
   sub->add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
+  sub->add_flag("--verify", verb->verify, "simulate every channel from its model, characterize that, and compare (exit code 6 when they disagree)");
+  add_count(*sub, "--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
   add_reading_options(*sub, session, verb->analysis.options.reading);
   add_data_options(*sub, verb->analysis);
   add_allan_options(*sub, verb->analysis);

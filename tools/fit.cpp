@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <set>
 
 #include "analysis_options.hpp"
 #include "fit_table.hpp"
@@ -12,6 +14,8 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/model/from_fit.hpp"
+#include "libchar/model/model_file.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
 
@@ -21,7 +25,7 @@ namespace {
 using namespace libchar;
 
 struct FitVerb {
-  std::string input, output, curve = "none", quantity = "auto";
+  std::string input, output, models, curve = "none", quantity = "auto";
   std::optional<double> duration_s;
   bool json = false, force = false;
   AnalysisOptions analysis;
@@ -97,11 +101,35 @@ std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInf
     curve.is_allan = verb.curve == "allan";
     curve.sides = verb.analysis.sides == "two" ? Sides::two : Sides::one;
     if (verb.quantity != "auto") curve.root = verb.quantity == "root";
+    const std::vector<std::string>& units = options.reading.units;
+    if (named && !units.empty()) table.channels[c].unit = units[std::min(c, units.size() - 1)];
     curve.duration_s = verb.duration_s;
     curve.rate_hz = options.reading.rate_hz;
     fits.push_back({table.channels[c], fit_curve(curve, options.fit)});
   }
   return fits;
+}
+
+std::string obtained_from(const FitVerb& verb) {
+  return verb.curve == "none" ? "fit of a recording" : verb.curve == "allan" ? "fit of an Allan curve" : "fit of a spectrum";
+}
+
+// One sensor model a channel; all are written before the first gets its name.
+void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
+  std::error_code problem;
+  std::filesystem::create_directories(verb.models, problem);
+  if (problem) throw Error({ErrorKind::output, "E0505", verb.models, "cannot make this folder: " + problem.message(), "", ""});
+  std::vector<WholeFile> files;
+  std::set<std::string> taken;
+  for (const ChannelFit& c : fits) {
+    const std::string stem = file_name_for(c.channel.name);
+    std::string name = stem;
+    for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
+    const std::string path = (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
+    refuse_same_file(verb.input, path);
+    files.emplace_back(path, verb.force).write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
+  }
+  for (WholeFile& file : files) file.commit();
 }
 
 void run_fit(Session& session, const FitVerb& verb) {
@@ -125,6 +153,7 @@ void run_fit(Session& session, const FitVerb& verb) {
     refuse_same_file(verb.input, verb.output);
     write_whole_file(verb.output, text, verb.force);
   }
+  if (!verb.models.empty()) write_models(verb, fits, log);
   for (const ChannelFit& c : fits) {
     if (!c.fit.converged) throw Error({ErrorKind::numeric, "E0712", verb.input, fmt::format("the fit of {} did not converge; its result is marked", c.channel.name), "", ""});
   }
@@ -141,7 +170,8 @@ void add_fit(CLI::App& app, Session& session) {
   add_choice(*sub, "--quantity", verb->quantity, {"auto", "root", "power"}, "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");
   add_duration(*sub, "--duration", verb->duration_s, "length of the record behind a --curve allan: gives honest intervals");
   sub->add_option("-o,--output", verb->output, "write there instead of to stdout");
-  sub->add_flag("--force", verb->force, "overwrite the output file");
+  sub->add_option("--models", verb->models, "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and model --to")->type_name("FOLDER");
+  sub->add_flag("--force", verb->force, "overwrite the output files");
   sub->add_flag("--json", verb->json, "one JSON document instead of a table");
   add_reading_options(*sub, session, verb->analysis.options.reading);
   add_data_options(*sub, verb->analysis);

@@ -23,6 +23,25 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
 
 }  // namespace
 
+SensorModel sensor_model_from_curve(const Channel& channel,
+                                    const NoiseFit& fit,
+                                    const std::string& obtained,
+                                    const LogInfo& source) {
+  SensorModel model;
+  model.channel = channel.name;
+  model.unit = channel.unit;
+  model.rate_hz = fit.rate_hz;
+  model.noise = fit.term;
+  model.bandwidth_hz = fit.bandwidth_hz;
+  model.obtained = obtained;
+  model.method = fit.method;
+  model.recording_file = source.file;
+  model.recording_sha256 = source.sha256;
+  model.duration_s = fit.duration_s;
+  model.remarks = fit.sentences;
+  return model;
+}
+
 SensorModel sensor_model_from(const Channel& channel,
                               const LogInfo& log,
                               const ChannelQuality& quality,

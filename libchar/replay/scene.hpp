@@ -53,7 +53,7 @@ struct Scene {
   std::vector<SceneSensor> sensors;
   std::optional<SceneReference> reference;
   std::optional<Window> learning, evaluation;
-  std::vector<Fault> faults;
+  std::vector<SensorFault> faults;
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
   Warnings warnings;
 };

@@ -1,6 +1,7 @@
 #pragma once
 // The main job: one pass over a log, curves, fit, and everything a report needs to show.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,8 @@ struct CharacterizeOptions {
   bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
 
+struct ChannelVerification;
+
 struct ChannelResult {
   Channel channel;
   ChannelQuality quality;
@@ -51,6 +54,7 @@ struct ChannelResult {
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<std::string> problems;  ///< why something is absent, in sentences
+  std::shared_ptr<const ChannelVerification> verification;  ///< when it was asked for (verification.hpp)
 };
 
 struct Characterization {

@@ -13,6 +13,7 @@
 #include "libchar/report/model_curve.hpp"
 #include "libchar/report/people.hpp"
 #include "libchar/report/verdict.hpp"
+#include "libchar/report/verification.hpp"
 
 namespace libchar {
 namespace {
@@ -292,6 +293,24 @@ std::string trust(const ChannelResult& c, std::size_t index) {
   return out + "</div>\n</div>\n";
 }
 
+std::string verification_section(const ChannelResult& c) {
+  const ChannelVerification& v = *c.verification;
+  std::string out = std::string("<h3>Simulated from the model ") +
+                    (v.agrees ? "<span class=\"chip detected\">agrees</span>"
+                              : "<span class=\"chip alarm\">disagrees</span>") +
+                    "</h3>\n" + bullet_list(v.sentences, "plain") +
+                    "<div class=\"wide\"><table>\n" +
+                    table_head({"Term", "Model", "Fit of the simulated record", "Unit", ""});
+  for (const TermVerification& t : v.terms) {
+    out += table_row({term_title(t.term),
+                      people_value(t.model),
+                      people_coefficient(t.simulated),
+                      term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, c.channel.unit),
+                      t.agrees ? "agrees" : "disagrees"});
+  }
+  return out + "</tbody></table></div>\n";
+}
+
 std::string lines_table(const ChannelResult& c) {
   if (c.lines.empty()) return "";
   std::string out = "<h4>Spectral lines</h4>\n<table>\n" +
@@ -438,6 +457,7 @@ std::string channel_section(const ChannelResult& c, const LogInfo& log, std::siz
   out +=
       bullet_list(findings(c), "findings") + bullet_list(cautions(c), "cautions") + plots(c, index);
   if (c.fit) out += numbers_table(c, rate_hz) + trust(c, index);
+  if (c.verification) out += verification_section(c);
   const std::string where = consumers(c, rate_hz);
   out += "<div class=\"halves\">\n<div>\n" + quality(c) + "</div>\n<div>\n" + where +
          "</div>\n</div>\n";

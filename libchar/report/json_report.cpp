@@ -1,5 +1,6 @@
 // report.json: the documents of every verb in one frame, and what the report adds to them.
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/report/escape.hpp"
@@ -7,6 +8,7 @@
 #include "libchar/report/model_curve.hpp"
 #include "libchar/report/outputs.hpp"
 #include "libchar/report/verdict.hpp"
+#include "libchar/report/verification.hpp"
 
 namespace libchar {
 namespace {
@@ -110,6 +112,13 @@ Json json_without_times(const Characterization& result) {
   out["spectrum"] = std::move(spectrum);
   out["fit"] = std::move(fit);
   out["quality"] = std::move(quality);
+  if (std::any_of(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
+        return c.verification != nullptr;
+      })) {
+    out["verification"] = {{"channels", Json::array()}};
+    for (const ChannelResult& c : result.channels)
+      out["verification"]["channels"].push_back(c.verification ? verification_json(c) : Json(nullptr));
+  }
   return out;
 }
 

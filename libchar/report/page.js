@@ -6,7 +6,7 @@
   const source = document.getElementById("report-data");
   const report = JSON.parse(source.textContent);
 
-  const INK = "#16191d", DIM = "#5a6470", MEASURED = "#1b4f8f", MODEL = "#c03a12";
+  const INK = "#16191d", DIM = "#5a6470", MEASURED = "#1b4f8f", MODEL = "#c03a12", SIMULATED = "#0c8a5f";
   // Told apart by dash as well as by colour, for print.
   const TERMS = {
     white_noise: { name: "white noise Q", colour: "#1e7a3c", dash: [9, 4], mark: "rectRot" },
@@ -167,6 +167,15 @@
     };
   }
 
+  // The record that was simulated from the model, drawn over the recording.
+  function simulated(index, curve) {
+    const all = report.verification && report.verification.channels[index];
+    if (!all) return [];
+    const x = curve === "allan" ? all.allan.tau_s : all.spectrum.frequency_hz, y = curve === "allan" ? all.allan.deviation : all.spectrum.value;
+    const style = curve === "allan" ? { showLine: false, pointStyle: "triangle", pointRadius: 4.5, marks: true, pointBorderColor: SIMULATED, pointBackgroundColor: "transparent", borderWidth: 1.8 } : { pointRadius: 0, borderWidth: 1.2 };
+    return [Object.assign({ label: "simulated from the model", data: points(x, y), borderColor: SIMULATED, pointHitRadius: 0, fill: false, order: 3 }, style)];
+  }
+
   // ---- the three plots ----
   function allanChart(index, axis, unit) {
     const a = report.allan.channels[index], f = report.fit.channels[index];
@@ -189,7 +198,7 @@
       });
     }
     if (a.model) sets.push({ label: "fitted model", data: points(a.tau_s, a.model), borderColor: MODEL, cubicInterpolationMode: "monotone", borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 3 });
-    sets.push(...asymptotes(a.asymptotes));
+    sets.push(...simulated(index, "allan"), ...asymptotes(a.asymptotes));
     marks.filter((m) => positive(m.tau_s) && positive(m.deviation)).forEach((m) => {
       const style = TERMS[m.term];
       sets.push({
@@ -221,7 +230,7 @@
     };
     const sets = [{ label: "measured", data: measured, borderColor: MEASURED, borderWidth: 1.3, pointRadius: 0, pointHoverRadius: 5, pointHitRadius: 5, tip, fill: false, order: 2 }];
     if (s.model) sets.push({ label: "fitted model", data: points(s.frequency_hz, s.model), borderColor: MODEL, borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 1 });
-    sets.push(...asymptotes(s.asymptotes), ...band("95 % interval", s.frequency_hz, s.ci95, "rgba(27,79,143,0.18)"));
+    sets.push(...simulated(index, "spectrum"), ...asymptotes(s.asymptotes), ...band("95 % interval", s.frequency_hz, s.ci95, "rgba(27,79,143,0.18)"));
     const [xMin, xMax] = padded(measured.map((p) => p.x), 1.3);
     const [yMin, yMax] = padded(measured.map((p) => p.y), 2.5);
     return {

@@ -1,5 +1,7 @@
 #include "libchar/report/verdict.hpp"
 
+#include "libchar/report/verification.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -117,6 +119,8 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
     if (fit.second_opinion && !fit.second_opinion->agrees)
       out.push_back("The Allan fit disagrees: " + fit.second_opinion->sentence);
   }
+  if (channel.verification && !channel.verification->agrees)
+    out.push_back(channel.verification->sentences.front());
   if (q.saturated > 0 && q.suggestions.empty())
     out.push_back(
         fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));

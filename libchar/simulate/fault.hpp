@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/simulate/random.hpp"
+
 namespace libchar {
 
 enum class FaultKind {
@@ -19,7 +21,7 @@ enum class FaultKind {
   dropout,     ///< missing
 };
 
-struct Fault {
+struct SensorFault {
   std::size_t sensor = 0;  ///< index into the sensors of the scene
   FaultKind kind = FaultKind::bias;
   double value = 0;
@@ -29,14 +31,14 @@ struct Fault {
 };
 
 std::string_view name_of(FaultKind kind);
-/// Nothing for an unknown word.
 const std::vector<std::string>& fault_kinds();
+/// `word` is one of them.
 FaultKind fault_kind(const std::string& word);
 
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
 class FaultInjector {
  public:
-  FaultInjector(std::vector<Fault> faults,
+  FaultInjector(std::vector<SensorFault> faults,
                 double rate_hz,
                 std::uint64_t seed,
                 std::uint64_t sensor);
@@ -45,9 +47,10 @@ class FaultInjector {
   void apply(std::span<double> y);
 
  private:
-  std::vector<Fault> faults_;
+  std::vector<SensorFault> faults_;
+  std::vector<DeviateStream> noise_;
   double rate_hz_;
-  std::uint64_t seed_, sensor_, done_ = 0;
+  std::uint64_t done_ = 0;
   double last_ =
       std::numeric_limits<double>::quiet_NaN();  ///< last sample outside every stuck fault
 };

@@ -32,7 +32,7 @@ struct ArraySimulation {
                                              ///< first-order low-pass as the sensors
   std::optional<SignalSpec> temperature;  ///< degC; none: every model's own reference temperature
   std::vector<SimulatedSensor> sensors;
-  std::vector<Fault> faults;
+  std::vector<SensorFault> faults;
   bool low_pass_starts_at_zero =
       false;  ///< as published; else in the steady state of the first sample
 };

@@ -9,6 +9,7 @@
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/noise_units.hpp"
 #include "tests/report/synthetic.hpp"
+#include "tests/support/shared.hpp"
 
 using namespace libchar;
 
@@ -158,4 +159,22 @@ TEST_CASE("model reader: kind and axis from unit and name") {
   CHECK(axis("temp") == "");
   m.unit = "mg";
   CHECK(kind_of(m) == "accelerometer");
+}
+
+TEST_CASE("model reader: every example of docs/models.md is read") {
+  const std::string page = test::slurp(std::string(LIBCHAR_SOURCE_DIR) + "/docs/models.md");
+  std::size_t examples = 0;
+  for (std::size_t at = 0; (at = page.find("```yaml\n", at)) != std::string::npos;) {
+    const std::size_t begin = at + 8, end = page.find("```", begin);
+    const SensorModel m = parse_sensor_model(page.substr(begin, end - begin), "example");
+    CHECK(m.noise[0].value);
+    ++examples;
+    at = end + 3;
+  }
+  CHECK(examples == 2);
+  // 5.5 mdps/√Hz one-sided, 7 deg/h read off the floor
+  const std::size_t begin = page.find("```yaml\n") + 8;
+  const SensorModel sheet = parse_sensor_model(page.substr(begin, page.find("```", begin) - begin), "sheet");
+  CHECK(*sheet.noise[0].value == Approx(5.5e-3 * std::numbers::pi / 180 / std::numbers::sqrt2));
+  CHECK(*sheet.noise[1].value == Approx(7.0 / 3600 * std::numbers::pi / 180 / 0.6642824703));
 }
