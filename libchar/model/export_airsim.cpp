@@ -49,10 +49,9 @@ Export export_airsim(const SensorGroup& group, const ExportOptions& options) {
     writer.put(
         "AccelBiasStability", *group.accelerometer, Term::walk, std::sqrt(tau) * 1e6 / kGravity);
   }
-  for (const auto* triad : {&group.gyroscope, &group.accelerometer})
-    if (!*triad)
-      out.notes.emplace_back(
-          "no gyroscope or no accelerometer was given: AirSim's MPU-6000 stays for it");
+  if (!group.gyroscope || !group.accelerometer)
+    out.notes.push_back(std::string("no ") + (group.gyroscope ? "accelerometer" : "gyroscope") +
+                        " was given: AirSim's own (an MPU-6000) stays");
   Json head = head_json(
       group,
       options,

@@ -61,8 +61,8 @@ Figure one_axis(const AxisNumber& n, Absent absent) {
   if (absent == Absent::zero)
     return {0.0,
             false,
-            n.limit ? fmt::format("{}, {}: 0 written", absence(n), said(n))
-                    : absence(n) + ": 0 written"};
+            n.limit ? fmt::format("{}, {}: taken as 0", absence(n), said(n))
+                    : absence(n) + ": taken as 0"};
   if (n.limit) return {n.limit, true, absence(n) + ": upper 95 % limit"};
   return {std::nullopt, false, absence(n)};
 }
@@ -144,7 +144,7 @@ Figure scalar_figure(const SensorTriad& triad,
   if (!values.empty())
     return {combined(values, options.axes), false, fmt::format("{} of {}", how, all_said(numbers))};
   if (absent == Absent::zero)
-    return {0.0, false, fmt::format("on no axis ({}): 0 written", all_said(numbers))};
+    return {0.0, false, fmt::format("on no axis ({}): taken as 0", all_said(numbers))};
   if (!limits.empty())
     return {
         combined(limits, options.axes),

@@ -172,6 +172,12 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
 
 }  // namespace
 
+std::string needs_text(ExportNeeds needs) {
+  if (needs == any_sensor) return "any sensor";
+  return needs == gyroscope_and_accelerometer ? "gyroscope and accelerometer"
+                                              : "gyroscope or accelerometer";
+}
+
 std::span<const ExportTarget> export_targets() {
   return kTargets;
 }

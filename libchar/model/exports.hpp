@@ -47,6 +47,9 @@ enum class ExportNeeds {
   any_sensor,
 };
 
+/// "gyroscope and accelerometer", "gyroscope or accelerometer", "any sensor".
+std::string needs_text(ExportNeeds needs);
+
 struct ExportTarget {
   std::string_view name;        ///< for --to
   std::string_view title;       ///< who reads it
