@@ -372,3 +372,10 @@ TEST_CASE("designs that make no sense are refused in a sentence") {
   design.truncated_taps = 0;
   CHECK(refused(design).find("at least one") != std::string::npos);
 }
+
+TEST_CASE("the samples of a seed stay what they are") {
+  const std::vector<double> x = record(design_of({1, 1, 1, 1, 1}, 4), 1, 0, 1000);
+  CHECK(x[0] == Approx(3.2652962283780882).epsilon(1e-12));
+  CHECK(x[1] == Approx(5.0632809997355848).epsilon(1e-12));
+  CHECK(x[999] == Approx(250.77387683495408).epsilon(1e-12));
+}
