@@ -154,7 +154,7 @@ TEST_CASE("normal deviates fill fine bins and the tails as they should") {
   }
 }
 
-TEST_CASE("uniform deviates are uniform on [0, 1)") {
+TEST_CASE("uniform deviates are uniform from 0 to below 1") {
   DeviateStream stream({1, 0, Purpose::truth});
   std::vector<double> x(500'000);
   for (double& v : x) v = stream.uniform();
