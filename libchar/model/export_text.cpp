@@ -87,7 +87,7 @@ std::vector<std::string> head_lines(const SensorGroup& group,
                                     std::string_view formula) {
   std::vector<std::string> lines = {fmt::format("sensorchar {}", version())};
   for (const Source& source : sources(group))
-    lines.push_back("from " + comment_text(said(source, group)));
+    lines.push_back("source: " + comment_text(said(source, group)));
   std::string channels;
   for (const SensorModel* m : group.all)
     channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
@@ -152,7 +152,7 @@ void note_figure(std::vector<std::string>& notes, std::string_view key, const Fi
     notes.push_back(fmt::format("{}: {}", key, figure.origin));
 }
 
-void check_topic(const std::string& topic) {
+std::string topic_scalar(const std::string& topic) {
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
   };
@@ -165,6 +165,8 @@ void check_topic(const std::string& topic) {
                  "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
                  topic,
                  "such as /imu0"});
+  // "~" and "on" would be no texts.
+  return topic[0] == '/' ? topic : '"' + topic + '"';
 }
 
 }  // namespace libchar

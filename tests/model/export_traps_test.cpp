@@ -225,4 +225,11 @@ TEST_CASE("a topic is no place for YAML") {
   options.topic = "/camera/imu_1";
   CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"]
             .as<std::string>() == "/camera/imu_1");
+  for (const char* name : {"~", "on", "imu"}) {
+    options.topic = name;
+    CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"]
+              .as<std::string>() == name);
+    CHECK(has(exported("kalibr", test::euroc_imu(), options).text,
+              std::string("rostopic: \"") + name + '"'));
+  }
 }
