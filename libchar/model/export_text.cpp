@@ -93,6 +93,12 @@ std::vector<std::string> head_lines(const SensorGroup& group,
     channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
   lines.push_back("channels: " + comment_text(channels));
   lines.push_back(fmt::format("formula: {}", formula));
+  if (std::any_of(group.all.begin(), group.all.end(), [](const SensorModel* m) {
+        return m->bandwidth_hz && *m->bandwidth_hz <= m->rate_hz / 2;
+      }))
+    lines.emplace_back(
+        "the low-pass of the sensor is not part of this file: densities are kept, single samples "
+        "scatter less");
   const std::string axes = axes_said(options.axes);
   if (!axes.empty()) lines.push_back(axes);
   if (options.inflate != 1)
@@ -139,6 +145,15 @@ std::string density_lines(const ImuFigures& f, std::string_view indent) {
   line("accelerometer_random_walk", f.accelerometer_walk, "m/s^3/sqrt(Hz)");
   line("gyroscope_noise_density", f.gyroscope_white, "rad/s/sqrt(Hz)");
   line("gyroscope_random_walk", f.gyroscope_walk, "rad/s^2/sqrt(Hz)");
+  return out;
+}
+
+std::string axis_origins(const std::array<std::string, 3>& origins) {
+  if (origins[0] == origins[1] && origins[1] == origins[2]) return origins[0];
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!origins[i].empty())
+      out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
   return out;
 }
 

@@ -46,6 +46,9 @@ std::string yaml_line(std::string_view key,
 /// The four keys that Kalibr, EuRoC files and OpenVINS share, each line behind `indent`.
 std::string density_lines(const ImuFigures& figures, std::string_view indent = "");
 
+/// What has to be said of three axes: once if it is the same, else axis by axis.
+std::string axis_origins(const std::array<std::string, 3>& origins);
+
 /// Puts down what was replaced or left out of `figure` under its key.
 void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure);
 

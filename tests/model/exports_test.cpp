@@ -173,6 +173,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a low-pass that the file cannot express is said") {
+  auto models = test::euroc_imu();
+  models[0].bandwidth_hz = 28.3;
+  CHECK(has(exported("ros", models).text, "the low-pass of the sensor is not part of this file"));
+  CHECK(has(exported("ros", models).notes.back(), "gyr_x has a low-pass at 28.3 Hz"));
+  models[0].bandwidth_hz = 400;
+  CHECK_FALSE(has(exported("ros", models).text, "low-pass"));
+}
+
+TEST_CASE("what differs from axis to axis is said axis by axis") {
+  auto models = test::euroc_imu();
+  models[1].noise[2] = at_most(1e-4);  // acc_x
+  CHECK(has(exported("gnss-ins-sim", models).text,
+            "m/s^2; x neither bias_instability nor random_walk was detected: no varying bias; y "
+            "random_walk with"));
+  models[1].noise[0] = at_most(1e-4);
+  CHECK(has(exported("ros", models).text, "Hz; x not detected: upper 95 % limit\n"));
+  const Json basalt = parse_json(exported("basalt", models).text, "c");
+  CHECK(basalt["sensorchar"]["comments"]["accel_noise_std"] == "x not detected: upper 95 % limit");
+  CHECK(basalt["value0"]["accel_noise_std"] == Json({1e-4, 2e-3, 2e-3}));
+}
+
 TEST_CASE("an unknown target is refused with the nearest") {
   CHECK_THROWS_WITH(find_export_target("kalbir"), Contains("did you mean kalibr?"));
   CHECK_THROWS_WITH(find_export_target("unity"), Contains("targets are kalibr"));
