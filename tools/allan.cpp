@@ -62,7 +62,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
     for (const std::string& problem : c.problems) session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
     for (const std::string& note : c.allan.notes) session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(note)));
   }
-  if (!any) throw Error({ErrorKind::numeric, "E0710", verb.log, "no channel gives an Allan deviation", "", result.log.time.rate_hz > 0 ? "" : "the log has no time axis: give --rate"});
+  if (!any) throw Error({ErrorKind::numeric, "E0710", verb.log, "no channel gives an Allan deviation", "", result.log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate"});
   const std::string text = verb.json ? dump_json(as_json(session, result)) : as_csv(result);
   if (verb.output.empty()) {
     print(text);

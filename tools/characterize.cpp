@@ -8,6 +8,7 @@
 #include "analysis_options.hpp"
 #include "fit_table.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_name.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/model/from_fit.hpp"
@@ -42,9 +43,7 @@ std::vector<Output> outputs_of(const Characterization& result, const fs::path& f
   std::set<std::string> taken;
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;
-    const std::string stem = file_name_for(c.channel.name);
-    std::string name = stem;
-    for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
+    const std::string name = unused_file_name_for(c.channel.name, taken);
     outputs.push_back({(folder / (name + ".sensor.yaml")).string(), model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
   }
   return outputs;
@@ -79,10 +78,7 @@ std::string text_for_people(const Characterization& result) {
 
 fs::path folder_for(const CharacterizeVerb& verb, const std::string& log, std::set<std::string>& taken) {
   if (verb.logs.size() == 1) return verb.folder;
-  const std::string stem = file_name_for(fs::path(log).stem().string());
-  std::string name = stem;
-  for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
-  return fs::path(verb.folder) / name;
+  return fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken);
 }
 
 void run_characterize(Session& session, const CharacterizeVerb& verb) {

@@ -297,7 +297,7 @@ int run(CLI::App& app, Session& session) {
     const int code = parse_and_run(app, session);
     if (code == 0 && session.strict && !session.warned_files.empty())
       throw Error({ErrorKind::input,
-                   "E0301",
+                   "E0206",
                    session.warned_files.front(),
                    "has warnings, and --strict was given",
                    "",

@@ -10,6 +10,7 @@
 #include "analysis_options.hpp"
 #include "fit_table.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_name.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
@@ -122,9 +123,7 @@ void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, cons
   std::vector<WholeFile> files;
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
-    const std::string stem = file_name_for(c.channel.name);
-    std::string name = stem;
-    for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}_{}", stem, again);
+    const std::string name = unused_file_name_for(c.channel.name, taken);
     const std::string path = (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
     refuse_same_file(verb.input, path);
     files.emplace_back(path, verb.force).write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
@@ -137,12 +136,13 @@ void run_fit(Session& session, const FitVerb& verb) {
   const std::vector<ChannelFit> fits = verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
   session.terminal.clear();
   report_warnings(session, log);
-  if (fits.empty()) throw Error({ErrorKind::numeric, "E0711", verb.input, "no channel could be fitted", "", log.time.rate_hz > 0 ? "" : "the log has no time axis: give --rate"});
+  if (fits.empty()) throw Error({ErrorKind::numeric, "E0711", verb.input, "no channel could be fitted", "", log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate"});
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});
-    document["channels"] = Json::array();
-    for (const ChannelFit& c : fits) document["channels"].push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    Json channels = Json::array();
+    for (const ChannelFit& c : fits) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    document.update(noise_fit_document(std::move(channels)));
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits) text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);

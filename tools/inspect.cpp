@@ -32,16 +32,17 @@ std::string beside_noise(double value, double noise) {
 std::vector<std::string> channel_row(const libchar::Channel& channel,
                                      const libchar::ChannelQuality& q) {
   const double noise = q.standard_deviation;
+  const bool constant = q.samples > 1 && q.minimum == q.maximum;
   return {libchar::printable(channel.name, 40),
           channel.unit.empty() ? "-" : libchar::printable(channel.unit, 20),
           std::to_string(q.missing),
           beside_noise(q.mean, noise),
-          libchar::significant(noise, 4),
+          constant ? "constant" : q.samples < 2 ? "-" : libchar::significant(noise, 4),
           beside_noise(q.minimum, noise),
           beside_noise(q.maximum, noise),
           q.resolution ? libchar::significant(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          libchar::significant(q.difference_kurtosis, 3)};
+          q.samples < 3 || constant ? "-" : libchar::significant(q.difference_kurtosis, 3)};
 }
 
 std::string channel_table(const libchar::Inspection& inspection) {
@@ -63,6 +64,10 @@ std::string channel_table(const libchar::Inspection& inspection) {
 std::string next_command(const InspectOptions& options, const libchar::LogInfo& info) {
   const std::string flags = reading_flags(options.reading, info);
   const std::string log = shell_word(info.file);
+  if (info.time.rate_hz <= 0 && !info.time.column.empty())
+    return fmt::format("  next: {} with a time stamp {} no sampling rate; two rows would\n",
+                       info.rows == 1 ? "one row" : fmt::format("{} rows", info.rows),
+                       info.rows == 1 ? "gives" : "give");
   if (info.time.rate_hz <= 0)
     return fmt::format(
         "  next: say the sampling rate, such as sensorchar inspect {}{} --rate 200Hz\n",

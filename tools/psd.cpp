@@ -83,7 +83,7 @@ std::uint64_t segment_of(const std::string& text, double rate_hz) {
 
 void check_rate(const LogInfo& info) {
   if (info.time.rate_hz > 0) return;
-  throw Error({ErrorKind::numeric, "", info.file, "the log has no time axis", "", "give --rate"});
+  throw Error({ErrorKind::numeric, "", info.file, "the sampling rate is not known", "", "a log without time stamps needs --rate"});
 }
 
 // A channel that gives no spectrum is named and left out; the others are still of use.

@@ -175,9 +175,12 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   const auto number = [&](const char* flag, const std::optional<double>& value, const char* unit) {
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };
-  for (const std::string& channel : options.channels) word("-c", channel, "");
-  for (const std::string& name : options.names) word("--names", name, "");
-  for (const std::string& unit : options.units) word("--units", unit, "");
+  const auto list = [&](const char* flag, const std::vector<std::string>& items) {
+    if (!items.empty()) flags += fmt::format(" {} {}", flag, shell_word(fmt::format("{}", fmt::join(items, ","))));
+  };
+  list("-c", options.channels);
+  list("--names", options.names);
+  list("--units", options.units);
   number("--from", options.from_s, "s");
   number("--to", options.to_s, "s");
   number("--rate", options.rate_hz, "Hz");

@@ -13,6 +13,7 @@ void add_allan(CLI::App& app, Session& session);
 void add_psd(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_model(CLI::App& app, Session& session);
+void add_simulate(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
@@ -23,6 +24,7 @@ inline void add_verbs(CLI::App& app, Session& session) {
   add_psd(app, session);
   add_fit(app, session);
   add_model(app, session);
+  add_simulate(app, session);
   add_convert(app, session);
 }
 

@@ -9,9 +9,18 @@
 namespace libchar {
 namespace {
 
-// Length of the valid UTF-8 sequence at text[i], 0 when there is none; `code` receives the code point.
-std::size_t decode(std::string_view text, std::size_t i, std::uint32_t& code) {
-  const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k])); };
+bool is_control(std::uint32_t c) {
+  return c < 0x20 || (c >= 0x7F && c <= 0x9F) ||  // C0, DEL, C1
+         c == 0x061C || (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
+         (c >= 0x2060 && c <= 0x2069) || c == 0xFEFF;  // zero-width, line separators, bidirectional
+}
+
+}  // namespace
+
+std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t& code) {
+  const auto byte = [&](std::size_t k) {
+    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k]));
+  };
   const std::uint32_t lead = byte(i);
   if (lead < 0x80) {
     code = lead;
@@ -30,21 +39,13 @@ std::size_t decode(std::string_view text, std::size_t i, std::uint32_t& code) {
   return overlong || surrogate || code > 0x10FFFF ? 0 : length;
 }
 
-bool is_control(std::uint32_t c) {
-  return c < 0x20 || (c >= 0x7F && c <= 0x9F) ||      // C0, DEL, C1
-         c == 0x061C || (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
-         (c >= 0x2060 && c <= 0x2069) || c == 0xFEFF;  // zero-width, line separators, bidirectional
-}
-
-}  // namespace
-
 std::string printable(std::string_view text, std::size_t limit) {
   std::string out;
   std::size_t shown = 0;
   for (std::size_t i = 0; i < text.size();) {
     if (limit != 0 && shown++ == limit) return out + "…";
     std::uint32_t code = 0;
-    const std::size_t length = decode(text, i, code);
+    const std::size_t length = decode_utf8(text, i, code);
     if (length == 0) {
       out += fmt::format("\\x{:02X}", static_cast<unsigned char>(text[i]));
       ++i;
@@ -84,7 +85,9 @@ std::string shortest_yaml(double value) {
   return text;
 }
 
-std::string significant(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
+std::string significant(double value, int digits) {
+  return fmt::format("{:.{}g}", value, digits);
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
@@ -93,7 +96,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     next[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       next[j] = std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) next[j] = std::min(next[j], before[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        next[j] = std::min(next[j], before[j - 2] + 1);
     }
     before.swap(row);
     row.swap(next);
@@ -101,7 +105,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates) {
+std::optional<std::string> nearest(std::string_view word,
+                                   const std::vector<std::string>& candidates) {
   std::optional<std::string> best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
@@ -117,28 +122,28 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
 std::optional<double> parse_double(std::string_view text) {
   double value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
   return value;
 }
 
 std::size_t first_invalid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     std::uint32_t code = 0;
-    const std::size_t length = decode(text, i, code);
+    const std::size_t length = decode_utf8(text, i, code);
     if (length == 0) return i;
     i += length;
   }
   return std::string_view::npos;
 }
 
-std::string file_name_for(std::string_view channel) {
-  std::string name;
-  for (const char c : channel.substr(0, 100)) {
-    const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
-    name += kept ? c : '_';
+std::string quoted_yaml(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : printable(text)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
   }
-  if (name.empty() || name[0] == '.') name.insert(0, "_");
-  return name;
+  return out + '"';
 }
 
 }  // namespace libchar

@@ -101,12 +101,10 @@ void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
   }
 }
 
-void WholeFile::commit() {
+void WholeFile::prepare() {
+  if (descriptor_ < 0) return;
   flush();
-  if (is_special(path_)) {
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
-    return;
-  }
+  if (is_special(path_)) return;
   if (::fsync(descriptor_) != 0) fail("flush to disk");
   if (temporary_.empty()) {  // give the nameless file a temporary name first: linkat cannot replace
     const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
@@ -120,9 +118,22 @@ void WholeFile::commit() {
     }
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
+  struct stat status {};
+  if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
+    errno = EISDIR;
+    fail("take its name");
+  }
   if (!overwrite_ && exists(path_)) {
     errno = EEXIST;
     fail("take its name");
+  }
+}
+
+void WholeFile::commit() {
+  prepare();
+  if (descriptor_ >= 0) {  // a device or pipe
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
+    return;
   }
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
   temporary_.clear();
@@ -130,6 +141,19 @@ void WholeFile::commit() {
   if (folder >= 0) {  // best effort: not every file system lets a folder be synchronised
     ::fsync(folder);
     ::close(folder);
+  }
+}
+
+void commit_with_description(WholeFile& data, WholeFile& description) {
+  data.prepare();
+  description.prepare();
+  if (!is_special(description.path())) ::unlink(description.path().c_str());  // prepare() has refused it where it must not be overwritten
+  data.commit();
+  try {
+    description.commit();
+  } catch (...) {
+    if (!is_special(data.path())) ::unlink(data.path().c_str());
+    throw;
   }
 }
 

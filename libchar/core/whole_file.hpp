@@ -22,6 +22,8 @@ class WholeFile {
   void write(const void* data, std::size_t size) { write({static_cast<const char*>(data), size}); }
   /// Replaces `size` bytes at `offset`, all of which were written before (for headers that hold a count).
   void rewrite(std::size_t offset, std::string_view bytes);
+  /// Everything of commit() that can fail for want of space or rights, short of taking the name.
+  void prepare();
   /// fsync, rename, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
   void commit();
   const std::string& path() const { return path_; }
@@ -33,6 +35,10 @@ class WholeFile {
   int descriptor_ = -1;
   bool overwrite_ = false;
 };
+
+/// Gives both files their names, or neither as far as POSIX allows: both are on disk before the first is renamed; an older
+/// `description` goes first and the new one comes last, so that at no instant one stands beside data that it does not describe.
+void commit_with_description(WholeFile& data, WholeFile& description);
 
 /// One call for small files.
 void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite = false);

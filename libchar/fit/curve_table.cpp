@@ -67,7 +67,8 @@ std::string unit_under_density(std::string unit) {
 }
 
 struct Columns {
-  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high;
+  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute;
+  bool percent = false;  // the relative error is written in percent
 };
 
 Columns columns_of(const Row& header, bool is_allan) {
@@ -87,6 +88,9 @@ Columns columns_of(const Row& header, bool is_allan) {
   c.dof = find(header, {"edf", "dof"});
   c.low = find(header, {"low68"});
   c.high = find(header, {"high68"});
+  c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd", "relative_uncertainty", "rel_unc"});
+  c.percent = c.relative && header[*c.relative].find('%') != std::string::npos;
+  c.absolute = find(header, {"error", "err", "sd", "std", "stderr", "standard_error", "standard error", "uncertainty", "deviation_sd", "dev_err"});
   return c;
 }
 
@@ -118,7 +122,7 @@ class Reader {
     target.curve.root = by_root;
     target.curve.x.push_back(x);
     target.curve.y.push_back(y);
-    if (const auto sd = relative_sd(row, y)) target.curve.relative_sd.push_back(by_root || !columns_.low ? *sd : *sd / 2);
+    if (const auto sd = relative_sd(row, y)) target.curve.relative_sd.push_back(*sd);
   }
 
   std::vector<NamedCurve> finish() {
@@ -135,16 +139,15 @@ class Reader {
     throw Error({ErrorKind::input, "E0311", fmt::format("{}:{}:{}", file_, line_, column), "a number was expected", row[c], ""});
   }
 
-  // Of the deviation (root). chi-square: sd of a variance estimate is sqrt(2 / edf), of its root half of that.
+  // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
   std::optional<double> relative_sd(const Row& row, double y) const {
-    if (columns_.dof) {
-      const auto dof = parse_double(row[*columns_.dof]);
-      if (dof && *dof > 0) return 1 / std::sqrt(2 * *dof);
-    }
-    if (columns_.low && columns_.high && y > 0) {
-      const auto low = parse_double(row[*columns_.low]), high = parse_double(row[*columns_.high]);
-      if (low && high && *high > *low) return (*high - *low) / (2 * y);
-    }
+    const auto cell = [&](const std::optional<std::size_t>& column) { return column ? parse_double(row[*column]) : std::nullopt; };
+    if (const auto dof = cell(columns_.dof); dof && *dof > 0) return 1 / std::sqrt(2 * *dof);
+    const double of_root = columns_.root ? 1 : 0.5;
+    const auto low = cell(columns_.low), high = cell(columns_.high);
+    if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0) return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
     return std::nullopt;
   }
 

@@ -25,9 +25,9 @@ Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) 
   json["upper95"] = number(term.upper95);
   json["unit"] = term_unit(kTermNames[i].key, unit);
   json["relative_sd"] = term.value ? number(term.relative_sd) : Json(nullptr);
-  json["interval"] = term.profile ? "profile_likelihood" : "log_wald";
+  json["interval"] = term.profile ? "profile_likelihood" : "log_normal";
   json["likelihood_ratio"] = number(term.likelihood_ratio);
-  json["cramer_rao_relative_sd"] = number(term.bound);
+  json["bound_relative_sd"] = number(term.bound);
   json["seconds_for_10_percent"] = number(term.seconds_for_10_percent);
   return json;
 }
@@ -50,6 +50,20 @@ Json second_json(const SecondOpinion& second) {
   return json;
 }
 
+// Column by column: five arrays take a third of the bytes of as many objects.
+Json residuals_json(const std::vector<FitResidual>& residuals) {
+  Json json;
+  for (const char* key : {"frequency_hz", "measured", "model", "dof", "z"}) json[key] = Json::array();
+  for (const FitResidual& r : residuals) {
+    json["frequency_hz"].push_back(number(r.frequency_hz));
+    json["measured"].push_back(number(r.measured));
+    json["model"].push_back(number(r.model));
+    json["dof"].push_back(number(r.dof));
+    json["z"].push_back(number(r.z));
+  }
+  return json;
+}
+
 }  // namespace
 
 Json noise_fit_json(const std::string& name,
@@ -61,12 +75,8 @@ Json noise_fit_json(const std::string& name,
   json["unit"] = unit;
   for (std::size_t i = 0; i < kTerms; ++i)
     json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
-  json["bandwidth"] = nullptr;
-  if (fit.bandwidth_hz) {
-    json["bandwidth"] = {
-        {"value_hz", number(fit.bandwidth_hz)},
-        {"ci95_hz", fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr)}};
-  }
+  json["bandwidth_hz"] = number(fit.bandwidth_hz);
+  json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
   json["remedies"] = Json::array();
@@ -79,24 +89,23 @@ Json noise_fit_json(const std::string& name,
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;
   json["converged"] = fit.converged;
+  json["iterations"] = fit.iterations;
   json["rate_hz"] = number(fit.rate_hz);
   json["duration_s"] = number(fit.duration_s);
   json["samples"] = fit.samples;
-  if (with_residuals) {
-    json["residuals"] = Json::array();
-    for (const FitResidual& r : fit.residuals) {
-      json["residuals"].push_back({{"frequency_hz", number(r.frequency_hz)},
-                                   {"measured", number(r.measured)},
-                                   {"model", number(r.model)},
-                                   {"dof", number(r.dof)},
-                                   {"z", number(r.z)}});
-    }
-  }
+  if (with_residuals) json["residuals"] = residuals_json(fit.residuals);
+  return json;
+}
+
+Json no_fit_json(const std::string& name, const std::string& unit) {
+  NoiseFit none;
+  Json json = noise_fit_json(name, unit, none);
+  json["goodness"] = nullptr;
   return json;
 }
 
 Json noise_fit_document(Json channels) {
-  return {{"format", "noise-fit"}, {"version", 1}, {"channels", std::move(channels)}};
+  return {{"format", "noise-fit"}, {"version", 1}, {"density_sides", "two"}, {"channels", std::move(channels)}};
 }
 
 }  // namespace libchar

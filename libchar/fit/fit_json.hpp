@@ -16,7 +16,10 @@ Json noise_fit_json(const std::string& name,
                     const NoiseFit& fit,
                     bool with_residuals = false);
 
-/// {"format":"noise-fit","version":1,"channels":[…]}
+/// The place of a channel that could not be fitted: every term not_fitted, no goodness.
+Json no_fit_json(const std::string& name, const std::string& unit);
+
+/// {"format":"noise-fit","version":1,"density_sides":"two","channels":[…]}
 Json noise_fit_document(Json channels);
 
 }  // namespace libchar

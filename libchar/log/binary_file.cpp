@@ -20,12 +20,12 @@ BinaryFile::BinaryFile(std::string path) : path_(std::move(path)) {
   struct stat status {};
   // Looked at before it is opened: opening a pipe would wait for its writer.
   if (::stat(path_.c_str(), &status) != 0)
-    fail("E0302", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
-  if (S_ISDIR(status.st_mode)) fail("E0303", "is a folder, not a log", "");
+    fail("E0101", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
+  if (S_ISDIR(status.st_mode)) fail("E0101", "is a folder, not a log", "");
   if (!S_ISREG(status.st_mode))
-    fail("E0304", "is not a regular file; binary formats need one", "copy it to a file first");
+    fail("E0103", "is not a regular file; binary formats need one", "copy it to a file first");
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor_ < 0) fail("E0302", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
+  if (descriptor_ < 0) fail("E0101", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
   size_ = static_cast<std::uint64_t>(status.st_size);
   ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
 }
@@ -41,14 +41,14 @@ void BinaryFile::read(std::uint64_t offset, std::span<std::byte> to) const {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
       throw Error({ErrorKind::input,
-                   "E0305",
+                   "E0101",
                    fmt::format("{} (byte {})", path_, offset + done),
                    fmt::format("cannot be read: {}", std::strerror(errno)),
                    "",
                    ""});
     if (n == 0)
       throw Error({ErrorKind::input,
-                   "E0306",
+                   "E0104",
                    fmt::format("{} (byte {})", path_, offset + done),
                    "became shorter while it was read",
                    "",

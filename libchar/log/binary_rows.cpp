@@ -48,7 +48,7 @@ class BinaryRows final : public RowSource {
       row_bytes += size_of(column.number.type);
     }
     if (layout_.rows == 0)
-      throw Error({ErrorKind::input, "E0313", file_->path(), "holds no samples", "", ""});
+      throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples", "", ""});
     if (choice.time) {
       time_ = layout_.columns[*choice.time];
       row_bytes += size_of(time_->number.type);
@@ -233,7 +233,7 @@ class BinaryRows final : public RowSource {
     nanoseconds_ = nanoseconds_in(time.unit);
     if (nanoseconds_ == 0)
       throw Error({ErrorKind::usage,
-                   "E0314",
+                   "E0323",
                    file_->path(),
                    "the time unit is none of s, ms, us, ns",
                    time.unit,
@@ -247,7 +247,7 @@ class BinaryRows final : public RowSource {
     const auto stride = static_cast<std::size_t>(column.stride);
     const auto refuse = [&](std::size_t i, double got) {
       throw Error({ErrorKind::input,
-                   "E0315",
+                   "E0314",
                    fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
                    "a time stamp does not fit 64-bit nanoseconds",
                    shortest(got),

@@ -46,21 +46,25 @@ std::optional<std::size_t> find_column(const std::vector<std::string>& names,
 [[noreturn]] void refuse_unknown(const std::vector<std::string>& names,
                                  const std::string& wanted,
                                  const std::string& what,
-                                 const std::string& file) {
-  std::string hint;
-  if (const auto near = nearest(wanted, names)) {
-    hint = fmt::format("did you mean {}?", *near);
-  } else {
-    const std::size_t shown = std::min<std::size_t>(names.size(), 12);
-    hint = fmt::format(
-        "it has {}{}",
-        fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-        shown < names.size() ? ", …" : "");
-  }
-  throw Error({ErrorKind::usage, "E0310", file, "has no " + what, wanted, hint});
+                                 const std::string& file,
+                                 const ReadOptions& options) {
+  throw Error({ErrorKind::usage, "E0320", file, "has no " + what, wanted, channel_hint(wanted, names, options)});
 }
 
 }  // namespace
+
+std::string channel_hint(const std::string& wanted,
+                         const std::vector<std::string>& names,
+                         const ReadOptions& options) {
+  const std::size_t shown = std::min<std::size_t>(names.size(), 12);
+  const std::string all = fmt::format("{}{}",
+                                      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                                      shown < names.size() ? ", …" : "");
+  if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
+    return "-c chooses by the names in the log, " + all + ", and --names then name what was chosen";
+  const auto near = nearest(wanted, names);
+  return near ? fmt::format("did you mean {}?", *near) : "it has " + all;
+}
 
 bool is_time_name(std::string_view name) {
   static const std::vector<std::string> kStems = {"t", "time", "timestamp", "stamp", "timestamps"};
@@ -110,15 +114,15 @@ ColumnChoice choose_columns(const std::vector<std::string>& names,
   } else if (options.time_column != "none") {
     choice.time = find_column(names, options.time_column);
     if (!choice.time)
-      refuse_unknown(names, options.time_column, "column of this name for the time", file);
+      refuse_unknown(names, options.time_column, "column of this name for the time", file, options);
   }
   std::vector<bool> wanted(names.size(), options.channels.empty());
   for (const std::string& name : options.channels) {
     const auto index = find_column(names, name);
-    if (!index) refuse_unknown(names, name, "channel of this name", file);
+    if (!index) refuse_unknown(names, name, "channel of this name", file, options);
     if (index == choice.time)
       throw Error({ErrorKind::usage,
-                   "E0311",
+                   "E0320",
                    file,
                    "the time column cannot be a channel too",
                    name,
@@ -129,7 +133,7 @@ ColumnChoice choose_columns(const std::vector<std::string>& names,
     if (wanted[i] && choice.time != i) choice.values.push_back(i);
   if (choice.values.empty())
     throw Error(
-        {ErrorKind::input, "E0312", file, "has no channel besides its time column", "", ""});
+        {ErrorKind::input, "E0310", file, "has no channel besides its time column", "", ""});
   return choice;
 }
 

@@ -24,6 +24,12 @@ ColumnChoice choose_columns(const std::vector<std::string>& names,
                             const ReadOptions& options,
                             const std::string& file);
 
+/// What to say of a channel that is not in the log: the nearest of its names, or all of them; that --names give new names to
+/// what -c chooses, when the word is one of those.
+std::string channel_hint(const std::string& wanted,
+                         const std::vector<std::string>& names,
+                         const ReadOptions& options);
+
 /// Does a name say "time" ("t", "time_us", "Timestamp [ns]")?
 bool is_time_name(std::string_view name);
 

@@ -16,6 +16,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/column_choice.hpp"
 #include "libchar/log/csv_dialect.hpp"
 #include "libchar/log/csv_feed.hpp"
 #include "libchar/log/csv_header.hpp"
@@ -209,13 +210,12 @@ class CsvSource final : public RowSource {
                    "this is the time column, not a channel",
                    wanted,
                    "--time-column none reads it as a channel"});
-    const auto near = nearest(wanted, names);
     throw Error({ErrorKind::usage,
                  "E0320",
                  info_.file,
                  "there is no channel of this name",
                  wanted,
-                 near ? "did you mean " + *near + "?" : "inspect lists the channels"});
+                 channel_hint(wanted, names, options_)});
   }
 
   static void add(Warnings& warnings,
@@ -251,6 +251,10 @@ class CsvSource final : public RowSource {
                    "lines end in a lone carriage return (old Macintosh)",
                    place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
     }
+    if (chunk.unended)
+      warnings.add("no_final_newline",
+                   "the last line has no line end: if the file was cut, its last number may be cut too",
+                   place_name(next_line_ + chunk.unended->line, chunk.unended->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       words_per_channel_[c] += chunk.words_per_channel[c];

@@ -163,8 +163,8 @@ struct Study {
     const char* what = nullptr;
     const char* hint = "";
     if (head.empty())
-      what = "the file is empty";
-    else if (begins("\x93NUMPY"))
+      throw Error({ErrorKind::input, "E0322", at(info.file, 1, 1, 0), "the file is empty", "", ""});
+    if (begins("\x93NUMPY"))
       what = "content is a NumPy array (NPY), not CSV", hint = "read it with --format npy";
     else if (begins("\x1F\x8B"))
       what = "content is compressed (gzip), not CSV", hint = "unpack it first: gunzip";
@@ -189,6 +189,50 @@ struct Study {
                    "content is UTF-16, not UTF-8",
                    "",
                    "convert it: iconv -f utf-16 -t utf-8"});
+  }
+
+  // Text has next to no control characters; NUL bytes are left to the row parser, which knows logs that a power failure cut.
+  void refuse_binary() const {
+    std::size_t controls = 0, others = 0, first = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(head.size(), 4096); ++i) {
+      const auto byte = static_cast<unsigned char>(head[i]);
+      if (byte == 0) continue;
+      const bool control = byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
+      if (control && controls++ == 0) first = i;
+      ++others;
+    }
+    if (controls < 2 || controls * 50 < others) return;
+    std::size_t line = 1, column = 1;
+    for (std::size_t i = 0; i < first; ++i, ++column)
+      if (head[i] == '\n') ++line, column = 0;
+    throw Error({ErrorKind::input,
+                 "E0301",
+                 at(info.file, line, column, first),
+                 fmt::format("content is binary, not text: {} control characters in the first {} bytes",
+                             controls,
+                             std::min<std::size_t>(head.size(), 4096)),
+                 "",
+                 "--format raw with a sidecar reads raw binary (docs: raw binary)"});
+  }
+
+  // A delimiter that was given, and that leaves every line whole though its lines are no numbers.
+  void refuse_wrong_delimiter() const {
+    if (options.delimiter == "auto" || columns_ > 1) return;
+    const auto odd = std::find_if(sample.begin() + 1, sample.end(), [&](const Line& line) {
+      return !all_numeric(split(line.text, dialect.delimiter));
+    });
+    if (sample.size() < 2 || odd == sample.end()) return;
+    const Score looks = best_score();
+    if (looks.columns < 2) return;
+    fail(*odd,
+         0,
+         "E0304",
+         fmt::format("with the delimiter {} the line is one field and not a number",
+                     delimiter_name(dialect.delimiter)),
+         std::string(odd->text),
+         fmt::format("the file looks separated by {} ({} columns): leave --delimiter out",
+                     looks.delimiter == ',' ? "commas" : looks.delimiter == ';' ? "semicolons" : looks.delimiter == '\t' ? "tabs" : "blanks",
+                     looks.columns));
   }
 
   // Lines to study, comments before the data, and the offset and number of the first line used.
@@ -239,16 +283,22 @@ struct Study {
     return fmt::format("from the first {} line{}", sample.size(), sample.size() == 1 ? "" : "s");
   }
 
+  Score best_score() const {
+    Score best;
+    for (const char candidate : {',', ';', '\t', ' '}) {
+      const Score s = score(sample, candidate);
+      if (s.quality > best.quality + 1e-9) best = s;
+    }
+    return best;
+  }
+
   void choose_delimiter() {
     Score best;
     if (options.delimiter != "auto") {
       best = score(sample, named_delimiter(options.delimiter));
       info.dialect.push_back("delimiter " + delimiter_name(best.delimiter) + " (given)");
     } else {
-      for (const char candidate : {',', ';', '\t', ' '}) {
-        const Score s = score(sample, candidate);
-        if (s.quality > best.quality + 1e-9) best = s;
-      }
+      best = best_score();
       if (best.columns > 1) {
         info.dialect.push_back("delimiter " + delimiter_name(best.delimiter));
         if (best.delimiter != ',')
@@ -458,6 +508,7 @@ struct Study {
 
   void run() {
     refuse_other_content();
+    refuse_binary();
     std::size_t offset = 0;
     std::uint64_t number = 1;
     if (head.substr(0, 3) == "\xEF\xBB\xBF") {
@@ -473,7 +524,7 @@ struct Study {
     collect(offset, number);
     if (sample.empty())
       throw Error({ErrorKind::input,
-                   "E0301",
+                   "E0322",
                    at(info.file, 1, 1, 0),
                    "no data: the file holds only blank lines and comments",
                    "",
@@ -481,6 +532,7 @@ struct Study {
     dialect.line_end = (comments.empty() ? sample[0] : comments[0]).end;
     choose_delimiter();
     choose_decimal();
+    refuse_wrong_delimiter();
     refuse_preamble();
     choose_header();
     if (dialect.columns.size() > kMaxColumns)

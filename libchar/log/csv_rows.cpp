@@ -63,6 +63,7 @@ class RowParser {
       if (dialect_.time_unit_ns == kNanoseconds[i]) stamp_digits_ = static_cast<int>(i);
     out_.lines = 0;
     out_.fault.reset();
+    out_.unended.reset();
     out_.blank = out_.comment = out_.repeated = out_.infinite = out_.mixed_end = out_.overflow =
         out_.missing = {};
     out_.missing_per_channel.assign(plan_.channels, 0);
@@ -252,6 +253,9 @@ class RowParser {
       out_.account.row_bytes += bytes;
       note_line();
       ++rows_;
+      // A closing quote or a delimiter shows that the last cell is whole.
+      if (kind == LineEnd::none && line.back() != '"' && line.back() != dialect_.delimiter)
+        out_.unended = Spot{line_, line.size() + 1};
     }
     return after;
   }

@@ -64,6 +64,7 @@ struct ParsedChunk {
   RowBlock rows;
   std::uint64_t lines = 0;  ///< line ends in the chunk (a last line without one counts)
   std::optional<RowFault> fault;
+  std::optional<Spot> unended;  ///< end of a last row that has no line end and may have been cut in its last cell
   Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
   std::vector<std::uint64_t> missing_per_channel;
   std::vector<std::uint64_t>

@@ -52,7 +52,7 @@ Json channel_json(const Channel& channel, const ChannelQuality& q) {
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = number_or_null(q.difference_kurtosis);
+  out["difference_kurtosis"] = q.minimum < q.maximum ? number_or_null(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
   out["suggestions"] = q.suggestions;
   return out;

@@ -95,7 +95,14 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
 // What the user knows of the channels and the log does not say.
 void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   const auto refuse = [&](const char* flag, std::size_t given) {
-    throw Error({ErrorKind::usage, "", flag, fmt::format("{} were given for {} channels", given, channels.size()), "", "one for each channel that is read, in order"});
+    std::string read;
+    for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c) read += (c == 0 ? "" : ", ") + channels[c].name;
+    throw Error({ErrorKind::usage,
+                 "",
+                 flag,
+                 fmt::format("{} given, and {} channel{} read: {}{}", given, channels.size(), channels.size() == 1 ? " is" : "s are", read, channels.size() > 12 ? ", …" : ""),
+                 "",
+                 "one for each channel that is read, in that order"});
   };
   if (!options.names.empty() && options.names.size() != channels.size()) refuse("--names", options.names.size());
   if (options.units.size() > 1 && options.units.size() != channels.size()) refuse("--units", options.units.size());
@@ -159,7 +166,7 @@ LogInfo read_log(const std::string& path,
   name_channels(info.channels, options);
   info.rows = known.rows;
   info.samples = known.samples;
-  if (known.rows == 0) throw Error({ErrorKind::input, "E0301", info.file, "no data rows", "", ""});
+  if (known.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
   if (known.samples == 0 && (options.from_s || options.to_s))
     throw Error({ErrorKind::usage, "E0319", info.file, "the window of --from and --to holds no sample", "", "inspect says how long the log is"});
   TimeBase time = info.time;

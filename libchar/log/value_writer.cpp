@@ -61,7 +61,7 @@ void ValueWriter::encode(double value, std::byte* to) {
   if (number_.type == NumberType::f32 && std::isfinite(value)) {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
       throw Error({ErrorKind::output,
-                   "E0505",
+                   "E0511",
                    file_.path(),
                    "a value does not fit 32 bits",
                    shortest(value),

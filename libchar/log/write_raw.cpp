@@ -53,8 +53,7 @@ class RawWriter final : public LogWriter {
     values_->finish();
     sidecar_.rows = values_->rows();
     beside_.write(sidecar_json(sidecar_));
-    file_.commit();
-    beside_.commit();
+    commit_with_description(file_, beside_);
   }
   std::vector<std::string> files() const override { return {file_.path(), beside_.path()}; }
 

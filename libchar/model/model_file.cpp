@@ -18,17 +18,6 @@
 namespace libchar {
 namespace {
 
-// A double-quoted YAML scalar: quotes and backslashes escaped; what is not printable was made
-// visible by `printable`.
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
 std::string number(double value) {
   return std::isfinite(value) ? shortest_yaml(value) : "null";
 }
@@ -73,7 +62,7 @@ std::string term_block(const Coefficient& c, std::size_t t, const std::string& u
                                 kTexts[t].meaning,
                                 kTexts[t].curve);
   out += fmt::format("  value: {}\n", c.value ? number(*c.value) : "null");
-  out += fmt::format("  unit: {}\n", quoted(term_unit(name.key, unit)));
+  out += fmt::format("  unit: {}\n", quoted_yaml(term_unit(name.key, unit)));
   if (c.value && c.status != Status::given) {
     out +=
         fmt::format("  ci95: [{}, {}]\n  ci95_by: {}\n",
@@ -152,14 +141,15 @@ std::string sensitivity_line(const SensorModel& m) {
   if (m.sensitivity == Sensitivity{}) return "";
   return fmt::format("sensitivity: {{gain: {}, unit: {}}}  # output = gain times the above\n",
                      number(m.sensitivity.gain),
-                     m.sensitivity.unit.empty() ? "null" : quoted(m.sensitivity.unit));
+                     m.sensitivity.unit.empty() ? "null" : quoted_yaml(m.sensitivity.unit));
 }
 
 std::string provenance_block(const SensorModel& m) {
-  std::string out = fmt::format("obtained: {}\nmethod: {}\n", quoted(m.obtained), quoted(m.method));
+  std::string out =
+      fmt::format("obtained: {}\nmethod: {}\n", quoted_yaml(m.obtained), quoted_yaml(m.method));
   out += fmt::format("recording:\n  file: {}\n  sha256: {}\n  duration_s: {}\n",
-                     quoted(m.recording_file),
-                     quoted(m.recording_sha256),
+                     quoted_yaml(m.recording_file),
+                     quoted_yaml(m.recording_sha256),
                      number(m.duration_s));
   if (m.tau_max_s > 0) {
     out += fmt::format(
@@ -181,10 +171,10 @@ std::string model_yaml(const SensorModel& m) {
       "quantization in IEEE 952.\n"
       "format: sensor-model\nversion: 1\ntool: {{name: sensorchar, version: {}}}\nchannel: "
       "{}\nunit: {}\n",
-      quoted(version()),
-      quoted(m.channel),
-      m.unit.empty() ? "null  # the log names none: U below" : quoted(m.unit));
-  if (!m.kind.empty()) out += fmt::format("kind: {}\n", quoted(m.kind));
+      quoted_yaml(version()),
+      quoted_yaml(m.channel),
+      m.unit.empty() ? "null  # the log names none: U below" : quoted_yaml(m.unit));
+  if (!m.kind.empty()) out += fmt::format("kind: {}\n", quoted_yaml(m.kind));
   if (!m.axis.empty()) out += fmt::format("axis: {}\n", m.axis);
   out += fmt::format(
       "rate_hz: {}\nsampling: point  # samples at an instant, not averages over the sampling "
@@ -215,7 +205,7 @@ std::string model_yaml(const SensorModel& m) {
   out += provenance_block(m);
   if (!m.remarks.empty()) {
     out += "remarks:\n";
-    for (const std::string& remark : m.remarks) out += "  - " + quoted(remark) + "\n";
+    for (const std::string& remark : m.remarks) out += "  - " + quoted_yaml(remark) + "\n";
   }
   return out;
 }

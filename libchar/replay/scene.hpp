@@ -22,18 +22,18 @@ struct SceneSensor {
 };
 
 /// A stretch of the recording, in seconds from its first sample.
-struct Window {
+struct TimeWindow {
   double from_s = 0;
   double to_s = std::numeric_limits<double>::infinity();
 };
 
 struct SceneReference {
-  std::vector<std::string>
-      channels;  ///< one a truth input; or several whose mean is the truth (`mean`)
+  /// One a truth input; or several whose mean is the truth (`mean`).
+  std::vector<std::string> channels;
   bool mean = false;
-  std::optional<std::string>
-      recording;     ///< in a log of its own (resolved path), else in the scene's
-  double lag_s = 0;  ///< the sensors lag the reference by this
+  std::optional<std::string> recording;  ///< a log of its own (resolved path), else the scene's
+  ReadOptions reading;                   ///< of that log
+  double lag_s = 0;                      ///< the sensors lag the reference by this
   bool estimate_lag = false;
 };
 
@@ -44,6 +44,12 @@ struct SceneAlgorithm {
   int line = 0, column = 0;
 };
 
+/// What a simulated recording is known to hold; nothing of it is injected again.
+struct SimulatedFrom {
+  std::uint64_t seed = 1;
+  std::vector<SensorFault> faults;
+};
+
 struct Scene {
   std::string file;  ///< of the scene
   std::string name;
@@ -52,8 +58,9 @@ struct Scene {
   std::optional<ArraySimulation> simulate;
   std::vector<SceneSensor> sensors;
   std::optional<SceneReference> reference;
-  std::optional<Window> learning, evaluation;
+  std::optional<TimeWindow> learning, evaluation;
   std::vector<SensorFault> faults;
+  std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
   Warnings warnings;
 };
@@ -62,10 +69,25 @@ struct SceneReadOptions {
   bool allow_outside = false;  ///< files outside the scene's folder may be named
 };
 
+inline constexpr std::size_t kMostSensors = 10000;
+
 /// Reads `format: scene`, `version: 1`, YAML or JSON (docs/formats.md). Paths are relative to the
 /// scene's folder and stay inside it. Throws Error(input) with place, key and the nearest valid
 /// key.
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
+
+/// The same from text that stands for a file at `path`.
+Scene parse_scene(std::string_view text,
+                  const std::string& path,
+                  const SceneReadOptions& options = {});
+
+/// One signal: a map {kind, …} with the keys of its kind. Samples of kind recording are left
+/// unread.
+SignalSpec read_signal(const Document& node, const std::string& file, const std::string& path);
+
+/// Throws Error(output) when an output would overwrite an input of the scene, or two outputs are
+/// one.
+void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& outputs);
 
 /// The scene as YAML; paths relative to the folder of `scene.file`; models inline.
 std::string scene_yaml(const Scene& scene);

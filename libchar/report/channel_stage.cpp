@@ -163,7 +163,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   result.channel.unit = unit_of_rate(channel.unit);
   if (options_->wanted.quality) result.quality = quality_.finish();
   if (rate_hz <= 0) {
-    result.problems.push_back("no curves and no fit: the log has no time axis (give --rate)");
+    result.problems.push_back("no curves and no fit: the sampling rate is not known (a log without time stamps needs --rate)");
     return result;
   }
   if (options_->data == SampleKind::phase)

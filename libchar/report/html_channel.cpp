@@ -79,6 +79,35 @@ std::string spectrum_axis(const Spectrum& s) {
   return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
 }
 
+std::string window_title(Window window) {
+  switch (window) {
+    case Window::hann:
+      return "Hann window";
+    case Window::rectangular:
+      return "no window";
+    case Window::blackman_harris:
+      return "Blackman–Harris window";
+    case Window::flat_top:
+      return "flat-top window";
+    case Window::hann_nonzero:
+      return "Hann window without its zeros";
+  }
+  return "";
+}
+
+// What is drawn, in full: two programs agree only when these do.
+std::string spectrum_caption(const Spectrum& s) {
+  return fmt::format(
+      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width on the "
+      "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean was removed. "
+      "Line: fitted model. Dashed: its terms.",
+      people_count(s.segments),
+      s.segments == 1 ? "" : "s",
+      people_count(s.segment),
+      people_seconds(static_cast<double>(s.segment) / s.rate_hz),
+      window_title(s.window));
+}
+
 struct PlotText {
   std::string title, axis, unit, caption;  // `axis`: short, the title says it in full
 };
@@ -131,8 +160,7 @@ std::string plots(const ChannelResult& c, std::size_t index) {
                 {spectrum_title(s),
                  spectrum_axis(s),
                  spectrum_unit(s.scaling, c.channel.unit),
-                 "Blue: measured, averaged in logarithmic bins, with its 95 % interval. Line: "
-                 "fitted model. Dashed: its terms."},
+                 spectrum_caption(s)},
                 name);
   }
   return out + "</div>\n";
@@ -267,7 +295,7 @@ std::string trust(const ChannelResult& c, std::size_t index) {
                  "sd",
                  "Each point: measured against model in one bin, as a standard normal deviate. "
                  "They should scatter evenly, 95 % within "
-                 "the grey band."},
+                 "the grey band; triangles on the edge lie beyond it."},
                 c.channel.name);
   }
   out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" +
@@ -337,7 +365,8 @@ std::string quality(const ChannelResult& c) {
                                       people_count(q.missing),
                                       people(100 * static_cast<double>(q.missing) / all, 2))});
   out += table_row({"Mean", people(q.mean, 6) + " " + unit});
-  out += table_row({"Standard deviation", people(q.standard_deviation, 4) + " " + unit});
+  const bool constant = q.samples > 0 && q.minimum == q.maximum;
+  out += table_row({"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
   if (q.samples > 0)
     out += table_row(
         {"Range", fmt::format("{} … {} {}", people(q.minimum, 5), people(q.maximum, 5), unit)});
@@ -350,9 +379,10 @@ std::string quality(const ChannelResult& c) {
   out +=
       table_row({"Longest run of one value",
                  people_count(q.longest_stuck) + (q.longest_stuck == 1 ? " sample" : " samples")});
-  out += table_row({"Kurtosis of differences",
-                    people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
-  if (q.float32)
+  if (!constant)
+    out += table_row({"Kurtosis of differences",
+                      people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
+  if (q.float32 && !constant)
     out += table_row(
         {"Number format", "32-bit floats, in steps of " + people(q.float32_step, 2) + " " + unit});
   out += "</tbody></table>\n" + lines_table(c);

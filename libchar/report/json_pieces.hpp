@@ -8,7 +8,6 @@ namespace libchar {
 /// With a fit, also "model": what it predicts at each point.
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit);
 Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit);
-Json fit_channel_json(const Channel& channel, const NoiseFit& fit);
 Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/fit/fit_json.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/model_curve.hpp"
@@ -59,20 +60,10 @@ Json quality_json(const ChannelResult& channel) {
 
 // A channel that could not be fitted keeps its place: null, with the reason in "problems".
 Json fit_or_reason(const ChannelResult& channel, double rate_hz) {
-  if (channel.fit) {
-    Json out = fit_channel_json(channel.channel, *channel.fit);
-    out["derived"] = derived_json(channel, rate_hz);
-    return out;
-  }
-  Json out = {{"name", json_text(channel.channel.name)}, {"unit", json_text(channel.channel.unit)}};
-  for (const TermName& term : kTermNames) {
-    out[std::string(term.key)] = {{"value", nullptr},
-                                  {"ci95", nullptr},
-                                  {"status", name_of(Status::not_fitted)},
-                                  {"upper95", nullptr}};
-  }
-  out["second_opinion"] = nullptr;
-  out["goodness"] = nullptr;
+  const std::string name = json_text(channel.channel.name), unit = json_text(channel.channel.unit);
+  if (!channel.fit) return no_fit_json(name, unit);
+  Json out = noise_fit_json(name, unit, *channel.fit, true);
+  out["derived"] = derived_json(channel, rate_hz);
   return out;
 }
 
@@ -93,14 +84,13 @@ Json json_without_times(const Characterization& result) {
   }
   out["recording"] = recording_json(log, qualities);
 
-  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = frame("noise-fit"),
+  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = noise_fit_document(Json::array()),
        quality = Json::object();
   const bool any = !result.channels.empty();
   allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
   spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
   spectrum["scaling"] = key_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
-  fit["density_sides"] = "two";
-  for (Json* part : {&allan, &spectrum, &fit, &quality}) (*part)["channels"] = Json::array();
+  for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
   for (const ChannelResult& c : result.channels) {
     const NoiseFit* model = c.fit ? &*c.fit : nullptr;
     allan["channels"].push_back(allan_channel_json(c.channel, c.allan, model));

@@ -139,104 +139,6 @@ Json spectrum_json(const std::vector<Channel>& channels, const std::vector<Spect
   return out;
 }
 
-namespace {
-
-Json coefficient_json(const Coefficient& c, std::size_t term, const std::string& unit) {
-  const bool has = c.value.has_value();
-  Json out = {{"value", number(c.value)},
-              {"ci95", has ? interval(c.ci95) : Json(nullptr)},
-              {"status", name_of(c.status)},
-              {"unit", json_text(term_unit(kTermNames[term].key, unit))}};
-  if (!has) out["upper95"] = number(c.upper95);
-  if (has) {
-    out["relative_sd"] = number(c.relative_sd);
-    out["interval"] = c.profile ? "profile_likelihood" : "log_normal";
-  }
-  out["likelihood_ratio"] = number(c.likelihood_ratio);
-  out["bound_relative_sd"] = number(c.bound);
-  out["seconds_for_10_percent"] = number(c.seconds_for_10_percent);
-  return out;
-}
-
-Json goodness_json(const Goodness& g) {
-  return {{"chi2", number(g.chi2)}, {"dof", number(g.dof)}, {"p", number(g.p)}};
-}
-
-Json second_opinion_json(const SecondOpinion& opinion) {
-  Json out = Json::object();
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    if (!opinion.value[t]) continue;
-    out[std::string(kTermNames[t].key)] = {{"value", number(opinion.value[t])},
-                                           {"sd", number(opinion.sd[t])}};
-  }
-  out["goodness"] = goodness_json(opinion.goodness);
-  out["agrees"] = opinion.agrees;
-  out["sentence"] = json_text(opinion.sentence);
-  return out;
-}
-
-Json remedies_json(const std::vector<Remedy>& remedies) {
-  Json out = Json::array();
-  for (const Remedy& r : remedies) {
-    out.push_back({{"kind", r.kind},
-                   {"alarm", json_text(r.alarm)},
-                   {"action", json_text(r.action)},
-                   {"count", r.count}});
-  }
-  return out;
-}
-
-Json residuals_json(const std::vector<FitResidual>& residuals) {
-  Json out = {{"frequency_hz", Json::array()},
-              {"measured", Json::array()},
-              {"model", Json::array()},
-              {"dof", Json::array()},
-              {"z", Json::array()}};
-  for (const FitResidual& r : residuals) {
-    out["frequency_hz"].push_back(number(r.frequency_hz));
-    out["measured"].push_back(number(r.measured));
-    out["model"].push_back(number(r.model));
-    out["dof"].push_back(number(r.dof));
-    out["z"].push_back(number(r.z));
-  }
-  return out;
-}
-
-}  // namespace
-
-Json fit_channel_json(const Channel& channel, const NoiseFit& fit) {
-  Json out = named(channel);
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    out[std::string(kTermNames[t].key)] = coefficient_json(fit.term[t], t, channel.unit);
-  }
-  out["second_opinion"] =
-      fit.second_opinion ? second_opinion_json(*fit.second_opinion) : Json(nullptr);
-  out["goodness"] = goodness_json(fit.goodness);
-  out["bandwidth_hz"] = number(fit.bandwidth_hz);
-  if (fit.bandwidth_hz)
-    out["bandwidth_ci95"] = fit.bandwidth_ci95 ? interval(*fit.bandwidth_ci95) : Json(nullptr);
-  out["remedies"] = remedies_json(fit.remedies);
-  out["sentences"] = strings(fit.sentences);
-  out["method"] = json_text(fit.method);
-  out["converged"] = fit.converged;
-  out["iterations"] = fit.iterations;
-  out["rate_hz"] = number(fit.rate_hz);
-  out["duration_s"] = number(fit.duration_s);
-  out["samples"] = fit.samples;
-  out["residuals"] = residuals_json(fit.residuals);
-  return out;
-}
-
-Json fit_json(const std::vector<Channel>& channels, const std::vector<NoiseFit>& fits) {
-  Json out = frame("noise-fit");
-  out["density_sides"] = "two";
-  out["channels"] = Json::array();
-  for (std::size_t i = 0; i < std::min(channels.size(), fits.size()); ++i) {
-    out["channels"].push_back(fit_channel_json(channels[i], fits[i]));
-  }
-  return out;
-}
-
 Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
   Json out = named(channel);
   out["missing"] = q.missing;
@@ -249,7 +151,7 @@ Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = number(q.difference_kurtosis);
+  out["difference_kurtosis"] = q.minimum < q.maximum ? number(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
   out["float32_step"] = number(q.float32_step);
   out["suggestions"] = strings(q.suggestions);
@@ -281,16 +183,6 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
   out["start_ns"] = log.time.start_ns ? Json(*log.time.start_ns) : Json(nullptr);
   out["dialect"] = strings(log.dialect);
   out["guesses"] = strings(log.guesses);
-  return out;
-}
-
-Json inspect_json(const std::vector<LogInfo>& logs,
-                  const std::vector<std::vector<ChannelQuality>>& qualities) {
-  Json out = frame("inspect");
-  out["recordings"] = Json::array();
-  for (std::size_t i = 0; i < std::min(logs.size(), qualities.size()); ++i) {
-    out["recordings"].push_back(recording_json(logs[i], qualities[i]));
-  }
   return out;
 }
 

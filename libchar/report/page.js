@@ -66,6 +66,15 @@
     return good.length ? [Math.min(...good) / factor, Math.max(...good) * factor] : [0.1, 10];
   }
 
+  // Extremes of the measured values and, up to a factor beyond them, of what is drawn with them: a fitted line or an interval may
+  // not leave the sheet, nor press the measurement into a corner.
+  function framed(measured, others, factor) {
+    const good = measured.filter(positive);
+    if (!good.length) return others;
+    const low = Math.min(...good), high = Math.max(...good);
+    return good.concat(others.filter(positive).map((v) => Math.max(low / factor, Math.min(high * factor, v))));
+  }
+
   // ---- data sets ----
   function band(name, x, intervals, colour) {
     const low = [], high = [];
@@ -211,7 +220,9 @@
     // A mark far below the curve (a K that a short record hardly shows) would press everything else together.
     const near = marks.filter((m) => m.deviation > Math.min(...measured.map((p) => p.y)) / 30);
     const [xMin, xMax] = padded(measured.map((p) => p.x).concat(marks.map((m) => m.tau_s)), 1.4);
-    const [yMin, yMax] = padded(measured.map((p) => p.y).concat(near.map((m) => m.deviation)), 2.2);
+    const intervals = framed(measured.map((p) => p.y), a.ci95.flatMap((pair) => pair || []), 3);
+    const drawn = framed(intervals, measured.map((p) => (a.model ? a.model[p.i] : null)), 30);
+    const [yMin, yMax] = padded(drawn.concat(near.map((m) => m.deviation)), 1.8);
     return {
       type: "line", data: { datasets: sets }, plugins: [readOffLabels, whitePaper],
       options: options(logAxis("averaging time τ, s", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
@@ -232,35 +243,61 @@
     if (s.model) sets.push({ label: "fitted model", data: points(s.frequency_hz, s.model), borderColor: MODEL, borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 1 });
     sets.push(...simulated(index, "spectrum"), ...asymptotes(s.asymptotes), ...band("95 % interval", s.frequency_hz, s.ci95, "rgba(27,79,143,0.18)"));
     const [xMin, xMax] = padded(measured.map((p) => p.x), 1.3);
-    const [yMin, yMax] = padded(measured.map((p) => p.y), 2.5);
+    const [yMin, yMax] = padded(framed(measured.map((p) => p.y), measured.map((p) => (s.model ? s.model[p.i] : null)), 100), 2);
     return {
       type: "line", data: { datasets: sets }, plugins: [whitePaper],
       options: options(logAxis("frequency, Hz", xMin, xMax), logAxis(axis + ", " + unit, yMin, yMax)),
     };
   }
 
+  // Says in a corner how many points stand on the edge because they lie beyond it.
+  const beyondNote = {
+    id: "beyondNote",
+    afterDatasetsDraw(chart) {
+      const set = chart.data.datasets.find((d) => d.note);
+      if (!set) return;
+      const pen = chart.ctx;
+      pen.save();
+      pen.font = "600 12px system-ui, 'DejaVu Sans', sans-serif";
+      pen.fillStyle = set.borderColor;
+      pen.fillText(set.note, chart.chartArea.left + 8, chart.chartArea.top + 14);
+      pen.restore();
+    },
+  };
+
   function residualChart(index) {
     const r = report.fit.channels[index].residuals;
-    const dots = [];
-    r.frequency_hz.forEach((x, i) => { if (positive(x) && r.z[i] !== null) dots.push({ x, y: Math.max(-8, Math.min(8, r.z[i])), i }); });
-    const [xMin, xMax] = padded(dots.map((p) => p.x), 1.3);
-    const top = Math.max(4, Math.ceil(Math.max(0, ...dots.map((p) => Math.abs(p.y)))));
+    // Scaled to the data; one wild bin may not flatten the rest: it is drawn on the edge, as a triangle.
+    const LARGEST = 20;
+    const all_z = r.z.filter((z) => z !== null).map(Math.abs);
+    const top = Math.min(LARGEST, Math.max(4, Math.ceil(1.05 * Math.max(0, ...all_z))));
+    const dots = [], beyond = [];
+    r.frequency_hz.forEach((x, i) => {
+      if (!positive(x) || r.z[i] === null) return;
+      const inside = Math.abs(r.z[i]) <= top;
+      (inside ? dots : beyond).push({ x, y: inside ? r.z[i] : Math.sign(r.z[i]) * 0.96 * top, i });
+    });
+    const [xMin, xMax] = padded(dots.concat(beyond).map((p) => p.x), 1.3);
     const tip = (p) => [people(p.x, 4) + (report.fit.channels[index].of_curve ? " s" : " Hz"), "residual " + people(r.z[p.i], 3) + " sd", people(r.dof[p.i], 3) + " degrees of freedom"];
     const flat = (y) => [{ x: xMin, y }, { x: xMax, y }];
     const plain = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, order: 9 };
     const sets = [
       { label: "residual", data: dots, showLine: false, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 2.4, pointHoverRadius: 5, marks: true, tip, order: 1, fill: false },
+      {
+        label: "", data: beyond, showLine: false, borderColor: MODEL, backgroundColor: MODEL, pointStyle: "triangle", pointRadius: 5, pointHoverRadius: 7, marks: true, tip, order: 0, fill: false,
+        pointRotation: beyond.map((p) => (p.y > 0 ? 0 : 180)), note: beyond.length ? beyond.length + " beyond ±" + top + ", up to " + people(Math.max(...all_z), 2) : "",
+      },
       { label: "", data: flat(0), borderColor: MODEL, borderWidth: 1.4, pointRadius: 0, pointHitRadius: 0, order: 2, fill: false },
       Object.assign({ label: "", data: flat(1.96), backgroundColor: "rgba(90,100,112,0.13)", fill: "+1" }, plain),
       Object.assign({ label: "", data: flat(-1.96), fill: false }, plain),
     ];
     const y = {
       type: "linear", min: -top, max: top, title: { display: true, text: "residual, sd", color: INK, font: { size: 12.5 } },
-      ticks: { color: INK, stepSize: top > 4 ? 4 : 2 }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
+      ticks: { color: INK, stepSize: top > 16 ? 10 : top > 8 ? 5 : top > 4 ? 4 : 2 }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
     };
     const all = options(logAxis("frequency, Hz", xMin, xMax), y);
     all.plugins.legend = { display: false };
-    return { type: "line", data: { datasets: sets }, plugins: [whitePaper], options: all };
+    return { type: "line", data: { datasets: sets }, plugins: [whitePaper, beyondNote], options: all };
   }
 
   const MAKERS = { allan: allanChart, spectrum: spectrumChart, residuals: residualChart };

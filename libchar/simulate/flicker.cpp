@@ -10,10 +10,10 @@
 //
 //   h_k = sum_j w_j p_j^k,  s_j = e^(j a),  p_j = 1/(1 + s_j),  w_j = (a/pi) sqrt(s_j)/(1 + s_j).
 //
-// The sum has no end on either side. What lies beyond the record (s < 1/N) is replaced by its own
-// Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on the
-// discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a polynomial
-// of low degree there.
+// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its
+// own Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on
+// the discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a
+// polynomial of low degree there.
 //
 // Every section x_j[t] = p_j x_j[t-1] + g[t] is driven by the same deviate. Jointly stationary, the
 // states have covariance C_ij = 1/(1 - p_i p_j), the Gram matrix of Szego kernels; the
@@ -37,7 +37,7 @@ namespace libchar {
 namespace {
 
 constexpr double kStep = 0.62;          // a: exp(-pi^2/a) = 1.2e-7
-constexpr int kSlowNodes = 5;           // Gauss nodes for s < 1/N
+constexpr int kSlowNodes = 5;           // Gauss nodes for s < 1/(2 length)
 constexpr int kFastNodes = 4;           // Gauss nodes for p < 1/2
 constexpr int kTailTerms = 200;         // of either tail: e^(-200 a/2) = 1e-27
 constexpr double kShortestRecord = 64;  // shorter ones get this design
@@ -90,7 +90,7 @@ double gap(double qi, double qj) {
 FlickerFilter design_flicker(std::uint64_t length) {
   const double n =
       std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
-  const int first = static_cast<int>(std::floor(-std::log(n) / kStep));
+  const int first = static_cast<int>(std::floor(-std::log(2 * n) / kStep));
   FlickerFilter filter;
   Rule fast, slow;
   for (int j = kTailTerms; j > 0; --j) {  // p < 1/2

@@ -42,6 +42,11 @@ void check(const NoiseDesign& design) {
                  " must be a finite number, not negative",
              shortest(value),
              "");
+    if (!std::isfinite(value * std::max(design.rate_hz, 1 / design.rate_hz)))
+      refuse("the noise coefficient " + std::string(kTermNames[i].key) +
+                 " is too large for this sample rate",
+             shortest(value),
+             "");
   }
   if (design.bandwidth_hz && !(std::isfinite(*design.bandwidth_hz) && *design.bandwidth_hz > 0))
     refuse(
@@ -95,10 +100,12 @@ using Scratch = std::span<double>;
 
 void add_term(FilteredWhite& white, Out out, Scratch drawn) {
   white.deviates.fill_normal(drawn);
+  double value = white.value;  // a local: `out` cannot be it
   for (std::size_t t = 0; t < out.size(); ++t) {
-    white.value = white.pole * white.value + white.drive * drawn[t];
-    out[t] += white.value;
+    value = white.pole * value + white.drive * drawn[t];
+    out[t] += value;
   }
+  white.value = value;
 }
 
 void add_term(PlainWhite& white, Out out, Scratch drawn) {
@@ -114,18 +121,20 @@ void add_term(Flicker& flicker, Out out, Scratch drawn) {
 
 void add_term(Walk& walk, Out out, Scratch drawn) {
   walk.deviates.fill_normal(drawn);
+  double value = walk.value;
   for (std::size_t t = 0; t < out.size(); ++t) {
-    walk.value += walk.step * drawn[t];
-    out[t] += walk.value;
+    value += walk.step * drawn[t];
+    out[t] += value;
   }
+  walk.value = value;
 }
 
 void add_term(Quantization& noise, Out out, Scratch drawn) {
   noise.deviates.fill_normal(drawn);
-  for (std::size_t t = 0; t < out.size(); ++t) {
-    out[t] += noise.level * (drawn[t] - noise.before);
-    noise.before = drawn[t];
-  }
+  if (out.empty()) return;
+  out[0] += noise.level * (drawn[0] - noise.before);
+  for (std::size_t t = 1; t < out.size(); ++t) out[t] += noise.level * (drawn[t] - drawn[t - 1]);
+  noise.before = drawn.back();
 }
 
 void add_term(Ramp& ramp, Out out, Scratch) {

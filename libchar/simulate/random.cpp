@@ -7,36 +7,99 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
 #include <boost/random/normal_distribution.hpp>
+#include <limits>
 
 namespace libchar {
 
+namespace {
+
+inline r123::Philox4x64::ctr_type block_at(const StreamKey& key,
+                                           std::uint64_t position,
+                                           std::uint64_t further) {
+  const r123::Philox4x64::ctr_type counter = {
+      {position, further, 0, static_cast<std::uint64_t>(key.purpose)}};
+  return r123::Philox4x64()(counter, {{key.seed, key.sensor}});
+}
+
+/// The words of one deviate: the first from the stream, those that one deviate in sixty needs
+/// beyond it (ziggurat rejections, the tail) from blocks of its own, so that they do not move the
+/// next deviate.
+class DeviateWords {
+ public:
+  using result_type = std::uint64_t;
+  DeviateWords(const StreamKey& key, std::uint64_t position, std::uint64_t first)
+      : key_(key), position_(position), first_(first) {}
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+  result_type operator()() {
+    if (used_++ == 0) return first_;
+    return further(used_ - 2);
+  }
+
+ private:
+  result_type further(std::uint64_t n) const { return block_at(key_, position_, 1 + n / 4)[n % 4]; }
+  const StreamKey& key_;
+  std::uint64_t position_, first_, used_ = 0;
+};
+
+double normal_at(const StreamKey& key, std::uint64_t position, std::uint64_t word) {
+  DeviateWords words(key, position, word);
+  boost::random::normal_distribution<double> distribution;
+  return distribution(words);
+}
+
+}  // namespace
+
 std::array<std::uint64_t, 4> philox(const std::array<std::uint64_t, 4>& counter,
                                     const std::array<std::uint64_t, 2>& key) {
-  const r123::Philox4x64::ctr_type from = {{counter[0], counter[1], counter[2], counter[3]}};
-  const r123::Philox4x64::key_type with = {{key[0], key[1]}};
-  const r123::Philox4x64::ctr_type out = r123::Philox4x64()(from, with);
+  const auto out =
+      r123::Philox4x64()({{counter[0], counter[1], counter[2], counter[3]}}, {{key[0], key[1]}});
   return {out[0], out[1], out[2], out[3]};
 }
 
 // Sixteen blocks at once: they do not depend on each other, so the processor overlaps them.
-void BitStream::refill() {
-  const auto purpose = static_cast<std::uint64_t>(key_.purpose);
+void DeviateStream::refill() {
+  const std::uint64_t first = position_ / kWords * (kWords / 4);
   for (std::size_t i = 0; i < kWords; i += 4) {
-    const auto four = philox({block_++, 0, 0, purpose}, {key_.seed, key_.sensor});
-    for (std::size_t j = 0; j < 4; ++j) words_[i + j] = four[j];
+    const auto four = block_at(key_, first + i / 4, 0);
+    words_[i] = four.v[0];
+    words_[i + 1] = four.v[1];
+    words_[i + 2] = four.v[2];
+    words_[i + 3] = four.v[3];
   }
-  next_ = 0;
+  filled_ = true;
+}
+
+void DeviateStream::seek(std::uint64_t position) {
+  position_ = position;
+  filled_ = false;
 }
 
 double DeviateStream::normal() {
-  boost::random::normal_distribution<double> distribution;
-  return distribution(bits_);
+  double value = 0;
+  fill_normal({&value, 1});
+  return value;
+}
+
+double DeviateStream::uniform() {
+  if (!filled_) refill();
+  const std::uint64_t word = words_[position_ % kWords];
+  filled_ = ++position_ % kWords != 0;
+  return static_cast<double>(word >> 11U) * 0x1.0p-53;
 }
 
 void DeviateStream::fill_normal(std::span<double> out) {
-  boost::random::normal_distribution<double> distribution;
-  for (double& value : out) value = distribution(bits_);
+  for (std::size_t done = 0; done < out.size();) {
+    if (!filled_) refill();
+    const std::size_t at = position_ % kWords, count = std::min(kWords - at, out.size() - done);
+    for (std::size_t i = 0; i < count; ++i)
+      out[done + i] = normal_at(key_, position_ + i, words_[at + i]);
+    done += count;
+    position_ += count;
+    filled_ = at + count < kWords;
+  }
 }
 
 }  // namespace libchar

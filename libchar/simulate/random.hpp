@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace libchar {
@@ -41,40 +40,26 @@ struct StreamKey {
 std::array<std::uint64_t, 4> philox(const std::array<std::uint64_t, 4>& counter,
                                     const std::array<std::uint64_t, 2>& key);
 
-/// The 64-bit words of one stream in order; satisfies std::uniform_random_bit_generator.
-class BitStream {
- public:
-  using result_type = std::uint64_t;
-  explicit BitStream(const StreamKey& key) : key_(key) {}
-  static constexpr result_type min() { return 0; }
-  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
-  result_type operator()() {
-    if (next_ == words_.size()) refill();
-    return words_[next_++];
-  }
-
- private:
-  void refill();
-  static constexpr std::size_t kWords = 64;
-  StreamKey key_;
-  std::uint64_t block_ = 0;  ///< counter of the next 256 bits
-  std::size_t next_ = kWords;
-  std::array<std::uint64_t, kWords> words_;
-};
-
-/// Deviates of one stream, one after the other. A normal deviate takes a random number of words
-/// (1.01 on average), so a stream is drawn from its start, block by block.
+/// Deviates of one stream. The deviate at a position depends on the key and the position alone, so
+/// a stream may be entered anywhere. Every call of `normal` or `uniform` takes one position.
 class DeviateStream {
  public:
-  explicit DeviateStream(const StreamKey& key) : bits_(key) {}
-  /// Standard normal deviates.
+  explicit DeviateStream(const StreamKey& key) : key_(key) {}
+  /// Standard normal.
   double normal();
   void fill_normal(std::span<double> out);
-  /// Uniform on [0, 1): the upper 53 bits of a word.
-  double uniform() { return static_cast<double>(bits_() >> 11U) * 0x1.0p-53; }
+  /// Uniform on [0, 1), a multiple of 2^-53.
+  double uniform();
+  /// Continues at this deviate; the stream begins at 0.
+  void seek(std::uint64_t position);
 
  private:
-  BitStream bits_;
+  static constexpr std::size_t kWords = 64;
+  void refill();
+  StreamKey key_;
+  std::uint64_t position_ = 0;
+  bool filled_ = false;  ///< words_ holds the positions around position_
+  std::array<std::uint64_t, kWords> words_;
 };
 
 }  // namespace libchar

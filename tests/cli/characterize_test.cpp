@@ -188,3 +188,36 @@ TEST_CASE("options that cannot be followed are said, not swallowed") {
   write_text(folder / "uneven.csv", uneven);
   CHECK(test::run({"allan", (folder / "uneven.csv").string(), "--taus", "1s"}).err.find("uneven") != std::string::npos);
 }
+
+TEST_CASE("channels whose names make one file name get a model file each, letters kept") {
+  const test::TemporaryFolder folder;
+  std::string text = "a/b,A b,größe\n";
+  std::uint32_t state = 1;
+  for (int i = 0; i < 400; ++i) {
+    for (int c = 0; c < 3; ++c) text += std::to_string((state = state * 1664525U + 1013904223U) >> 12U) + (c < 2 ? "," : "\n");
+  }
+  write_text(folder / "x.csv", text);
+  const auto ran = test::run({"characterize", (folder / "x.csv").string(), "--rate", "100", "-o", (folder / "out").string()});
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  for (const char* name : {"a_b.sensor.yaml", "A_b_2.sensor.yaml", "größe.sensor.yaml"}) CHECK(std::filesystem::exists(folder / "out" / name));
+}
+
+TEST_CASE("fit --json and the fit in report.json are the same bytes, key by key") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  REQUIRE(test::run({"characterize", log, "-o", (folder / "out").string()}).code == 0);
+  const auto fit = test::run({"fit", log, "--json"});
+  REQUIRE(fit.code == 0);
+  const Json alone = parse_json(fit.out, "stdout"), report = report_of(folder / "out").at("fit");
+  for (const char* key : {"format", "version", "density_sides"}) CHECK(alone.at(key) == report.at(key));
+  REQUIRE(alone.at("channels").size() == 2);
+  for (std::size_t c = 0; c < 2; ++c) {
+    Json in_report = report.at("channels").at(c);
+    CHECK(in_report.erase("derived") == 1);
+    CHECK(in_report.erase("residuals") == 1);
+    CHECK(dump_json(in_report) == dump_json(alone.at("channels").at(c)));
+    for (const char* key : {"name", "unit", "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp", "second_opinion", "goodness"})
+      CHECK(in_report.contains(key));
+  }
+}

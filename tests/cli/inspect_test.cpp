@@ -83,3 +83,34 @@ TEST_CASE("standard input is read as CSV") {
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains("1 channel, 100.000 Hz"));
 }
+
+TEST_CASE("one row with a stamp has no rate, and --rate would not give it one") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "one.csv").string();
+  std::ofstream(log) << "t,x\n1.0,2.0\n";
+  const auto ran = test::run({"inspect", log});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("next: one row with a time stamp gives no sampling rate") && !Contains("--rate"));
+}
+
+TEST_CASE("a constant channel has no kurtosis") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "flat.csv").string();
+  std::ofstream(log) << "t[s],x,y\n0,5,1\n1,5,2\n2,5,1\n3,5,4\n";
+  const auto ran = test::run({"inspect", log});
+  CHECK_THAT(ran.out, Contains("constant"));
+  const auto json = test::run({"inspect", "--json", log});
+  const libchar::Json channels = libchar::parse_json(json.out, "stdout")["recordings"][0]["channels"];
+  CHECK(channels[0]["difference_kurtosis"].is_null());
+  CHECK(channels[1]["difference_kurtosis"].is_number());
+}
+
+TEST_CASE("the suggested command names each list once, and works") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "x.csv") << "0,1,2\n0.1,2,1\n0.2,1,4\n0.3,2,2\n";
+  test::RunOptions options;
+  options.folder = folder.path().string();
+  const auto ran = test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains(" --names 'a b,c' --units deg/s,g --time-column c0"));
+}

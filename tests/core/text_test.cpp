@@ -28,9 +28,3 @@ TEST_CASE("spelling help finds slips, not strangers") {
   CHECK_FALSE(nearest("temperature", {"x", "y"}));
   CHECK(edit_distance("ab", "ba") == 1);
 }
-
-TEST_CASE("a channel name never becomes a path") {
-  CHECK(file_name_for("../../etc/x") == "_.._.._etc_x");
-  CHECK(file_name_for("") == "_");
-  CHECK(file_name_for("gyro_x") == "gyro_x");
-}

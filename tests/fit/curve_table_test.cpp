@@ -74,3 +74,15 @@ TEST_CASE("rows that do not fit are named with their place") {
   CHECK(fault_of("tau_s,adev\n1,2,3\n").find("curve.csv:2:1: error E0304") != std::string::npos);
   CHECK(fault_of("tau_s,adev\n").find("holds no Allan curve") != std::string::npos);
 }
+
+TEST_CASE("relative and absolute errors are read, whatever they are called") {
+  const auto sd = [](const std::string& text) { return read(text, true)->curves.at(0).curve.relative_sd; };
+  CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau;adev;Relative error [%]\n1;2;25\n2;1;50\n") == std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau_s,adev,error\n1,2,0.5\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") == std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
+  CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,\n").empty());  // not for every point: for none
+  NEEDS_SHARED("data/avarcurve_navchip_published.csv");
+  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  CHECK(table->curves[0].curve.relative_sd.at(0) == 0.0005674816915767);
+}

@@ -175,7 +175,7 @@ TEST_CASE("the first line that cannot be is named with line, column and byte") {
   CHECK(failure("t,x\n0,1\n1,1e400\n")
             .find("log.csv:3:3 (byte 10): error E0312: number out of range; got \"1e400\"; hint: "
                   "--overflow nan") == 0);
-  CHECK(failure("").find("log.csv:1:1 (byte 0): error E0301: the file is empty") == 0);
+  CHECK(failure("").find("log.csv:1:1 (byte 0): error E0322: the file is empty") == 0);
   CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
   CHECK(failure("\x1F\x8B\x08").find("gzip") != std::string::npos);
   CHECK(failure("PK\x03\x04zip").find("ZIP") != std::string::npos);
@@ -317,4 +317,62 @@ TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
         CHECK(std::signbit(r.samples[1][2]));
         CHECK(r.info.time.rate_hz == Approx(100));
       }
+}
+
+TEST_CASE("a last line without line end is kept and said, unless its last cell is seen to be whole") {
+  for (const char* text : {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
+    const Recording r = read_text(text);
+    INFO(text);
+    CHECK(r.samples[0].back() == 4);
+    CHECK(r.samples[0].size() == 3);
+    REQUIRE(count(r, "no_final_newline") == 1);
+    CHECK_THAT(r.info.warnings.find("no_final_newline")->places[0], Catch::StartsWith("line 4"));
+  }
+  for (const char* text : {"t,x\n1,2\n2,3\n3,4\n", "t,x\n1,2\n2,3\n3,\"4\"", "t,x,\n1,2,\n2,3,\n3,4,", "t,x\n1,2\n2,3\n3,4\n# end", "t,x\n1,2\n2,3\n3,4\n  "}) {
+    INFO(text);
+    CHECK(count(read_text(text), "no_final_newline") == 0);
+  }
+}
+
+TEST_CASE("a delimiter that does not fit is answered with the one that does") {
+  ReadOptions options;
+  options.delimiter = ";";
+  CHECK_THAT(failure("t,x,y\n1,2,3\n2,3,4\n", options),
+             Catch::StartsWith("log.csv:2:1 ") && Catch::Contains("looks separated by commas (3 columns): leave --delimiter out"));
+  // One column of decimal commas is what was asked for.
+  CHECK(read_text("x\n1,5\n2,25\n", options).samples[0] == std::vector<double>{1.5, 2.25});
+  options.delimiter = ",";
+  CHECK_THAT(failure("a;b\n1;2\n3;4\n", options), Catch::Contains("separated by semicolons (2 columns)"));
+}
+
+TEST_CASE("binary content is called binary, whatever its first lines look like") {
+  std::mt19937 random(7);
+  for (int i = 0; i < 200; ++i) {
+    std::string bytes = i % 4 == 0 ? "t,x\n1,2\n" : "";
+    const int size = 200 + i * 20;
+    for (int k = 0; k < size; ++k) bytes += static_cast<char>(random() & 0xFFU);
+    const std::string said = failure(bytes);
+    INFO(i << " " << said);
+    CHECK_THAT(said, Catch::Contains("binary"));
+    CHECK_THAT(said, !Catch::Contains("--skip-rows"));
+  }
+  // Doubles, as an array dumped into a file.
+  std::string doubles;
+  for (int k = 0; k < 500; ++k) {
+    const double value = std::sin(k);
+    doubles.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  CHECK_THAT(failure(doubles), Catch::Contains("binary"));
+  // A log with a few odd bytes is not binary.
+  CHECK_THAT(failure("t,x\n1,\x01\n2,3\n"), Catch::Contains("E0311"));
+}
+
+TEST_CASE("names that are given go by what is read") {
+  ReadOptions options;
+  options.names = {"a", "b", "c"};
+  options.channels = {"gz"};
+  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options), Catch::Contains("3 given, and 1 channel is read: gz"));
+  options.channels = {"a"};
+  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
+             Catch::Contains("-c chooses by the names in the log, gx, gy, gz, and --names then name what was chosen"));
 }

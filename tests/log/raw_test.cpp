@@ -180,3 +180,8 @@ TEST_CASE("YAML is read without the parts that bite") {
   CHECK(node["g"][1]["h"].is_null());
   CHECK(node["i"] == UINT64_MAX);
 }
+
+TEST_CASE("numbers in a sidecar beyond a double are refused as such, with their place") {
+  const std::string message = said(R"({"dtype": "f64", "endian": "little", "channels": 1, "rate_hz": 1e400})");
+  CHECK_THAT(message, Catch::Contains("E0602") && Catch::Contains("out of range") && Catch::Contains("1e400") && Catch::Contains(":1:"));
+}

@@ -122,6 +122,7 @@ def check_page(browser, page, plots=None):
     expect(browser.run("return window.broken === undefined"), f"{page}: injected code ran")
     expect(browser.run("return performance.getEntriesByType('resource').length") == 0, f"{page}: resources were loaded")
     check_axes(browser, page)
+    check_scales(browser, page)
     check_download(browser, page)
     # chrome:// and a one-pixel image that our page does not hold are the browser's own empty tab.
     source = page.read_text()
@@ -140,6 +141,26 @@ def check_axes(browser, page):
     bad = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic')
       .flatMap((c) => c.data.datasets.flatMap((d) => d.data)).filter((p) => !(p.x > 0) || !(p.y > 0)).length""")
     expect(bad == 0, f"{page}: {bad} points at or below zero on logarithmic axes")
+
+
+def check_scales(browser, page):
+    """Nothing that is drawn leaves the sheet without a mark: the fitted line on its axes, every residual in its plot."""
+    outside = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic').filter((c) => {
+      const of = (name) => (c.data.datasets.find((d) => d.label === name) || { data: [] }).data.map((p) => p.y);
+      const measured = of('measured'), top = c.options.scales.y.max, bottom = c.options.scales.y.min;
+      const near = (y) => y < 30 * Math.max(...measured) && y > Math.min(...measured) / 30;
+      return measured.length && of('fitted model').some((y) => near(y) && (y > top || y < bottom));
+    }).length""")
+    expect(outside == 0, f"{page}: {outside} plots whose fitted line leaves the sheet")
+    lost = browser.run("""const report = JSON.parse(document.getElementById('report-data').textContent);
+      return Array.from(document.querySelectorAll('figure[data-kind=residuals]')).filter((figure) => {
+        const sets = Chart.getChart(figure.querySelector('canvas')).data.datasets, z = report.fit.channels[Number(figure.dataset.channel)].residuals.z;
+        const top = Chart.getChart(figure.querySelector('canvas')).options.scales.y.max;
+        const beyond = sets.find((d) => d.note !== undefined);
+        return beyond.data.length !== z.filter((v) => v !== null && Math.abs(v) > top).length || (beyond.data.length > 0) !== (beyond.note !== '')
+          || sets[0].data.some((p) => Math.abs(p.y) > top);
+      }).length""")
+    expect(lost == 0, f"{page}: {lost} residual plots that hide points")
 
 
 def check_download(browser, page):

@@ -1,0 +1,24 @@
+#pragma once
+// Files that a scene names: beside it or below it, regular, and only read.
+
+#include <string>
+
+namespace libchar {
+
+struct SceneFolder {
+  std::string scene;           ///< path of the scene file
+  bool allow_outside = false;  ///< files elsewhere may be named
+};
+
+/// The path of a file named in a scene. Throws Error(input) at `where` ("FILE:LINE:COL") for a path
+/// that leaves the scene's folder (by "..", absolute, or over a link), names the scene itself, or
+/// is no regular file that exists.
+std::string resolve_scene_file(const std::string& named,
+                               const SceneFolder& folder,
+                               const std::string& where);
+
+/// `file` relative to the folder of `scene`, as the scene would name it; absolute when it is
+/// elsewhere.
+std::string path_for_scene(const std::string& file, const std::string& scene);
+
+}  // namespace libchar

@@ -1,0 +1,48 @@
+#include "libchar/core/file_name.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "libchar/core/text.hpp"
+
+using namespace libchar;
+
+TEST_CASE("a channel name never becomes a path") {
+  CHECK(file_name_for("../../etc/x") == "_.._.._etc_x");
+  CHECK(file_name_for("") == "_");
+  CHECK(file_name_for("gyro_x") == "gyro_x");
+  CHECK(file_name_for("a b:c\\d\ne") == "a_b_c_d_e");
+}
+
+TEST_CASE("letters of any script stay, what is invisible or no text does not") {
+  CHECK(file_name_for("Beschleunigung ä") == "Beschleunigung_ä");
+  CHECK(file_name_for("гироскоп Ω 加速度") == "гироскоп_Ω_加速度");
+  CHECK(file_name_for("a\u202Eb\u00A0c\u200Bd") == "a_b_c_d");
+  CHECK(file_name_for("a\xFF\xC3z") == "a__z");
+}
+
+TEST_CASE("names are cut to 100 bytes between characters") {
+  for (int shift = 0; shift < 4; ++shift) {
+    std::string name(static_cast<std::size_t>(shift), 'x');
+    for (int i = 0; i < 60; ++i) name += "加";
+    const std::string file = file_name_for(name);
+    CHECK(file.size() <= 100);
+    CHECK(file.size() >= 97);
+    CHECK(first_invalid_utf8(file) == std::string_view::npos);
+  }
+}
+
+TEST_CASE("two channels never share a file, on file systems that ignore capitals too") {
+  std::set<std::string> taken;
+  CHECK(unused_file_name_for("a/b", taken) == "a_b");
+  CHECK(unused_file_name_for("a b", taken) == "a_b_2");
+  CHECK(unused_file_name_for("A:B", taken) == "A_B_3");
+  CHECK(unused_file_name_for("a_b_2", taken) == "a_b_2_2");
+  CHECK(unused_file_name_for("Ä", taken) == "Ä");
+  CHECK(unused_file_name_for("ä", taken) == "ä_2");
+  CHECK(unused_file_name_for("ж", taken) == "ж");
+  CHECK(unused_file_name_for("Ж", taken) == "Ж_2");
+  const std::string long_name(150, 'q');
+  CHECK(unused_file_name_for(long_name, taken) == std::string(100, 'q'));
+  CHECK(unused_file_name_for(long_name + "r", taken) == std::string(98, 'q') + "_2");
+  CHECK(taken.size() == 10);
+}

@@ -1,0 +1,418 @@
+// sensorchar simulate MODEL…|SCENE -o LOG: a recording with known truth, streaming, and the scene
+// that replays it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/log/write.hpp"
+#include "libchar/model/model_reader.hpp"
+#include "libchar/replay/scene.hpp"
+#include "libchar/simulate/sensor_array.hpp"
+#include "numbers.hpp"
+#include "verbs.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kRows = std::size_t{1} << 14U;
+constexpr std::uint64_t kMostDevices = 10000;
+
+struct SimulateVerb {
+  std::vector<std::string> sources;
+  std::string output, scene_path, truth, temperature, endian = "little";
+  std::vector<std::string> faults;
+  std::optional<double> duration_s, rate_hz;
+  std::uint64_t samples = 0, seed = 1, devices = 1, oversampling = 1;
+  bool seed_given = false, no_truth = false, no_scene = false, no_time_column = false, json = false,
+       allow_outside = false;
+  WriteOptions writing;
+};
+
+[[noreturn]] void refuse(const std::string& where,
+                         const std::string& what,
+                         const std::string& got = "",
+                         const std::string& hint = "") {
+  throw Error({ErrorKind::usage, "E0721", where, what, got, hint});
+}
+
+// "sine,amplitude=2,frequency_hz=0.1" as the map that a scene file would hold.
+SignalSpec signal_from_words(const std::string& text, const std::string& option) {
+  std::string map = "{kind: " + text.substr(0, text.find(','));
+  for (std::size_t at = text.find(','); at != std::string::npos;) {
+    const std::size_t end = text.find(',', at + 1);
+    const std::string pair = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos)
+      refuse(
+          option, "expected KIND,key=value,…", text, "such as sine,amplitude=2,frequency_hz=0.1");
+    map += ", " + pair.substr(0, equals) + ": " + pair.substr(equals + 1);
+    at = end;
+  }
+  return read_signal(parse_yaml_document(map + "}", option), option, "");
+}
+
+// "gyr_x:bias=0.2@100..200" in seconds; an open end is the end of the record.
+SensorFault fault_from_words(const std::string& text, const ArraySimulation& simulation) {
+  const std::string form = "SENSOR:KIND[=VALUE]@FROM..TO";
+  const std::size_t at = text.rfind('@'),
+                    colon = at == std::string::npos ? at : text.rfind(':', at);
+  if (colon == std::string::npos)
+    refuse("--fault", "expected " + form + " in seconds", text, "such as gyr_x:bias=0.2@100..200");
+  const std::string name = text.substr(0, colon), what = text.substr(colon + 1, at - colon - 1),
+                    when = text.substr(at + 1);
+  SensorFault fault;
+  std::vector<std::string> names;
+  for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    const auto near = nearest(name, names);
+    refuse("--fault",
+           "there is no such sensor",
+           name,
+           near ? fmt::format("did you mean {}?", *near)
+                : fmt::format("the sensors are {}", fmt::join(names, ", ")));
+  }
+  fault.sensor = static_cast<std::size_t>(found - names.begin());
+  const std::size_t equals = what.find('=');
+  const std::string kind = what.substr(0, equals);
+  if (std::find(fault_kinds().begin(), fault_kinds().end(), kind) == fault_kinds().end())
+    refuse("--fault", fmt::format("expected one of {}", fmt::join(fault_kinds(), ", ")), kind);
+  fault.kind = fault_kind(kind);
+  const auto number = [&](const std::string& word) {
+    const auto value = parse_double(word);
+    if (!value) refuse("--fault", "expected a number in " + form, word);
+    return *value;
+  };
+  const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
+  if (valueless != (equals == std::string::npos))
+    refuse("--fault", valueless ? kind + " takes no value" : kind + " needs a value", text, form);
+  if (!valueless) fault.value = number(what.substr(equals + 1));
+  const std::size_t dots = when.find("..");
+  if (dots == std::string::npos) refuse("--fault", "expected FROM..TO in seconds", when, form);
+  fault.from_s = number(when.substr(0, dots));
+  if (dots + 2 < when.size()) fault.to_s = number(when.substr(dots + 2));
+  if (!(fault.from_s >= 0 && fault.from_s < fault.to_s))
+    refuse("--fault", "a fault lasts from a time to a later one", when);
+  return fault;
+}
+
+bool is_scene(const std::string& path) {
+  const std::string text = read_document_text(path);
+  const Document document =
+      path.ends_with(".json") ? parse_json_document(text, path) : parse_yaml_document(text, path);
+  const DocumentEntry* format = document.find("format");
+  return format != nullptr && format->value.text == "scene";
+}
+
+std::string sensor_name(const SensorModel& model, const std::string& path) {
+  if (!model.channel.empty()) return model.channel;
+  std::string stem = fs::path(path).filename().string();
+  return stem.substr(0, stem.find('.'));
+}
+
+// Devices of one model are numbered; equal names of several files get their number too.
+void add_devices(ArraySimulation& simulation,
+                 const SensorModel& model,
+                 const std::string& name,
+                 std::uint64_t devices) {
+  std::set<std::string> taken;
+  for (const SimulatedSensor& sensor : simulation.sensors) taken.insert(sensor.name);
+  for (std::uint64_t i = 1; i <= devices; ++i) {
+    std::string own = devices == 1 ? name : name + std::to_string(i);
+    for (int again = 2; !taken.insert(own).second; ++again) own = fmt::format("{}_{}", name, again);
+    simulation.sensors.push_back({own, model, {1}});
+  }
+}
+
+ArraySimulation from_models(const SimulateVerb& verb) {
+  ArraySimulation simulation;
+  for (const std::string& path : verb.sources) {
+    const SensorModel model = read_model_file(path);
+    if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
+    if (!verb.rate_hz && model.rate_hz != simulation.rate_hz)
+      refuse(
+          path,
+          fmt::format(
+              "is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz),
+          "",
+          "give one --rate for all");
+    add_devices(simulation, model, sensor_name(model, path), verb.devices);
+  }
+  simulation.samples = 0;
+  return simulation;
+}
+
+// What the command line says on top of models or scene.
+void apply_options(const SimulateVerb& verb, ArraySimulation& simulation) {
+  if (verb.rate_hz) simulation.rate_hz = *verb.rate_hz;
+  if (!(simulation.rate_hz > 0))
+    refuse(verb.sources[0], "states no sampling rate", "", "give --rate");
+  if (verb.samples > 0) simulation.samples = verb.samples;
+  if (verb.duration_s)
+    simulation.samples =
+        static_cast<std::uint64_t>(std::llround(*verb.duration_s * simulation.rate_hz));
+  if (simulation.samples == 0)
+    refuse("simulate", "for how long?", "", "give --duration or --samples");
+  if (verb.seed_given) simulation.seed = verb.seed;
+  if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
+  if (!verb.truth.empty()) simulation.truth = {signal_from_words(verb.truth, "--truth")};
+  if (!verb.temperature.empty())
+    simulation.temperature = signal_from_words(verb.temperature, "--temperature");
+  for (const std::string& fault : verb.faults)
+    simulation.faults.push_back(fault_from_words(fault, simulation));
+}
+
+std::string output_unit(const SensorModel& model) {
+  return model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
+}
+
+LogInfo log_info(const ArraySimulation& simulation, const std::string& path, bool with_truth) {
+  LogInfo info;
+  info.file = path;
+  info.samples = info.rows = simulation.samples;
+  info.time.rate_hz = simulation.rate_hz;
+  for (const SimulatedSensor& sensor : simulation.sensors)
+    info.channels.push_back({sensor.name, output_unit(sensor.model), false});
+  if (!with_truth) return info;
+  for (const std::string& name : simulation.truth_names)
+    info.channels.push_back(
+        {name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
+  if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
+  return info;
+}
+
+// The scene that replays the recording: its channels by name, the models inline, the truth as
+// reference.
+Scene replay_scene(const ArraySimulation& simulation,
+                   const LogInfo& info,
+                   const SimulateVerb& verb) {
+  Scene scene;
+  scene.file = verb.scene_path;
+  scene.name = fs::path(verb.output).stem().string();
+  scene.recording = verb.output;
+  const std::string format = format_to_write(verb.output, verb.writing);
+  if (format == "npy") {
+    scene.reading.rate_hz = simulation.rate_hz;
+    for (const Channel& channel : info.channels) {
+      scene.reading.names.push_back(channel.name);
+      scene.reading.units.push_back(channel.unit.empty() ? "1" : channel.unit);
+    }
+  } else if (format == "csv" && verb.no_time_column) {
+    scene.reading.rate_hz = simulation.rate_hz;
+    scene.reading.time_column = "none";
+  }
+  for (const SimulatedSensor& sensor : simulation.sensors)
+    scene.sensors.push_back({sensor.name, sensor.name, sensor.model, sensor.h});
+  if (!verb.no_truth)
+    scene.reference = SceneReference{simulation.truth_names, false, {}, {}, 0, false};
+  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults};
+  return scene;
+}
+
+void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
+  const std::string truth_clash = simulation.truth_names.empty() ? "" : simulation.truth_names[0];
+  if (verb.no_truth) return;
+  for (const SimulatedSensor& sensor : simulation.sensors)
+    if (simulation.temperature && sensor.name == "temperature")
+      refuse("simulate", "a sensor has the name of the temperature column", sensor.name);
+}
+
+void stream(Session& session,
+            const SimulateVerb& verb,
+            const ArraySimulation& simulation,
+            LogWriter& writer) {
+  ArraySimulator simulator(simulation, 0);
+  const std::size_t columns = simulation.sensors.size();
+  std::uint64_t done = 0;
+  for (auto block = simulator.next(kRows); !block.empty(); block = simulator.next(kRows)) {
+    session.terminal.update(static_cast<double>(done) / static_cast<double>(simulation.samples),
+                            "simulating");
+    writer.write(verb.no_truth ? block.first(columns) : block);
+    done += block[0].size();
+  }
+}
+
+std::string text_for_people(const ArraySimulation& s,
+                            const LogInfo& info,
+                            const std::vector<DeviceDraw>& draws,
+                            const std::vector<std::string>& files) {
+  std::string text = fmt::format("{}: {} samples of {} channel{} at {} Hz, {} s, seed {}\n",
+                                 printable(info.file),
+                                 s.samples,
+                                 info.channels.size(),
+                                 info.channels.size() == 1 ? "" : "s",
+                                 significant(s.rate_hz, 6),
+                                 significant(static_cast<double>(s.samples) / s.rate_hz, 6),
+                                 s.seed);
+  for (std::size_t i = 0; i < s.sensors.size(); ++i) {
+    const SensorModel& m = s.sensors[i].model;
+    if (m.scale_factor.spread > 0 || m.bias.spread > 0)
+      text += fmt::format("  {}: drew scale factor {}, bias {} {}\n",
+                          printable(s.sensors[i].name),
+                          significant(draws[i].scale_factor, 6),
+                          significant(draws[i].bias, 6),
+                          printable(m.unit));
+  }
+  for (std::size_t i = 1; i < files.size(); ++i)
+    text += fmt::format("wrote {}\n", printable(files[i]));
+  return text;
+}
+
+void run_simulate(Session& session, SimulateVerb& verb) {
+  verb.writing.time_column = !verb.no_time_column;
+  verb.writing.big_endian = verb.endian == "big";
+  const bool scene_given = verb.sources.size() == 1 && is_scene(verb.sources[0]);
+  if (verb.scene_path.empty())
+    verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
+  for (const std::string& source : verb.sources)
+    for (const std::string& output : {verb.output, verb.scene_path})
+      refuse_same_file(source, output);
+  ArraySimulation simulation;
+  if (scene_given) {
+    const Scene scene = read_scene_file(verb.sources[0], {verb.allow_outside});
+    if (!scene.simulate)
+      refuse(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
+    if (verb.devices > 1) refuse("--devices", "the scene says how many devices there are (count)");
+    simulation = *scene.simulate;
+  } else {
+    simulation = from_models(verb);
+  }
+  apply_options(verb, simulation);
+  check(simulation);
+  check_names(simulation, verb);
+  const LogInfo info = log_info(simulation, verb.output, !verb.no_truth);
+  const auto writer = open_log_writer(verb.output, info, verb.writing);
+  std::optional<WholeFile> scene_file;
+  if (!verb.no_scene) {
+    scene_file.emplace(verb.scene_path, verb.writing.overwrite);
+    scene_file->write(scene_yaml(replay_scene(simulation, info, verb)));
+  }
+  stream(session, verb, simulation, *writer);
+  session.terminal.clear();
+  session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
+  writer->finish();
+  std::vector<std::string> files = writer->files();
+  if (scene_file) {
+    scene_file->commit();
+    files.push_back(verb.scene_path);
+  }
+  session.terminal.clear();
+  const std::vector<DeviceDraw> draws = ArraySimulator(simulation).draws();
+  if (!verb.json) return print(text_for_people(simulation, info, draws, files));
+  Json document = document_head(session, "simulation", {});
+  document["samples"] = simulation.samples;
+  document["rate_hz"] = simulation.rate_hz;
+  document["seed"] = simulation.seed;
+  document["output"] = Json::array();
+  for (const std::string& file : files) document["output"].push_back(printable(file));
+  document["sensors"] = Json::array();
+  for (std::size_t i = 0; i < simulation.sensors.size(); ++i)
+    document["sensors"].push_back({{"name", printable(simulation.sensors[i].name)},
+                                   {"unit", printable(output_unit(simulation.sensors[i].model))},
+                                   {"scale_factor", draws[i].scale_factor},
+                                   {"bias", draws[i].bias}});
+  document["truth"] = simulation.truth_names;
+  print(dump_json(document));
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Session& session) {
+  const auto verb = std::make_shared<SimulateVerb>();
+  CLI::App* sub = add_verb(app,
+                           session,
+                           "simulate",
+                           "A recording with known truth, from sensor models or a scene",
+                           [&session, verb] { run_simulate(session, *verb); });
+  sub->add_option("SOURCE",
+                  verb->sources,
+                  "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml)")
+      ->required()
+      ->type_name("MODEL…|SCENE");
+  sub->add_option("-o,--output",
+                  verb->output,
+                  "log to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+      ->required()
+      ->type_name("LOG");
+  add_duration(*sub, "--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
+  add_count(*sub, "--samples", verb->samples, "length in samples", 1);
+  add_rate(*sub, "--rate", verb->rate_hz, "sampling rate (default: the model's)");
+  sub->add_option_function<std::string>(
+         "--seed",
+         [verb](const std::string& text) {
+           verb->seed = parse_count(text);
+           verb->seed_given = true;
+         },
+         "seed of all random numbers (default: 1); the same seed gives the same samples")
+      ->type_name("N");
+  add_count(
+      *sub,
+      "--devices",
+      verb->devices,
+      "devices made from each model, each with its own scale factor, bias and noise (default: 1)",
+      1,
+      kMostDevices);
+  sub->add_option("--truth",
+                  verb->truth,
+                  "true input: KIND,key=value,… with KIND zero, constant, sine, chirp, noise, "
+                  "uniform, random_walk, ramp, recording… (default: zero)")
+      ->type_name("SIGNAL");
+  sub->add_option("--temperature",
+                  verb->temperature,
+                  "temperature in degC, a signal as well (default: the models' reference)")
+      ->type_name("SIGNAL");
+  sub->add_option("--fault",
+                  verb->faults,
+                  "SENSOR:KIND[=VALUE]@FROM..TO in seconds; KIND scale, bias, ramp, stuck, "
+                  "saturation, noise, dropout")
+      ->type_name("FAULT");
+  add_count(*sub,
+            "--oversampling",
+            verb->oversampling,
+            "signals and noise are made so many times faster than the samples (default: 1)",
+            1,
+            1024);
+  sub->add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
+  sub->add_option("--scene",
+                  verb->scene_path,
+                  "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+      ->type_name("FILE");
+  sub->add_flag("--no-scene", verb->no_scene, "write no scene");
+  add_choice(*sub,
+             "--as",
+             verb->writing.format,
+             {"auto", "csv", "npy", "raw"},
+             "format to write (default: auto, by the suffix)");
+  add_choice(*sub,
+             "--dtype",
+             verb->writing.dtype,
+             {"f64", "f32"},
+             "npy, raw: type of the numbers (default: f64)");
+  add_choice(*sub,
+             "--order",
+             verb->writing.order,
+             {"interleaved", "planar"},
+             "npy, raw: row by row or channel by channel (default: interleaved)");
+  add_choice(*sub,
+             "--endian",
+             verb->endian,
+             {"little", "big"},
+             "npy, raw: order of the bytes (default: little)");
+  sub->add_flag("--no-time-column", verb->no_time_column, "csv: leave out the first column t[s]");
+  sub->add_flag(
+      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
+  sub->add_flag("--force", verb->writing.overwrite, "overwrite existing files");
+  sub->add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+}
+
+}  // namespace sensorchar
