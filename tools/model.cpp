@@ -87,7 +87,8 @@ std::string in_other_words(const Coefficient& c, std::size_t t, const std::strin
                         c.value ? "" : "≤ ",
                         significant(habit.factor * c.value.value_or(c.upper95.value_or(0)), 4),
                         habit.symbol,
-                        habit.name.find("one-sided") != std::string::npos   ? " one-sided"
+                        habit.name.find("floor") != std::string::npos       ? " floor"
+                        : habit.name.find("one-sided") != std::string::npos ? " one-sided"
                         : habit.name.find("two-sided") != std::string::npos ? " two-sided"
                                                                             : "");
   return text;

@@ -18,18 +18,27 @@ struct Writer {
   // A vector, one number for each axis; one number in old files.
   Json numbers(const char* key, const SensorTriad& triad, Term term) {
     const Figure largest = positive_figure(triad, term, options, "Basalt", key);
-    if (options.older) return one(key, largest);
-    Json list = Json::array();
-    for (Figure figure : axis_figures(triad, term, Absent::limit, options)) {
-      // An axis of which nothing is known gets what the others have at most.
-      if (!figure.value) figure = largest;
-      list.push_back(one(key, figure));
+    if (options.older) {
+      comment(key, largest.origin);
+      return number(key, largest);
     }
+    Json list = Json::array();
+    std::array<std::string, 3> origins;
+    const auto figures = axis_figures(triad, term, Absent::limit, options);
+    for (std::size_t i = 0; i < 3; ++i) {
+      // An axis of which nothing is known gets what the others have at most.
+      list.push_back(number(key, figures[i].value ? figures[i] : largest));
+      origins[i] = figures[i].origin + (figures[i].value ? "" : ": the largest of the others");
+    }
+    comment(key, axis_origins(origins));
     return list;
   }
 
-  double one(const char* key, const Figure& figure) {
-    if (!figure.origin.empty()) comments[key] = figure.origin;
+  void comment(const char* key, const std::string& origin) {
+    if (!origin.empty()) comments[key] = origin;
+  }
+
+  double number(const char* key, const Figure& figure) {
     if (figure.limit) note_figure(out.notes, key, figure);
     return *figure.value;
   }

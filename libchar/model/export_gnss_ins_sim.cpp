@@ -17,6 +17,10 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
+std::string with_unit(const char* unit, const std::string& origin) {
+  return origin.empty() ? unit : fmt::format("{}; {}", unit, origin);
+}
+
 struct Writer {
   const ExportOptions& options;
   Export& out;
@@ -28,27 +32,22 @@ struct Writer {
         "    '{}': np.array({}),  # {}\n", key, export_list(values), comment_text(comment));
   }
 
-  std::string white(const std::string& key,
-                    const SensorTriad& triad,
-                    double factor,
-                    const char* unit) {
+  void white(const std::string& key, const SensorTriad& triad, double factor, const char* unit) {
     const auto figures = axis_figures(triad, Term::white, Absent::zero, options);
     std::array<double, 3> values{};
-    std::string comment = unit;
+    std::array<std::string, 3> origins;
     for (std::size_t i = 0; i < 3; ++i) {
       values[i] = value_or_zero(figures[i]) * factor;
       note_figure(out.notes, key, figures[i]);
-      if (!figures[i].origin.empty() && comment.find(figures[i].origin) == std::string::npos)
-        comment += "; " + figures[i].origin;
+      origins[i] = figures[i].origin;
     }
-    line(key, values, comment);
-    return comment;
+    line(key, values, with_unit(unit, axis_origins(origins)));
   }
 
   void bias(const std::string& name, const SensorTriad& triad, double factor, const char* unit) {
     const bool one = options.axes != AxisChoice::automatic;
     std::array<double, 3> constant{}, stability{}, correlation{};
-    std::string comment = unit;
+    std::array<std::string, 3> origins;
     for (std::size_t i = 0; i < 3; ++i) {
       const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
       const GaussMarkov process =
@@ -56,13 +55,13 @@ struct Writer {
       constant[i] = placed.model->bias.value * placed.to_si * factor;
       stability[i] = process.steady_sd * factor;
       correlation[i] = process.correlation_s;
-      if (comment.find(process.origin) == std::string::npos) comment += "; " + process.origin;
+      origins[i] = process.origin;
       if (process.driving == 0)
         out.notes.push_back(
             fmt::format("{}_b_stability {}: 0 ({})", name, "xyz"[i], process.origin));
     }
     line(name + "_b", constant, fmt::format("{}, constant; 0 unless stated", unit));
-    line(name + "_b_stability", stability, comment);
+    line(name + "_b_stability", stability, with_unit(unit, axis_origins(origins)));
     line(name + "_b_corr", correlation, "s; finite: with inf the bias would be white noise");
   }
 };

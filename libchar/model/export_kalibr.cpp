@@ -10,14 +10,13 @@ namespace libchar {
 
 Export export_kalibr(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  check_topic(options.topic);
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
   out.text = commented(head_lines(group,
                                   options,
                                   "density = white_noise, walk = random_walk (roots of two-sided, "
                                   "continuous densities; Kalibr makes them discrete itself)"),
                        "# ");
-  out.text += "rostopic: " + options.topic + "\n";
+  out.text += "rostopic: " + topic_scalar(options.topic) + "\n";
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
   out.text += density_lines(f);
   return out;

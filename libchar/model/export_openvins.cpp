@@ -25,7 +25,6 @@ std::string matrix(const char* key, int size, bool identity, const char* comment
 
 Export export_openvins(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  check_topic(options.topic);
   const ImuFigures f = imu_figures(group, options, "OpenVINS", out.notes);
   out.text = "%YAML:1.0\n";
   out.text += commented(head_lines(group,
@@ -36,7 +35,7 @@ Export export_openvins(const SensorGroup& group, const ExportOptions& options) {
   out.text += "imu0:\n";
   out.text += matrix("T_i_b", 4, true, "");
   out.text += density_lines(f, "  ");
-  out.text += "  rostopic: " + options.topic + "\n  time_offset: 0.0\n";
+  out.text += "  rostopic: " + topic_scalar(options.topic) + "\n  time_offset: 0.0\n";
   out.text += "  " + yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
   out.text += "  model: \"kalibr\"\n";
   out.text +=

@@ -27,22 +27,23 @@ std::string covariance(const char* key,
   const double rate = rate_of(*triad, out.notes);
   const Figure largest = positive_figure(*triad, Term::white, options, "ROS", key);
   std::array<double, 3> variance{};
-  std::string comment;
+  std::array<std::string, 3> origins;
   const auto figures = axis_figures(*triad, Term::white, Absent::limit, options);
   for (std::size_t i = 0; i < 3; ++i) {
     const Figure& figure = figures[i].value ? figures[i] : largest;
     variance[i] = *figure.value * *figure.value * rate;
     if (figure.limit) note_figure(out.notes, key, figure);
-    if (!figure.origin.empty() && comment.find(figure.origin) == std::string::npos)
-      comment += "; " + figure.origin;
+    origins[i] = figure.origin;
   }
-  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}, at {} Hz{}\n",
+  const std::string comment = axis_origins(origins);
+  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}, at {} Hz{}{}\n",
                      key,
                      export_number(variance[0]),
                      export_number(variance[1]),
                      export_number(variance[2]),
                      unit,
                      export_number(rate),
+                     comment.empty() ? "" : "; ",
                      comment);
 }
 

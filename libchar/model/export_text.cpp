@@ -87,12 +87,18 @@ std::vector<std::string> head_lines(const SensorGroup& group,
                                     std::string_view formula) {
   std::vector<std::string> lines = {fmt::format("sensorchar {}", version())};
   for (const Source& source : sources(group))
-    lines.push_back("from " + comment_text(said(source, group)));
+    lines.push_back("source: " + comment_text(said(source, group)));
   std::string channels;
   for (const SensorModel* m : group.all)
     channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
   lines.push_back("channels: " + comment_text(channels));
   lines.push_back(fmt::format("formula: {}", formula));
+  if (std::any_of(group.all.begin(), group.all.end(), [](const SensorModel* m) {
+        return m->bandwidth_hz && *m->bandwidth_hz <= m->rate_hz / 2;
+      }))
+    lines.emplace_back(
+        "the low-pass of the sensor is not part of this file: densities are kept, single samples "
+        "scatter less");
   const std::string axes = axes_said(options.axes);
   if (!axes.empty()) lines.push_back(axes);
   if (options.inflate != 1)
@@ -142,6 +148,15 @@ std::string density_lines(const ImuFigures& f, std::string_view indent) {
   return out;
 }
 
+std::string axis_origins(const std::array<std::string, 3>& origins) {
+  if (origins[0] == origins[1] && origins[1] == origins[2]) return origins[0];
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!origins[i].empty())
+      out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
+  return out;
+}
+
 void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure) {
   if (figure.limit)
     notes.push_back(
@@ -152,7 +167,7 @@ void note_figure(std::vector<std::string>& notes, std::string_view key, const Fi
     notes.push_back(fmt::format("{}: {}", key, figure.origin));
 }
 
-void check_topic(const std::string& topic) {
+std::string topic_scalar(const std::string& topic) {
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
   };
@@ -165,6 +180,8 @@ void check_topic(const std::string& topic) {
                  "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
                  topic,
                  "such as /imu0"});
+  // "~" and "on" would be no texts.
+  return topic[0] == '/' ? topic : '"' + topic + '"';
 }
 
 }  // namespace libchar

@@ -25,8 +25,8 @@ double value_or_zero(const Figure& figure);
 /// (C++).
 std::string comment_text(std::string_view text);
 
-/// "sensorchar VERSION", "from …, sha256 …", channels, axes, inflation, `formula`: one line each,
-/// without comment signs.
+/// "sensorchar VERSION", "source: FILE sha256:…", channels, axes, inflation, `formula`: one line
+/// each, without comment signs.
 std::vector<std::string> head_lines(const SensorGroup& group,
                                     const ExportOptions& options,
                                     std::string_view formula);
@@ -46,10 +46,14 @@ std::string yaml_line(std::string_view key,
 /// The four keys that Kalibr, EuRoC files and OpenVINS share, each line behind `indent`.
 std::string density_lines(const ImuFigures& figures, std::string_view indent = "");
 
+/// What has to be said of three axes: once if it is the same, else axis by axis.
+std::string axis_origins(const std::array<std::string, 3>& origins);
+
 /// Puts down what was replaced or left out of `figure` under its key.
 void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure);
 
-/// A ROS topic: letters, digits, '_', '/', '~', not starting with a digit. Throws Error(usage).
-void check_topic(const std::string& topic);
+/// The topic as a YAML scalar that every reader takes for text. Throws Error(usage) unless it is
+/// made of letters, digits, '_', '/', '~' and does not start with a digit.
+std::string topic_scalar(const std::string& topic);
 
 }  // namespace libchar

@@ -170,6 +170,19 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
     if (placed) leave(*placed->model);
 }
 
+// Behind a low-pass the samples scatter less than Q sqrt(f), and neighbours are correlated.
+void note_bandwidth(const SensorGroup& group, Export& out) {
+  for (const SensorModel* m : group.all) {
+    if (!m->bandwidth_hz || *m->bandwidth_hz > m->rate_hz / 2) continue;
+    out.notes.push_back(
+        fmt::format("{} has a low-pass at {} Hz, which the file cannot express: its densities are "
+                    "kept, so single "
+                    "samples scatter less than those of a simulation with them",
+                    printable(m->channel, 40),
+                    significant(*m->bandwidth_hz, 3)));
+  }
+}
+
 }  // namespace
 
 std::string needs_text(ExportNeeds needs) {
@@ -206,6 +219,7 @@ Export export_models(const ExportTarget& target,
   if (options.inflate != 1 && target.name != "json")
     out.notes.push_back(
         fmt::format("every noise number is multiplied by {}", shortest(options.inflate)));
+  if (target.name != "json") note_bandwidth(group, out);
   note_left_out(target, group, out);
   return out;
 }

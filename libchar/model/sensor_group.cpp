@@ -171,28 +171,26 @@ SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOver
 
 void require_axes(const SensorTriad& triad, std::optional<std::size_t> only) {
   std::string missing;
-  const SensorModel* present = nullptr;
-  std::size_t place = 0;
+  std::vector<std::size_t> present;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (triad.axis[i]) {
-      if (present == nullptr || only == i) place = i;
-      present = triad.axis[place]->model;
-    } else if (!only || *only == i) {
+    if (triad.axis[i])
+      present.push_back(i);
+    else if (!only || *only == i)
       missing += fmt::format("{}{}", missing.empty() ? "" : " and ", kAxes[i]);
-    }
   }
   if (missing.empty()) return;
-  throw Error(
-      {ErrorKind::input,
-       "E0566",
-       "",
-       fmt::format("the {} has no model for {}", triad.kind, missing),
-       "",
-       fmt::format("give its file, or take one axis alone: --axes {}, or let one model stand "
-                   "for all three: --axis {}={}",
-                   kAxes[place],
-                   printable(present == nullptr ? "" : present->channel, 40),
-                   triad.kind[0])});
+  std::string hint =
+      fmt::format("give its file, or take one axis alone: --axes {}", kAxes[present[0]]);
+  if (present.size() == 1)
+    hint += fmt::format(", or let it stand for all three: --axis {}={}",
+                        printable(triad.axis[present[0]]->model->channel, 40),
+                        triad.kind[0]);
+  throw Error({ErrorKind::input,
+               "E0566",
+               "",
+               fmt::format("the {} has no model for {}", triad.kind, missing),
+               "",
+               hint});
 }
 
 }  // namespace libchar
