@@ -41,6 +41,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// locale), else nothing.
 std::optional<double> parse_double(std::string_view text);
 
+/// Capitals A to Z made small, everything else as it is.
+std::string ascii_lower(std::string_view text);
+
 /// Position of the first byte that is not valid UTF-8, or npos.
 std::size_t first_invalid_utf8(std::string_view text);
 
