@@ -22,7 +22,8 @@ std::string shortest(double value);
 /// "1e-05" for a string.
 std::string shortest_yaml(double value);
 
-/// A double-quoted YAML scalar: quotes and backslashes escaped, what is not printable made visible.
+/// A double-quoted YAML scalar that reads back to the same text: quotes, backslashes and what is not
+/// printable are escaped. Bytes that are no UTF-8 cannot stand in YAML: they become \\xHH to read.
 std::string quoted_yaml(std::string_view text);
 
 /// `digits` significant digits for people ("0.0123", "1.23e-05").
