@@ -27,6 +27,10 @@ const std::vector<std::string> kKeys = {"format",
                                         "simulated",
                                         "algorithms"};
 
+const std::string kNeedsModel = "a simulated sensor needs a model";
+const std::string kModelHint =
+    "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor";
+
 // Without the mistake of taking a letter's case for a difference.
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
@@ -46,7 +50,7 @@ class SceneReader {
     if (top_.has("name")) check_text(top_.require("name"), "name");
     if (top_.has("tool")) top_.map("tool", {"name", "version"});
     if (top_.has("recording") == top_.has("simulate"))
-      refuse_scene("E0565",
+      refuse_scene("E0735",
                    top_,
                    top_.has("recording") ? "simulate" : "recording",
                    "a scene has either a recording or a simulation",
@@ -89,7 +93,7 @@ class SceneReader {
   // Names go into logs, reports and terminals.
   void check_text(const Document& node, const std::string& path) {
     if (node.text.find('\0') != std::string::npos)
-      refuse("E0567", node, path, "a name holds a zero byte");
+      refuse("E0737", node, path, "a name holds a zero byte");
     if (printable(node.text) != node.text)
       scene_.warnings.add("control_characters",
                           "names hold characters that cannot be printed; they are shown escaped",
@@ -98,7 +102,7 @@ class SceneReader {
 
   void sensors() {
     const auto& list = top_.list("sensors");
-    if (list.empty()) refuse_scene("E0566", top_, "sensors", "expected at least one sensor");
+    if (list.empty()) refuse_scene("E0736", top_, "sensors", "expected at least one sensor");
     if (list.size() > kMostSensors) refuse_number(list.size());
     for (std::size_t i = 0; i < list.size(); ++i) sensor(list[i], fmt::format("sensors[{}]", i));
     check_names();
@@ -106,7 +110,7 @@ class SceneReader {
 
   [[noreturn]] void refuse_number(std::uint64_t number) const {
     refuse_scene(
-        "E0566",
+        "E0736",
         top_,
         "sensors",
         fmt::format("{} sensors are more than the {} that a scene may have", number, kMostSensors));
@@ -115,6 +119,7 @@ class SceneReader {
   void sensor(const Document& node, const std::string& path) {
     SceneSensor sensor;
     if (is_scalar(node)) {
+      if (scene_.simulate) refuse("E0743", node, path, kNeedsModel, kModelHint);
       sensor.name = sensor.channel = node.text;
       return add(sensor, {&node, path});
     }
@@ -125,16 +130,12 @@ class SceneReader {
     const Place place{&at.require(named), at.path_of(named)};
     if (at.has("channel")) check_text(at.require("channel"), at.path_of("channel"));
     if (at.has("h")) sensor.h = at.numbers("h");
-    if (sensor.h.empty()) refuse_scene("E0571", at, "h", "expected one weight a true input");
+    if (sensor.h.empty()) refuse_scene("E0741", at, "h", "expected one weight a true input");
     if (at.has("model")) sensor.model = model(at);
     if (scene_.simulate && at.has("channel"))
       at.refuse("channel", "a simulated sensor's channel has its name");
     if (scene_.simulate && !at.has("model"))
-      refuse_scene("E0573",
-                   at,
-                   "model",
-                   "a simulated sensor needs a model",
-                   "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor");
+      refuse_scene("E0743", at, "model", kNeedsModel, kModelHint);
     if (at.has("count")) return devices(sensor, at, place);
     add(sensor, place);
   }
@@ -156,7 +157,7 @@ class SceneReader {
   void add(const SceneSensor& sensor, const Place& place) {
     if (scene_.sensors.size() >= kMostSensors) refuse_number(scene_.sensors.size() + 1);
     if (place.node->kind == Document::Kind::null || sensor.name.empty())
-      refuse("E0567", *place.node, place.path, "a sensor needs a name");
+      refuse("E0737", *place.node, place.path, "a sensor needs a name");
     check_text(*place.node, place.path);
     places_.push_back(place);
     scene_.sensors.push_back(sensor);
@@ -178,7 +179,7 @@ class SceneReader {
     for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
       const std::string& name = scene_.sensors[i].name;
       if (!index_.emplace(name, i).second)
-        refuse("E0567",
+        refuse("E0737",
                *places_[i].node,
                places_[i].path,
                fmt::format("two sensors have the name {}", printable(name, 40)));
@@ -203,13 +204,13 @@ class SceneReader {
     const char* key = map ? "channels" : "reference";
     reference.channels = at.texts(key);
     if (reference.channels.empty())
-      refuse_scene("E0566", at, key, "expected the name of a channel");
+      refuse_scene("E0736", at, key, "expected the name of a channel");
     const Document& names = at.require(key);
     for (const Document& name : is_scalar(names) ? std::vector<Document>{names} : names.list)
       check_text(name, at.path_of(key));
     if (std::set<std::string>(reference.channels.begin(), reference.channels.end()).size() !=
         reference.channels.size())
-      refuse_scene("E0567", at, key, "a channel stands twice");
+      refuse_scene("E0737", at, key, "a channel stands twice");
     if (map) reference_options(at, reference);
     if (scene_.simulate)
       for (const std::string& channel : reference.channels)
@@ -243,7 +244,7 @@ class SceneReader {
       const std::vector<double>& h = scene_.sensors[i].h;
       const std::string name = printable(scene_.sensors[i].name, 40);
       if (h.size() != inputs)
-        refuse("E0571",
+        refuse("E0741",
                *places_[i].node,
                places_[i].path,
                fmt::format("the row h of sensor {} has {} weight{}, and there {} {} true input{}",
@@ -256,7 +257,7 @@ class SceneReader {
                "h: [one weight a truth signal or reference channel]");
       const bool blind = std::all_of(h.begin(), h.end(), [](double w) { return w == 0; });
       if (blind && !scene_.simulate)
-        refuse("E0571",
+        refuse("E0741",
                *places_[i].node,
                places_[i].path,
                fmt::format("sensor {} sees no input: its row h is zero", name));
@@ -268,15 +269,15 @@ class SceneReader {
     const auto& ends = top_.list(key);
     TimeWindow window;
     const auto number = [&](const Document& node) {
-      if (node.kind != Document::Kind::number) refuse("E0570", node, key, "expected a number");
+      if (node.kind != Document::Kind::number) refuse("E0740", node, key, "expected a number");
       return node.number;
     };
     if (ends.size() != 2)
-      refuse_scene("E0570", top_, key, "expected [from, to] in seconds, or [from, end]");
+      refuse_scene("E0740", top_, key, "expected [from, to] in seconds, or [from, end]");
     window.from_s = number(ends[0]);
     if (ends[1].text != "end") window.to_s = number(ends[1]);
     if (window.from_s < 0 || !(window.from_s < window.to_s))
-      refuse_scene("E0570", top_, key, "expected 0 <= from < to");
+      refuse_scene("E0740", top_, key, "expected 0 <= from < to");
     return window;
   }
 
@@ -297,7 +298,7 @@ class SceneReader {
     fault.kind = fault_kind(at.word("kind", fault_kinds()));
     const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
     if (valueless && at.has("value"))
-      refuse_scene("E0569",
+      refuse_scene("E0739",
                    at,
                    "value",
                    fmt::format("a fault of kind {} has no value", name_of(fault.kind)));
@@ -306,7 +307,7 @@ class SceneReader {
     fault.from_s = at.number_or("from_s", 0, kNotNegative);
     if (at.has("to_s")) fault.to_s = at.number("to_s", kPositive);
     if (!(fault.from_s < fault.to_s))
-      refuse_scene("E0570", at, "to_s", "a fault lasts from a time to a later one");
+      refuse_scene("E0740", at, "to_s", "a fault lasts from a time to a later one");
     return fault;
   }
 
@@ -321,7 +322,7 @@ class SceneReader {
 
   void simulated() {
     if (scene_.simulate)
-      refuse_scene("E0565", top_, "simulated", "tells what a recording holds; this scene has none");
+      refuse_scene("E0735", top_, "simulated", "tells what a recording holds; this scene has none");
     const MapReader at = top_.map("simulated", {"seed", "faults"});
     SimulatedFrom from;
     from.seed = at.count_or("seed", 1);
@@ -332,7 +333,7 @@ class SceneReader {
   void algorithms() {
     const auto& list = top_.list("algorithms");
     if (list.empty())
-      refuse_scene("E0566",
+      refuse_scene("E0736",
                    top_,
                    "algorithms",
                    "expected at least one algorithm",
@@ -349,14 +350,14 @@ class SceneReader {
     const DocumentEntry* named = node.find("name");
     const Document& name = named != nullptr ? named->value : node;
     if (!is_scalar(name) || name.kind == Document::Kind::null || name.text.empty())
-      refuse("E0567", name, path, "an algorithm has a name", "{name: minque, gamma: 0.999}");
+      refuse("E0737", name, path, "an algorithm has a name", "{name: minque, gamma: 0.999}");
     check_text(name, path);
     algorithm.name = name.text;
     for (const DocumentEntry& entry : node.map) {
       if (entry.key == "name") continue;
       const std::string key = fmt::format("{}.{}", path, printable(entry.key, 40));
       if (entry.value.kind != Document::Kind::number)
-        refuse("E0574", entry.value, key, "an option of an algorithm is a number");
+        refuse("E0744", entry.value, key, "an option of an algorithm is a number");
       algorithm.options.emplace_back(entry.key, entry.value.number);
     }
     return algorithm;
@@ -415,7 +416,7 @@ std::size_t index_of_name(const MapReader& at,
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const auto near = nearest(name, names);
   refuse_scene(
-      "E0568",
+      "E0738",
       at,
       key,
       fmt::format("{} is not {}", printable(name, 40), what),

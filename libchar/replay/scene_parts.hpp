@@ -21,7 +21,7 @@ namespace libchar {
 /// A scalar: a name, a path, a number.
 bool is_scalar(const Document& node);
 
-/// The word at `key`, one of `names`; else E0568 with the nearest of them.
+/// The word at `key`, one of `names`; else E0738 with the nearest of them.
 std::size_t index_of_name(const MapReader& at,
                           std::string_view key,
                           const std::string& name,

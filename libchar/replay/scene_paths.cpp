@@ -60,14 +60,14 @@ std::string hint_for(const std::string& named, const fs::path& folder) {
 }
 
 void check_text(const Named& named) {
-  if (named.text.empty()) named.refuse("E0560", "the name of a file is empty");
+  if (named.text.empty()) named.refuse("E0730", "the name of a file is empty");
   if (named.text.find('\0') != std::string::npos)
-    named.refuse("E0560", "the name of a file holds a zero byte");
+    named.refuse("E0730", "the name of a file holds a zero byte");
   const fs::path path(named.text);
   const bool long_part = std::any_of(
       path.begin(), path.end(), [](const fs::path& p) { return p.native().size() > 255; });
   if (named.text.size() > 4095 || long_part)
-    named.refuse("E0560",
+    named.refuse("E0730",
                  fmt::format("a name of {} bytes is too long: 4095 are allowed, 255 between two "
                              "slashes",
                              named.text.size()));
@@ -78,15 +78,15 @@ void check_kind(const Named& named, const fs::path& whole) {
   std::error_code problem;
   const fs::file_status status = fs::status(whole, problem);
   if (status.type() == fs::file_type::not_found)
-    named.refuse("E0562",
+    named.refuse("E0732",
                  fmt::format("there is no file {}", shown),
                  hint_for(named.text, whole.parent_path()));
   if (problem)
-    named.refuse("E0562", fmt::format("cannot look at {}: {}", shown, problem.message()));
+    named.refuse("E0732", fmt::format("cannot look at {}: {}", shown, problem.message()));
   if (fs::is_directory(status))
-    named.refuse("E0563", fmt::format("{} is a folder, a file was expected", shown));
+    named.refuse("E0733", fmt::format("{} is a folder, a file was expected", shown));
   if (!fs::is_regular_file(status))
-    named.refuse("E0563",
+    named.refuse("E0733",
                  fmt::format("{} is no regular file (a pipe, a device, a socket)", shown),
                  "save its data in a file");
 }
@@ -101,9 +101,9 @@ std::string resolve_scene_file(const std::string& text,
   check_text(named);
   const fs::path path(text), root = folder_of(folder.scene);
   if (!folder.allow_outside && path.is_absolute())
-    named.refuse("E0561", "an absolute path leaves the scene's folder", kOutside);
+    named.refuse("E0731", "an absolute path leaves the scene's folder", kOutside);
   if (!folder.allow_outside && leaves(path.lexically_normal()))
-    named.refuse("E0561",
+    named.refuse("E0731",
                  fmt::format("{} lies outside the scene's folder",
                              printable((root / path).lexically_normal().string())),
                  kOutside);
@@ -114,21 +114,21 @@ std::string resolve_scene_file(const std::string& text,
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
   if (problem || root_problem)
-    named.refuse("E0562",
+    named.refuse("E0732",
                  fmt::format("cannot look at {}: {}",
                              printable(whole.string()),
                              (problem ? problem : root_problem).message()));
   if (!folder.allow_outside && !is_beneath(real, real_root))
     named.refuse(
-        "E0561",
+        "E0731",
         fmt::format("a link leads out of the scene's folder, to {}", printable(real.string())),
         kOutside);
   // Some of what the kernel shows there calls itself a regular file and has no end.
   for (const char* system : {"/proc", "/sys"})
     if (is_beneath(real, system))
-      named.refuse("E0563", fmt::format("{} is no recorded file", printable(real.string())));
+      named.refuse("E0733", fmt::format("{} is no recorded file", printable(real.string())));
   if (fs::equivalent(whole, folder.scene, problem))
-    named.refuse("E0564", "the scene names itself as data");
+    named.refuse("E0734", "the scene names itself as data");
   return whole.string();
 }
 
@@ -141,7 +141,7 @@ std::string path_for_scene(const std::string& file, const std::string& scene) {
       relative.empty() || leaves(relative) ? target.string() : relative.string();
   if (first_invalid_utf8(name) != std::string::npos || name.find('\0') != std::string::npos)
     throw Error({ErrorKind::output,
-                 "E0575",
+                 "E0745",
                  scene,
                  "a file whose name is no UTF-8 cannot be named in a scene",
                  name,
@@ -164,7 +164,7 @@ void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& ou
       twice = twice || (&other < &output && fs::equivalent(other, output, problem) && !problem);
     if (twice)
       throw Error({ErrorKind::output,
-                   "E0576",
+                   "E0746",
                    output,
                    "two outputs are one file",
                    "",

@@ -40,7 +40,7 @@ void refuse_keys_of_other_kinds(const Document& node,
     const std::vector<std::string>& own = signal_keys(kind);
     throw Error(
         {ErrorKind::input,
-         "E0569",
+         "E0739",
          at.where(place),
          fmt::format("{}: is a key of {}, and this signal is of kind {}",
                      at.path_of(entry.key),
@@ -63,7 +63,7 @@ std::vector<std::pair<double, double>> points_of(const MapReader& at) {
       at.refuse("points", "the times must rise");
     points.emplace_back(node.list[0].number, node.list[1].number);
   }
-  if (points.empty()) refuse_scene("E0566", at, "points", "expected at least one [seconds, value]");
+  if (points.empty()) refuse_scene("E0736", at, "points", "expected at least one [seconds, value]");
   return points;
 }
 
@@ -76,7 +76,7 @@ std::size_t earlier_signal(const MapReader& at, const std::vector<std::string>& 
     if (of < earlier.size()) return static_cast<std::size_t>(of);
   }
   if (earlier.empty())
-    refuse_scene("E0568", at, "of", "is to name a signal before this one, and there is none");
+    refuse_scene("E0738", at, "of", "is to name a signal before this one, and there is none");
   return index_of_name(at, "of", at.text("of"), earlier, "a signal that stands before this one");
 }
 

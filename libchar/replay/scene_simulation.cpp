@@ -16,7 +16,7 @@ constexpr std::uint64_t kMostSamples = 1'000'000'000'000'000;  // every index ex
 
 std::uint64_t samples_of(const MapReader& at, double rate_hz) {
   if (at.has("samples") == at.has("duration_s"))
-    refuse_scene("E0565",
+    refuse_scene("E0735",
                  at,
                  at.has("samples") ? "samples" : "duration_s",
                  "a simulation has either duration_s or samples");
@@ -41,14 +41,14 @@ void read_samples(SignalSpec& spec,
   spec.file = scene_file_of(at, "file", folder, scene);
   Recording log = read_recording(spec.file, reading);
   if (log.samples.size() != 1)
-    refuse_scene("E0572",
+    refuse_scene("E0742",
                  at,
                  "file",
                  fmt::format("holds {} channels", log.samples.size()),
                  "name one: channel: NAME");
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
-    refuse_scene("E0572",
+    refuse_scene("E0742",
                  at,
                  "file",
                  fmt::format("is a recording at {} Hz, and the simulation runs at {} Hz",
@@ -56,7 +56,7 @@ void read_samples(SignalSpec& spec,
                              significant(simulation.rate_hz, 6)),
                  "give the simulation the rate of the recording");
   spec.samples = std::move(log.samples[0]);
-  if (spec.samples.empty()) refuse_scene("E0572", at, "file", "holds no sample");
+  if (spec.samples.empty()) refuse_scene("E0742", at, "file", "holds no sample");
   if (spec.samples.size() < simulation.samples)
     scene.warnings.add("recorded_signal_short",
                        "a recorded signal ends before the simulation; its last sample is held",
@@ -90,14 +90,14 @@ void add_truth(const MapReader& at,
   const Document& place = named == nullptr ? node : named->value;
   if (name.empty() || name.find('\0') != std::string::npos)
     throw Error({ErrorKind::input,
-                 "E0567",
+                 "E0737",
                  at.where(place),
                  fmt::format("{}.name: the name of a signal is empty or holds a zero byte", path),
                  "",
                  ""});
   if (std::find(s.truth_names.begin(), s.truth_names.end(), name) != s.truth_names.end())
     throw Error({ErrorKind::input,
-                 "E0567",
+                 "E0737",
                  at.where(place),
                  fmt::format("{}.name: two truth signals have one name", path),
                  name,
@@ -113,7 +113,7 @@ void read_truth(const MapReader& at, ArraySimulation& s, const SceneFolder& fold
   s.truth_names.clear();
   if (node.kind != Document::Kind::list)
     return add_truth(at, node, path, "truth", s, folder, scene);
-  if (node.list.empty()) refuse_scene("E0566", at, "truth", "expected at least one signal");
+  if (node.list.empty()) refuse_scene("E0736", at, "truth", "expected at least one signal");
   for (std::size_t j = 0; j < node.list.size(); ++j)
     add_truth(at,
               node.list[j],
@@ -178,7 +178,7 @@ std::string scene_recording_of(const MapReader& at,
   reading.from_s = map.maybe_number("from_s", kNotNegative);
   reading.to_s = map.maybe_number("to_s", kPositive);
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
-    refuse_scene("E0570", map, "to_s", "the recording is read from a time to a later one");
+    refuse_scene("E0740", map, "to_s", "the recording is read from a time to a later one");
   reading.overflow_as_missing = map.flag_or("overflow_as_missing", false);
   reading.skip_repeated_header = map.flag_or("skip_repeated_header", false);
   return scene_file_of(map, "file", folder, scene);

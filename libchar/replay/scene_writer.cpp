@@ -118,14 +118,30 @@ std::string simulation_block(const Scene& scene) {
   return out;
 }
 
-// The model file itself, its comment left out, indented under its key.
+// A line without the comment behind it; a # in a quoted text is none.
+std::string_view without_comment(std::string_view line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quoted && line[i] == '\\') {
+      ++i;
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && line[i] == '#') {
+      line = line.substr(0, i);
+    }
+  }
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
+
+// The model file itself, its comments left out (a scene of thousands of devices is read again),
+// indented under its key.
 std::string inline_model(const SensorModel& model, const std::string& indent) {
   const std::string text = model_yaml(model);
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    if (!line.empty() && line[0] != '#') out += indent + line + "\n";
+    const std::string_view line = without_comment(std::string_view(text).substr(at, end - at));
+    if (!line.empty()) out.append(indent).append(line).append("\n");
     at = end + 1;
   }
   return out;
