@@ -254,7 +254,7 @@ class SceneReader {
                            inputs == 1 ? "is" : "are",
                            inputs,
                            inputs == 1 ? "" : "s"),
-               "h: [one weight a truth signal or reference channel]");
+               "give h one weight a truth signal or reference channel");
       const bool blind = std::all_of(h.begin(), h.end(), [](double w) { return w == 0; });
       if (blind && !scene_.simulate)
         refuse("E0741",

@@ -259,11 +259,11 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   sensors("[]", "4:10: error E0736: sensors");
   sensors("a", "4:10: error E0541");
   sensors("[{h: 1}]", "4:11: error E0542: sensors[0].name is missing");
-  sensors("[a, {name: b, hh: 1}]", "4:22: error E0540: unknown key in sensors[1]");
-  sensors("[a, {name: b, h: [1, 2]}]", "4:22: error E0741: sensors[1].name");
-  sensors("[{name: a, h: []}]", "4:15: error E0741: sensors[0].h");
-  sensors("[{name: a, h: 0}]", "4:19: error E0741");
-  sensors("[{name: a, count: 2}]", "4:29: error E0545: sensors[0].count");
+  sensors("[a, {name: b, hh: 1}]", "4:24: error E0540: unknown key in sensors[1]");
+  sensors("[a, {name: b, h: [1, 2]}]", "4:21: error E0741: sensors[1].name");
+  sensors("[{name: a, h: []}]", "4:24: error E0741: sensors[0].h");
+  sensors("[{name: a, h: 0}]", "4:18: error E0741");
+  sensors("[{name: a, count: 2}]", "4:28: error E0545: sensors[0].count");
   sensors("[{name: \"\"}]", "4:18: error E0737");
   sensors("[{name: \"x\\0y\"}]", "4:18: error E0737");
   sensors("[a, ~]", "4:14: error E0737");
@@ -275,32 +275,32 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
                              inside + "}\n"),
                Catch::StartsWith("s.yaml:" + begin));
   };
-  simulated("samples: 0", "4:35: error E0545: simulate.samples");
-  simulated("samples: 1e3", "4:35: error E0541: simulate.samples");
-  simulated("samples: 18446744073709551615", "4:35: error E0545: simulate.samples: more than");
-  simulated("duration_s: 1e300", "4:38: error E0545");
+  simulated("samples: 0", "4:34: error E0545: simulate.samples");
+  simulated("samples: 1e3", "4:34: error E0541: simulate.samples");
+  simulated("samples: 18446744073709551615", "4:34: error E0545: simulate.samples: more than");
+  simulated("duration_s: 1e300", "4:37: error E0545");
   simulated("seed: 1", "4:11: error E0735: simulate.duration_s");
-  simulated("samples: 1, duration_s: 1", "4:35: error E0735");
-  simulated("samples: 9, oversampling: 0", "4:52: error E0545");
-  simulated("samples: 9, truth: []", "4:45: error E0736");
+  simulated("samples: 1, duration_s: 1", "4:34: error E0735");
+  simulated("samples: 9, oversampling: 0", "4:51: error E0545");
+  simulated("samples: 9, truth: []", "4:44: error E0736");
   simulated("samples: 9, truth: {kind: sin}",
-            "4:52: error E0544: simulate.truth.kind: expected one of");
-  simulated("samples: 9, truth: sin", "4:45: error E0544");
+            "4:51: error E0544: simulate.truth.kind: expected one of");
+  simulated("samples: 9, truth: sin", "4:44: error E0544");
   simulated("samples: 9, truth: {kind: constant, amplitude: 2}",
-            "4:62: error E0739: simulate.truth.amplitude: is a key of sine, chirp, uniform, "
+            "4:61: error E0739: simulate.truth.amplitude: is a key of sine, chirp, uniform, "
             "sine_of, cosine_of, and this signal is of kind constant; got \"amplitude\"; hint: "
             "constant reads value");
   simulated("samples: 9, truth: {kind: sine, amplitud: 2}",
-            "4:58: error E0540: unknown key in simulate.truth; got \"amplitud\"; hint: did you "
+            "4:57: error E0540: unknown key in simulate.truth; got \"amplitud\"; hint: did you "
             "mean amplitude?");
   simulated("samples: 9, truth: [{kind: derivative, of: truth2}, {kind: sine}]",
-            "4:69: error E0738: simulate.truth[0].of");
+            "4:68: error E0738: simulate.truth[0].of");
   simulated("samples: 9, truth: [{kind: sine, name: x}, {kind: sine_of, of: xx}]",
-            "4:90: error E0738: simulate.truth[1].of: xx is not a signal that stands before");
+            "4:88: error E0738: simulate.truth[1].of: xx is not a signal that stands before");
   simulated("samples: 9, truth: [{kind: sine, name: x}, {kind: zero, name: x}]",
-            "4:89: error E0737: simulate.truth[1].name");
-  simulated("samples: 9, truth: {kind: points, points: [[0, 1], [0, 2]]}", "4:68: error E0545");
-  simulated("samples: 9, truth: {kind: points, points: []}", "4:68: error E0736");
+            "4:87: error E0737: simulate.truth[1].name");
+  simulated("samples: 9, truth: {kind: points, points: [[0, 1], [0, 2]]}", "4:67: error E0545");
+  simulated("samples: 9, truth: {kind: points, points: []}", "4:67: error E0736");
   simulated("samples: 9, truth: {kind: zero, name: a}",
             "4:11: error E0554: two channels would be called a");
   CHECK_THAT(bench.refusal(kHead + "sensors: [a]\nsimulate: {rate_hz: 10, samples: 9}\n"),
