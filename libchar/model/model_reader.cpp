@@ -165,7 +165,7 @@ class ModelReader {
       c.value = top_.number(key, kNotNegative);
       const Conversion conversion = ::libchar::conversion(
           top_, key, t, std::nullopt, model_.unit, *c.value == 0 ? Density::two : density_, false);
-      apply(c, conversion);
+      apply(key, c, conversion);
       return c;
     }
     const MapReader at =
@@ -187,7 +187,9 @@ class ModelReader {
     std::optional<std::string> unit;
     if (at.has("unit")) unit = at.text("unit");
     const bool none = c.value.value_or(0) == 0 && c.upper95.value_or(0) == 0;
-    apply(c, conversion(at, "unit", t, unit, model_.unit, none ? Density::two : density_, floor));
+    apply(key,
+          c,
+          conversion(at, "unit", t, unit, model_.unit, none ? Density::two : density_, floor));
     return c;
   }
 
@@ -202,11 +204,14 @@ class ModelReader {
                 "a term that is not_fitted has no value; status: given for one that is stated");
   }
 
-  void apply(Coefficient& c, const Conversion& conversion) {
+  void apply(const std::string& key, Coefficient& c, const Conversion& conversion) {
     if (c.value) *c.value *= conversion.factor;
     if (c.upper95) *c.upper95 *= conversion.factor;
     c.ci95.low *= conversion.factor;
     c.ci95.high *= conversion.factor;
+    if (!std::isfinite(c.value.value_or(0)) || !std::isfinite(c.upper95.value_or(0)) ||
+        !std::isfinite(c.ci95.high))
+      top_.refuse(key, "is out of range once it is converted to the channel's unit");
     if (!conversion.sentence.empty()) model_.remarks.push_back(conversion.sentence);
   }
 

@@ -19,14 +19,14 @@ namespace {
 
 // Two small files that a scene can name, in memory, one folder a process.
 const std::string& folder() {
-  static const std::string path = [] {
+  static const std::string& path = *new std::string([] {  // outlives the handler of exit
     std::string made = "/dev/shm/libchar-scene-fuzz-" + std::to_string(::getpid());
     std::filesystem::create_directory(made);
     std::ofstream(made + "/log.csv") << "t[s],a,b\n0,1,2\n0.01,1,2\n0.02,1,2\n";
     std::ofstream(made + "/m.yaml") << "format: sensor-model\nversion: 1\nrate_hz: 100\n";
     std::atexit([] { std::filesystem::remove_all(folder()); });
     return made;
-  }();
+  }());
   return path;
 }
 

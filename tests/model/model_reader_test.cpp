@@ -131,6 +131,9 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("scale_factor: {value: 1, sprad: 0.1}\n",
          "5:26: error E0540: unknown key in scale_factor");
   starts("bias: 3\n", "5:7: error E0541");
+  CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
+                "\"g·√s\"}\n")
+            .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));
   CHECK(refusal("format: sensor-model\nversion: 2\n").starts_with("m.yaml:2:10: error E0546"));
   CHECK(refusal("version: 1\n").starts_with("m.yaml:1:1: error E0546"));
   CHECK(refusal(R"({"format":"sensor-model","version":1,"unit":"rad/s","white_noise":null})",
