@@ -95,8 +95,8 @@ TEST_CASE("model file: hostile text stays text") {
     const std::string text = model_yaml(model_of(result, i));
     const YAML::Node file = YAML::Load(text);
     const std::string& name = test::hostile_names()[i];
-    const bool text = first_invalid_utf8(name) == std::string::npos;  // else its bytes are shown
-    CHECK(file["channel"].as<std::string>() == (text ? name : "bad\\xFF\x01utf8"));
+    const bool whole = first_invalid_utf8(name) == std::string::npos;  // else its bytes are shown
+    CHECK(file["channel"].as<std::string>() == (whole ? name : "bad\\xFF\x01utf8"));
     CHECK(file["version"].as<int>() == 1);
     CHECK(file["random_walk"]["unit"].IsScalar());
     CHECK(file["remarks"].size() == 2);
