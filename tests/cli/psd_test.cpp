@@ -56,7 +56,7 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   std::istringstream lines(csv.out);
   std::string line;
   std::getline(lines, line);
-  CHECK(line == "frequency_hz,gyro_x[(deg/s)^2/Hz],plain[U^2/Hz]");
+  CHECK(line == "frequency_hz,gyro_x[(deg/s)²/Hz],plain[U²/Hz]");
   for (std::size_t k = 0; k < wanted.value.size(); ++k) {
     REQUIRE(std::getline(lines, line));
     REQUIRE(line.substr(0, line.find(',')) == shortest(wanted.frequency_hz[k]));
