@@ -13,6 +13,7 @@
 #include "libchar/spectrum/spectrum.hpp"
 #include "numbers.hpp"
 #include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
 #include "libchar/report/model_curve.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
@@ -194,28 +195,7 @@ std::string lines_csv(const Result& result) {
 }
 
 Json channel_json(const PsdVerb& verb, const ChannelSpectrum& c) {
-  const Spectrum& s = c.spectrum;
-  std::vector<double> low, high;
-  double dof = -1;
-  std::pair<double, double> factors;
-  const bool root = s.scaling == Scaling::lsd || s.scaling == Scaling::ls;
-  for (std::size_t k = 0; k < s.value.size(); ++k) {
-    if (s.dof[k] != dof) factors = interval_factors(dof = s.dof[k], 0.95);
-    low.push_back(s.value[k] * (root ? std::sqrt(factors.first) : factors.first));
-    high.push_back(s.value[k] * (root ? std::sqrt(factors.second) : factors.second));
-  }
-  Json out = {{"name", printable(c.channel.name)},
-              {"unit", printable(c.channel.unit)},
-              {"frequency_hz", s.frequency_hz},
-              {"value", s.value},
-              {"dof", s.dof},
-              {"lo95", low},
-              {"hi95", high},
-              {"value_unit", printable(spectrum_unit(s.scaling, c.channel.unit))},
-              {"segment", s.segment},
-              {"segments", s.segments},
-              {"dropped", s.dropped},
-              {"enbw_hz", s.enbw_hz}};
+  Json out = spectrum_channel_json(c.channel, c.spectrum, nullptr);
   if (verb.lines) {
     out["lines"] = Json::array();
     for (const SpectralLine& line : c.lines)
