@@ -65,8 +65,10 @@ void write_outputs(const std::vector<Output>& outputs, const fs::path& folder, c
 std::string text_for_people(const Characterization& result) {
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
-  std::string text = fmt::format("{}: {} channel{}, {} Hz, {} s, {} gap{}\n", printable(log.file), log.channels.size(), log.channels.size() == 1 ? "" : "s",
-                                 significant(rate, 6), rate > 0 ? significant(static_cast<double>(log.samples) / rate, 6) : "?", log.time.gaps, log.time.gaps == 1 ? "" : "s");
+  const std::string length = rate > 0 ? fmt::format("{} Hz, {} s", significant(rate, 6), significant(static_cast<double>(log.samples) / rate, 6))
+                                      : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
+  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n", printable(log.file), log.channels.size(), log.channels.size() == 1 ? "" : "s",
+                                 length, log.time.gaps, log.time.gaps == 1 ? "" : "s");
   for (const ChannelResult& c : result.channels) {
     text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
     if (c.verification)

@@ -12,6 +12,9 @@
 #include "libchar/log/read.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "numbers.hpp"
+#include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/model_curve.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
 
@@ -162,36 +165,11 @@ Result whole(Session& session, const PsdVerb& verb) {
   return spectra();
 }
 
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-// "(deg/s)^2/Hz", "V/sqrt(Hz)"; a channel without a unit is in U.
-std::string value_unit(const std::string& unit, Scaling scaling) {
-  const std::string u = unit.empty() ? "U" : unit;
-  const bool plain = u.find_first_of("/ ^*.-0123456789") == std::string::npos;
-  const std::string base = plain ? u : "(" + u + ")";
-  switch (scaling) {
-    case Scaling::psd:
-      return base + "^2/Hz";
-    case Scaling::ps:
-      return base + "^2";
-    case Scaling::lsd:
-      return base + "/sqrt(Hz)";
-    case Scaling::ls:
-      return u;
-  }
-  return u;
-}
-
 std::string spectra_csv(const Result& result) {
   std::string text = "frequency_hz";
   for (const ChannelSpectrum& c : result.channels)
     text += "," + csv_cell(fmt::format(
-                      "{}[{}]", c.channel.name, value_unit(c.channel.unit, c.spectrum.scaling)));
+                      "{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
   text += "\n";
   const std::vector<double>& frequency = result.channels.front().spectrum.frequency_hz;
   for (std::size_t k = 0; k < frequency.size(); ++k) {
@@ -217,28 +195,7 @@ std::string lines_csv(const Result& result) {
 }
 
 Json channel_json(const PsdVerb& verb, const ChannelSpectrum& c) {
-  const Spectrum& s = c.spectrum;
-  std::vector<double> low, high;
-  double dof = -1;
-  std::pair<double, double> factors;
-  const bool root = s.scaling == Scaling::lsd || s.scaling == Scaling::ls;
-  for (std::size_t k = 0; k < s.value.size(); ++k) {
-    if (s.dof[k] != dof) factors = interval_factors(dof = s.dof[k], 0.95);
-    low.push_back(s.value[k] * (root ? std::sqrt(factors.first) : factors.first));
-    high.push_back(s.value[k] * (root ? std::sqrt(factors.second) : factors.second));
-  }
-  Json out = {{"name", printable(c.channel.name)},
-              {"unit", printable(c.channel.unit)},
-              {"frequency_hz", s.frequency_hz},
-              {"value", s.value},
-              {"dof", s.dof},
-              {"lo95", low},
-              {"hi95", high},
-              {"value_unit", printable(value_unit(c.channel.unit, s.scaling))},
-              {"segment", s.segment},
-              {"segments", s.segments},
-              {"dropped", s.dropped},
-              {"enbw_hz", s.enbw_hz}};
+  Json out = spectrum_channel_json(c.channel, c.spectrum, nullptr);
   if (verb.lines) {
     out["lines"] = Json::array();
     for (const SpectralLine& line : c.lines)

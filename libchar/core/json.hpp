@@ -2,6 +2,7 @@
 // JSON at the borders: nlohmann's type, with the guards it lacks.
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,10 @@ using Json = nlohmann::ordered_json;
 /// Parses one JSON document strictly: no duplicate keys, no NaN or Infinity, numbers that fit a double, depth <= 64, valid
 /// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
+
+/// JSON has no infinity and no NaN: what is not finite, or not there, is null; a status beside it says why.
+Json json_number(double value);
+Json json_number(const std::optional<double>& value);
 
 /// The document with every string that is not UTF-8 escaped by `printable`.
 Json with_valid_text(Json document);

@@ -175,7 +175,9 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
 }
 
 std::string term_unit(std::string_view term, std::string_view unit) {
-  const std::string u(unit.empty() ? "U" : unit);
+  std::string u(unit.empty() ? "U" : unit);
+  // "1/16.4 deg/s·√s" would read as something else.
+  if (u.find(' ') != std::string::npos && u.front() != '(' && term != "bias_instability") u = "(" + u + ")";
   if (term == "white_noise") return u + "·√s";
   if (term == "random_walk") return u + "/√s";
   if (term == "quantization") return u + "·s";

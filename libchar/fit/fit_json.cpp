@@ -1,48 +1,40 @@
 #include "libchar/fit/fit_json.hpp"
 
-#include <cmath>
-
 #include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-Json number(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
-}
 Json pair_of(const Interval& interval) {
-  return Json::array({number(interval.low), number(interval.high)});
+  return Json::array({json_number(interval.low), json_number(interval.high)});
 }
 
 Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) {
   Json json;
-  json["value"] = number(term.value);
+  json["value"] = json_number(term.value);
   json["ci95"] = term.value ? pair_of(term.ci95) : Json(nullptr);
   json["status"] = name_of(term.status);
-  json["upper95"] = number(term.upper95);
+  json["upper95"] = json_number(term.upper95);
   json["unit"] = term_unit(kTermNames[i].key, unit);
-  json["relative_sd"] = term.value ? number(term.relative_sd) : Json(nullptr);
+  json["relative_sd"] = term.value ? json_number(term.relative_sd) : Json(nullptr);
   json["interval"] = term.profile ? "profile_likelihood" : "log_normal";
-  json["likelihood_ratio"] = number(term.likelihood_ratio);
-  json["bound_relative_sd"] = number(term.bound);
-  json["seconds_for_10_percent"] = number(term.seconds_for_10_percent);
+  json["likelihood_ratio"] = json_number(term.likelihood_ratio);
+  json["bound_relative_sd"] = json_number(term.bound);
+  json["seconds_for_10_percent"] = json_number(term.seconds_for_10_percent);
   return json;
 }
 
 Json goodness_json(const Goodness& goodness) {
   return {
-      {"chi2", number(goodness.chi2)}, {"dof", number(goodness.dof)}, {"p", number(goodness.p)}};
+      {"chi2", json_number(goodness.chi2)}, {"dof", json_number(goodness.dof)}, {"p", json_number(goodness.p)}};
 }
 
 Json second_json(const SecondOpinion& second) {
   Json json = {{"method", "generalised least squares on the Allan variances"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (second.value[i])
-      json[std::string(kTermNames[i].key)] = {{"value", number(second.value[i])},
-                                              {"sd", number(second.sd[i])}};
+      json[std::string(kTermNames[i].key)] = {{"value", json_number(second.value[i])},
+                                              {"sd", json_number(second.sd[i])}};
   }
   json["goodness"] = goodness_json(second.goodness);
   json["agrees"] = second.agrees;
@@ -55,11 +47,11 @@ Json residuals_json(const std::vector<FitResidual>& residuals) {
   Json json;
   for (const char* key : {"frequency_hz", "measured", "model", "dof", "z"}) json[key] = Json::array();
   for (const FitResidual& r : residuals) {
-    json["frequency_hz"].push_back(number(r.frequency_hz));
-    json["measured"].push_back(number(r.measured));
-    json["model"].push_back(number(r.model));
-    json["dof"].push_back(number(r.dof));
-    json["z"].push_back(number(r.z));
+    json["frequency_hz"].push_back(json_number(r.frequency_hz));
+    json["measured"].push_back(json_number(r.measured));
+    json["model"].push_back(json_number(r.model));
+    json["dof"].push_back(json_number(r.dof));
+    json["z"].push_back(json_number(r.z));
   }
   return json;
 }
@@ -75,7 +67,7 @@ Json noise_fit_json(const std::string& name,
   json["unit"] = unit;
   for (std::size_t i = 0; i < kTerms; ++i)
     json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
-  json["bandwidth_hz"] = number(fit.bandwidth_hz);
+  json["bandwidth_hz"] = json_number(fit.bandwidth_hz);
   json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
@@ -90,8 +82,8 @@ Json noise_fit_json(const std::string& name,
   json["method"] = fit.method;
   json["converged"] = fit.converged;
   json["iterations"] = fit.iterations;
-  json["rate_hz"] = number(fit.rate_hz);
-  json["duration_s"] = number(fit.duration_s);
+  json["rate_hz"] = json_number(fit.rate_hz);
+  json["duration_s"] = json_number(fit.duration_s);
   json["samples"] = fit.samples;
   if (with_residuals) json["residuals"] = residuals_json(fit.residuals);
   return json;

@@ -138,8 +138,8 @@ void answer_humps(Attempt& now) {
   now = attempt(std::move(kept), now.fit.rate_hz, now.fit.samples, now.options);
   now.fit.remedies.push_back(
       {"lines",
-       fmt::format("{} bins a quarter and six standard deviations above their neighbours", count),
-       fmt::format("{} bins of broad humps left out", count),
+       fmt::format("{} bin{} a quarter and six standard deviations above {} neighbours", count, count == 1 ? "" : "s", count == 1 ? "its" : "their"),
+       fmt::format("{} bin{} of broad humps left out", count, count == 1 ? "" : "s"),
        count});
 }
 

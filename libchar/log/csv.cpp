@@ -16,10 +16,10 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/column_choice.hpp"
 #include "libchar/log/csv_dialect.hpp"
 #include "libchar/log/csv_feed.hpp"
 #include "libchar/log/csv_header.hpp"
+#include "libchar/log/csv_plan.hpp"
 #include "libchar/log/csv_rows.hpp"
 #include "libchar/log/raw_rows.hpp"
 
@@ -35,7 +35,10 @@ class CsvSource final : public RowSource {
     info_.format = "csv";
     const std::string_view head = feed_.head();
     dialect_ = understand(head, feed_.whole(), options, info_);
-    select_channels();
+    plan_ = plan_columns(dialect_, options, info_);
+    missing_per_channel_.assign(plan_.channels, 0);
+    words_per_channel_.assign(plan_.channels, 0);
+    fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
     feed_.start_at(dialect_.data_offset);
     next_line_ = dialect_.first_data_line;
@@ -150,72 +153,6 @@ class CsvSource final : public RowSource {
     if (!total_.balanced() || bytes != feed_.bytes_read() ||
         total_.cells != rows_ * plan_.target.size())
       throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
-  }
-
-  // The channels to read, in file order, and what to do with each column.
-  void select_channels() {
-    std::vector<std::size_t> value_columns;
-    for (std::size_t i = 0; i < dialect_.columns.size(); ++i)
-      if (static_cast<int>(i) != dialect_.time_column) value_columns.push_back(i);
-    if (value_columns.empty())
-      throw Error({ErrorKind::input,
-                   "E0310",
-                   info_.file,
-                   "there is a time column and nothing else",
-                   "",
-                   "--time-column none reads it as a channel"});
-    std::vector<std::string> names;
-    for (std::size_t k = 0; k < value_columns.size(); ++k) {
-      Column& column = dialect_.columns[value_columns[k]];
-      if (column.name.empty()) column.name = fmt::format("c{}", k);
-      names.push_back(column.name);
-    }
-    std::vector<bool> wanted(value_columns.size(), options_.channels.empty());
-    for (const std::string& name : options_.channels)
-      wanted[find_channel(name, names, value_columns)] = true;
-    plan_.dialect = &dialect_;
-    plan_.overflow_as_missing = options_.overflow_as_missing;
-    plan_.skip_repeated_header = options_.skip_repeated_header;
-    plan_.target.assign(dialect_.columns.size(), Plan::kSkip);
-    if (dialect_.time_column >= 0)
-      plan_.target[static_cast<std::size_t>(dialect_.time_column)] = Plan::kTime;
-    for (std::size_t k = 0; k < value_columns.size(); ++k) {
-      if (!wanted[k]) continue;
-      const Column& column = dialect_.columns[value_columns[k]];
-      plan_.target[value_columns[k]] = static_cast<int>(plan_.channels++);
-      info_.channels.push_back({column.name, column.unit, true});
-    }
-    missing_per_channel_.assign(plan_.channels, 0);
-    words_per_channel_.assign(plan_.channels, 0);
-    fractional_.assign(plan_.channels, 0);
-  }
-
-  std::size_t find_channel(const std::string& wanted,
-                           const std::vector<std::string>& names,
-                           const std::vector<std::size_t>& columns) const {
-    for (std::size_t k = 0; k < names.size(); ++k)
-      if (names[k] == wanted) return k;
-    for (std::size_t k = 0; k < names.size(); ++k)
-      if (dialect_.columns[columns[k]].text == wanted) return k;
-    if (wanted.size() > 1 && wanted.size() < 8 && wanted[0] == 'c' &&
-        wanted.find_first_not_of("0123456789", 1) == std::string::npos) {
-      const auto k = static_cast<std::size_t>(std::stoul(wanted.substr(1)));
-      if (k < names.size()) return k;
-    }
-    if (dialect_.time_column >= 0 &&
-        dialect_.columns[static_cast<std::size_t>(dialect_.time_column)].name == wanted)
-      throw Error({ErrorKind::usage,
-                   "E0320",
-                   info_.file,
-                   "this is the time column, not a channel",
-                   wanted,
-                   "--time-column none reads it as a channel"});
-    throw Error({ErrorKind::usage,
-                 "E0320",
-                 info_.file,
-                 "there is no channel of this name",
-                 wanted,
-                 channel_hint(wanted, names, options_)});
   }
 
   static void add(Warnings& warnings,

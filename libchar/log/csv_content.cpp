@@ -70,6 +70,16 @@ void refuse_other_content(std::string_view head, const std::string& file) {
                  "",
                  "convert it: iconv -f utf-16 -t utf-8"});
   refuse_binary(head, file);
+  const std::size_t front = head.find_first_not_of(" \t\r\n");
+  if (front == std::string_view::npos || (head[front] != '<' && head[front] != '{')) return;
+  const bool markup = head[front] == '<';
+  throw Error({ErrorKind::input,
+               "E0301",
+               at(file, 1, 1, 0),
+               markup ? "content is HTML or XML, not CSV" : "content is JSON, not CSV",
+               "",
+               markup ? "was a web page saved in place of the file?"
+                      : "is this the sidecar of a raw log, or a result?"});
 }
 
 }  // namespace libchar::csv

@@ -32,11 +32,6 @@ class Meters final : public BlockSink {
   std::vector<QualityMeter> meters_;
 };
 
-// JSON has no infinity: a channel without a sample has no extremes.
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json channel_json(const Channel& channel, const ChannelQuality& q) {
   Json out;
   out["name"] = printable(channel.name);
@@ -44,15 +39,15 @@ Json channel_json(const Channel& channel, const ChannelQuality& q) {
   out["missing"] = q.missing;
   out["samples"] = q.samples;
   out["integer"] = channel.integer;
-  out["mean"] = number_or_null(q.mean);
-  out["standard_deviation"] = number_or_null(q.standard_deviation);
-  out["minimum"] = number_or_null(q.minimum);
-  out["maximum"] = number_or_null(q.maximum);
-  out["resolution"] = q.resolution ? number_or_null(*q.resolution) : Json(nullptr);
+  out["mean"] = json_number(q.mean);
+  out["standard_deviation"] = json_number(q.standard_deviation);
+  out["minimum"] = json_number(q.minimum);
+  out["maximum"] = json_number(q.maximum);
+  out["resolution"] = json_number(q.resolution);
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = q.minimum < q.maximum ? number_or_null(q.difference_kurtosis) : Json(nullptr);
+  out["difference_kurtosis"] = q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
   out["suggestions"] = q.suggestions;
   return out;
@@ -71,9 +66,9 @@ Json recording_json(const Inspection& inspection) {
   out["channels"] = Json::array();
   for (std::size_t c = 0; c < info.channels.size(); ++c)
     out["channels"].push_back(channel_json(info.channels[c], inspection.quality[c]));
-  out["rate_hz"] = time.rate_hz > 0 ? number_or_null(time.rate_hz) : Json(nullptr);
-  out["jitter_s"] = number_or_null(time.jitter_s);
-  out["max_deviation_s"] = number_or_null(time.max_deviation_s);
+  out["rate_hz"] = time.rate_hz > 0 ? json_number(time.rate_hz) : Json(nullptr);
+  out["jitter_s"] = json_number(time.jitter_s);
+  out["max_deviation_s"] = json_number(time.max_deviation_s);
   out["gaps"] = time.gaps;
   out["missing_samples"] = time.missing_samples;
   out["time"] = {{"column", printable(time.column)},

@@ -36,136 +36,6 @@ std::string status_chip(Status status) {
   return "";
 }
 
-std::string deviation_title(DeviationType type) {
-  switch (type) {
-    case DeviationType::adev:
-      return "Allan deviation";
-    case DeviationType::oadev:
-      return "Overlapping Allan deviation";
-    case DeviationType::mdev:
-      return "Modified Allan deviation";
-    case DeviationType::tdev:
-      return "Time deviation";
-    case DeviationType::hdev:
-      return "Hadamard deviation";
-    case DeviationType::ohdev:
-      return "Overlapping Hadamard deviation";
-    case DeviationType::totdev:
-      return "Total deviation";
-  }
-  return "";
-}
-
-std::string spectrum_title(const Spectrum& s) {
-  const char* sides = s.sides == Sides::one ? "One-sided" : "Two-sided";
-  switch (s.scaling) {
-    case Scaling::psd:
-      return fmt::format("{} power spectral density", sides);
-    case Scaling::ps:
-      return fmt::format("{} power spectrum", sides);
-    case Scaling::lsd:
-      return fmt::format("{} linear spectral density", sides);
-    case Scaling::ls:
-      return fmt::format("{} linear spectrum", sides);
-  }
-  return sides;
-}
-
-std::string spectrum_axis(const Spectrum& s) {
-  std::string scaling(key_of(s.scaling));
-  std::transform(scaling.begin(), scaling.end(), scaling.begin(), [](char c) {
-    return static_cast<char>(c - 'a' + 'A');
-  });
-  return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
-}
-
-std::string window_title(Window window) {
-  switch (window) {
-    case Window::hann:
-      return "Hann window";
-    case Window::rectangular:
-      return "no window";
-    case Window::blackman_harris:
-      return "Blackman–Harris window";
-    case Window::flat_top:
-      return "flat-top window";
-    case Window::hann_nonzero:
-      return "Hann window without its zeros";
-  }
-  return "";
-}
-
-// What is drawn, in full: two programs agree only when these do.
-std::string spectrum_caption(const Spectrum& s) {
-  return fmt::format(
-      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width on the "
-      "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean was removed. "
-      "Line: fitted model. Dashed: its terms.",
-      people_count(s.segments),
-      s.segments == 1 ? "" : "s",
-      people_count(s.segment),
-      people_seconds(static_cast<double>(s.segment) / s.rate_hz),
-      window_title(s.window));
-}
-
-struct PlotText {
-  std::string title, axis, unit, caption;  // `axis`: short, the title says it in full
-};
-
-std::string plot(const char* kind,
-                 std::size_t index,
-                 const PlotText& text,
-                 const std::string& channel) {
-  return fmt::format(
-      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-axis=\"{2}\" "
-      "data-unit=\"{3}\">\n<h3>{4}</h3>\n"
-      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{5} of "
-      "{6}\"></canvas></div>\n<figcaption>{7}</figcaption>\n</figure>\n",
-      kind,
-      index,
-      html_attribute(text.axis),
-      html_attribute(text.unit),
-      html_text(text.title),
-      html_attribute(text.title),
-      html_attribute(channel),
-      html_text(text.caption));
-}
-
-std::string plots(const ChannelResult& c, std::size_t index) {
-  const std::string& name = c.channel.name;
-  std::string out = "<div class=\"plots\">\n";
-  // A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
-  const auto& points = c.allan.points;
-  if (std::any_of(
-          points.begin(), points.end(), [](const AllanPoint& p) { return p.deviation > 0; })) {
-    const std::string title = deviation_title(c.allan.type);
-    out += plot("allan",
-                index,
-                {title,
-                 std::string(name_of(c.allan.type)),
-                 c.channel.unit.empty() ? "U" : c.channel.unit,
-                 "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer "
-                 "than 5 degrees of freedom make them "
-                 "unreliable. Line: fitted model. Dashed: its terms; marked: where each "
-                 "coefficient is read off."},
-                name);
-  }
-  const Spectrum& s = c.spectrum;
-  bool any = false;
-  for (std::size_t i = 0; i < s.value.size(); ++i)
-    any = any || (s.frequency_hz[i] > 0 && s.value[i] > 0);
-  if (any) {
-    out += plot("spectrum",
-                index,
-                {spectrum_title(s),
-                 spectrum_axis(s),
-                 spectrum_unit(s.scaling, c.channel.unit),
-                 spectrum_caption(s)},
-                name);
-  }
-  return out + "</div>\n";
-}
-
 std::string in_field_units(const Coefficient& c, std::size_t term, const std::string& unit) {
   std::string out;
   if (!c.value && !c.upper95) return out;
@@ -288,15 +158,16 @@ std::string trust(const ChannelResult& c, std::size_t index) {
   const NoiseFit& fit = *c.fit;
   std::string out = "<div class=\"halves\">\n<div>\n";
   if (!fit.residuals.empty()) {
-    out += plot("residuals",
-                index,
-                {"Residuals of the fit",
-                 "residual",
-                 "sd",
-                 "Each point: measured against model in one bin, as a standard normal deviate. "
-                 "They should scatter evenly, 95 % within "
-                 "the grey band; triangles on the edge lie beyond it."},
-                c.channel.name);
+    out +=
+        plot_figure("residuals",
+                    index,
+                    {"Residuals of the fit",
+                     "residual",
+                     "sd",
+                     "Each point: measured against model in one bin, as a standard normal deviate. "
+                     "They should scatter evenly, 95 % within "
+                     "the grey band; triangles on the edge lie beyond it."},
+                    c.channel.name);
   }
   out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" +
          html_text(goodness_sentence(fit.goodness)) + "</p>\n";
@@ -366,7 +237,8 @@ std::string quality(const ChannelResult& c) {
                                       people(100 * static_cast<double>(q.missing) / all, 2))});
   out += table_row({"Mean", people(q.mean, 6) + " " + unit});
   const bool constant = q.samples > 0 && q.minimum == q.maximum;
-  out += table_row({"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
+  out += table_row(
+      {"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
   if (q.samples > 0)
     out += table_row(
         {"Range", fmt::format("{} … {} {}", people(q.minimum, 5), people(q.maximum, 5), unit)});
@@ -484,8 +356,8 @@ std::string channel_section(const ChannelResult& c, const LogInfo& log, std::siz
       html_text(c.channel.name),
       c.channel.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
                              : " <span class=\"unit\">" + html_text(c.channel.unit) + "</span>");
-  out +=
-      bullet_list(findings(c), "findings") + bullet_list(cautions(c), "cautions") + plots(c, index);
+  out += bullet_list(findings(c), "findings") + bullet_list(cautions(c), "cautions") +
+         curve_plots(c, index);
   if (c.fit) out += numbers_table(c, rate_hz) + trust(c, index);
   if (c.verification) out += verification_section(c);
   const std::string where = consumers(c, rate_hz);

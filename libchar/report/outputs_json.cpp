@@ -14,18 +14,8 @@
 namespace libchar {
 namespace {
 
-// JSON has no infinity: a bound that does not exist is null, and the status or the degrees of
-// freedom beside it say why.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json number(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
-}
-
 Json interval(const Interval& i) {
-  return Json::array({number(i.low), number(i.high)});
+  return Json::array({json_number(i.low), json_number(i.high)});
 }
 
 Json strings(const std::vector<std::string>& texts) {
@@ -62,16 +52,16 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const N
   for (const AllanPoint& p : curve.points) {
     const bool known = p.edf > 0;
     out["tau_s"].push_back(p.tau_s);
-    out["deviation"].push_back(number(p.deviation));
+    out["deviation"].push_back(json_number(p.deviation));
     out["ci95"].push_back(known ? interval(p.ci95) : Json(nullptr));
-    out["edf"].push_back(known ? number(p.edf) : Json(nullptr));
+    out["edf"].push_back(known ? json_number(p.edf) : Json(nullptr));
     out["terms"].push_back(p.terms);
     out["m"].push_back(p.m);
     out["ci68"].push_back(known ? interval(p.ci68) : Json(nullptr));
     out["reliable"].push_back(p.reliable);
     if (fit != nullptr)
       model.push_back(
-          number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
+          json_number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
   }
   if (fit != nullptr && !curve.points.empty()) {
     out["model"] = model;
@@ -98,20 +88,26 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit) {
   Json out = named(channel);
   for (const char* key : {"frequency_hz", "value", "dof", "ci95"}) out[key] = Json::array();
+  const bool root = spectrum.scaling == Scaling::lsd || spectrum.scaling == Scaling::ls;
+  double known_dof = 0;
+  std::pair<double, double> factors;
   Json model = Json::array();
   for (std::size_t i = 0; i < spectrum.frequency_hz.size(); ++i) {
     const double dof = i < spectrum.dof.size() ? spectrum.dof[i] : 0;
     out["frequency_hz"].push_back(spectrum.frequency_hz[i]);
-    out["value"].push_back(number(spectrum.value[i]));
-    out["dof"].push_back(number(dof));
+    out["value"].push_back(json_number(spectrum.value[i]));
+    out["dof"].push_back(json_number(dof));
     if (dof > 0) {
-      const auto [low, high] = spectrum_interval(spectrum, i, 0.95);
-      out["ci95"].push_back(interval({low, high}));
+      // Most bins share one number of degrees of freedom, and a quantile costs more than the rest of the row.
+      if (dof != known_dof) factors = interval_factors(known_dof = dof, 0.95);
+      const double v = spectrum.value[i], low = root ? std::sqrt(factors.first) : factors.first,
+                   high = root ? std::sqrt(factors.second) : factors.second;
+      out["ci95"].push_back(interval({v * low, v * high}));
     } else {
       out["ci95"].push_back(nullptr);
     }
     if (fit != nullptr)
-      model.push_back(number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
+      model.push_back(json_number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
   }
   if (fit != nullptr && !spectrum.frequency_hz.empty()) {
     out["model"] = model;
@@ -123,19 +119,8 @@ Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, con
   out["segment"] = spectrum.segment;
   out["segments"] = spectrum.segments;
   out["dropped"] = spectrum.dropped;
-  out["enbw_hz"] = number(spectrum.enbw_hz);
+  out["enbw_hz"] = json_number(spectrum.enbw_hz);
   out["notes"] = strings(spectrum.notes);
-  return out;
-}
-
-Json spectrum_json(const std::vector<Channel>& channels, const std::vector<Spectrum>& spectra) {
-  Json out = frame("spectrum");
-  out["sides"] = key_of(spectra.empty() ? Sides::one : spectra[0].sides);
-  out["scaling"] = key_of(spectra.empty() ? Scaling::psd : spectra[0].scaling);
-  out["channels"] = Json::array();
-  for (std::size_t i = 0; i < std::min(channels.size(), spectra.size()); ++i) {
-    out["channels"].push_back(spectrum_channel_json(channels[i], spectra[i], nullptr));
-  }
   return out;
 }
 
@@ -143,17 +128,17 @@ Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
   Json out = named(channel);
   out["missing"] = q.missing;
   out["samples"] = q.samples;
-  out["mean"] = number(q.mean);
-  out["standard_deviation"] = number(q.standard_deviation);
-  out["minimum"] = q.samples > 0 ? number(q.minimum) : Json(nullptr);
-  out["maximum"] = q.samples > 0 ? number(q.maximum) : Json(nullptr);
-  out["resolution"] = number(q.resolution);
+  out["mean"] = json_number(q.mean);
+  out["standard_deviation"] = json_number(q.standard_deviation);
+  out["minimum"] = q.samples > 0 ? json_number(q.minimum) : Json(nullptr);
+  out["maximum"] = q.samples > 0 ? json_number(q.maximum) : Json(nullptr);
+  out["resolution"] = json_number(q.resolution);
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = q.minimum < q.maximum ? number(q.difference_kurtosis) : Json(nullptr);
+  out["difference_kurtosis"] = q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
-  out["float32_step"] = number(q.float32_step);
+  out["float32_step"] = json_number(q.float32_step);
   out["suggestions"] = strings(q.suggestions);
   return out;
 }
@@ -166,8 +151,8 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
   for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i) {
     out["channels"].push_back(quality_channel_json(log.channels[i], qualities[i]));
   }
-  out["rate_hz"] = log.time.rate_hz > 0 ? number(log.time.rate_hz) : Json(nullptr);
-  out["jitter_s"] = number(log.time.jitter_s);
+  out["rate_hz"] = log.time.rate_hz > 0 ? json_number(log.time.rate_hz) : Json(nullptr);
+  out["jitter_s"] = json_number(log.time.jitter_s);
   out["gaps"] = log.time.gaps;
   out["repairs"] = Json::object();
   for (const Warning& w : log.warnings.list()) out["repairs"][w.code] = w.count;
@@ -175,7 +160,7 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
   out["bytes"] = log.bytes;
   out["samples"] = log.samples;
   out["missing_samples"] = log.time.missing_samples;
-  out["max_deviation_s"] = number(log.time.max_deviation_s);
+  out["max_deviation_s"] = json_number(log.time.max_deviation_s);
   out["rate_from_stamps"] = log.time.from_stamps;
   out["time_column"] = json_text(log.time.column);
   out["time_unit"] = json_text(log.time.unit);

@@ -17,17 +17,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
 
 namespace {
 
 using namespace libchar;
+using test::numbers;
+using test::rms_log10;
 using Clock = std::chrono::steady_clock;
 using Values = std::array<double, 3>;  // Q, B, K; 0 = absent
 
@@ -260,28 +262,6 @@ void run_scene(const Scene& scene, std::uint64_t seed, int records) {
 }
 
 // ---- published curves ----
-
-std::vector<double> numbers(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  std::vector<double> values;
-  for (double value = 0; in >> value;) values.push_back(value);
-  return values;
-}
-
-double rms_log10(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(std::log10(a[i] / b[i]), 2);
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-double rms_log10(const NoiseFit& fit) {
-  std::vector<double> measured, model;
-  for (const FitResidual& r : fit.residuals) {
-    measured.push_back(r.measured);
-    model.push_back(r.model);
-  }
-  return rms_log10(measured, model);
-}
 
 void run_curves(const std::filesystem::path& folder) {
   fmt::print("\nrms of log10(model/measured deviation) on the curves that imu_utils published, mean of three axes:\n\n");

@@ -56,7 +56,7 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   std::istringstream lines(csv.out);
   std::string line;
   std::getline(lines, line);
-  CHECK(line == "frequency_hz,gyro_x[(deg/s)^2/Hz],plain[U^2/Hz]");
+  CHECK(line == "frequency_hz,gyro_x[(deg/s)²/Hz],plain[U²/Hz]");
   for (std::size_t k = 0; k < wanted.value.size(); ++k) {
     REQUIRE(std::getline(lines, line));
     REQUIRE(line.substr(0, line.find(',')) == shortest(wanted.frequency_hz[k]));
@@ -96,8 +96,8 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   CHECK(channel["frequency_hz"].get<std::vector<double>>() == quarter.frequency_hz);
   CHECK(channel["value"].get<std::vector<double>>() == quarter.value);
   CHECK(channel["dof"].get<std::vector<double>>() == quarter.dof);
-  CHECK(channel["lo95"][7].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).first));
-  CHECK(channel["hi95"][7].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).second));
+  CHECK(channel["ci95"][7][0].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).first));
+  CHECK(channel["ci95"][7][1].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).second));
 }
 
 TEST_CASE("psd finds lines and bins on a logarithmic axis") {

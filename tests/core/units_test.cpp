@@ -132,3 +132,9 @@ TEST_CASE("units of the coefficients") {
   CHECK(term_unit("quantization", "V") == "V·s");
   CHECK(term_unit("rate_ramp", "V") == "V/s");
 }
+
+TEST_CASE("the unit of a term keeps a unit of several words together") {
+  CHECK(term_unit("white_noise", "1/16.4 deg/s") == "(1/16.4 deg/s)·√s");
+  CHECK(term_unit("bias_instability", "1/16.4 deg/s") == "1/16.4 deg/s");
+  CHECK(term_unit("random_walk", "deg/s") == "deg/s/√s");
+}

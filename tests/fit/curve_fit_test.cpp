@@ -7,34 +7,16 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
 
+using test::numbers;
+using test::rms_log10;
+
 namespace {
-
-std::vector<double> numbers(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  std::vector<double> values;
-  for (double value = 0; in >> value;) values.push_back(value);
-  return values;
-}
-
-double rms_log10(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(std::log10(a[i] / b[i]), 2);
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-double rms_log10(const NoiseFit& fit) {
-  std::vector<double> measured, model;
-  for (const FitResidual& r : fit.residuals) {
-    measured.push_back(r.measured);
-    model.push_back(r.model);
-  }
-  return rms_log10(measured, model);
-}
 
 DigitisedCurve allan_of(const Mixture& theta, std::optional<double> rate_hz) {
   DigitisedCurve curve;

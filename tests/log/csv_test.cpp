@@ -376,3 +376,8 @@ TEST_CASE("names that are given go by what is read") {
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
              Catch::Contains("-c chooses by the names in the log, gx, gy, gz, and --names then name what was chosen"));
 }
+
+TEST_CASE("web pages and JSON documents are called by their names") {
+  CHECK_THAT(failure("<!DOCTYPE html>\n<html>404</html>\n"), Catch::Contains("E0301") && Catch::Contains("HTML"));
+  CHECK_THAT(failure("\n{\"a\": 1}\n"), Catch::Contains("E0301") && Catch::Contains("JSON"));
+}
