@@ -127,6 +127,13 @@ std::optional<double> parse_double(std::string_view text) {
   return value;
 }
 
+std::string ascii_lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
 std::size_t first_invalid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     std::uint32_t code = 0;
@@ -139,9 +146,18 @@ std::size_t first_invalid_utf8(std::string_view text) {
 
 std::string quoted_yaml(std::string_view text) {
   std::string out = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
+  for (std::size_t i = 0; i < text.size();) {
+    std::uint32_t code = 0;
+    const std::size_t length = decode_utf8(text, i, code);
+    if (length == 0)
+      out += fmt::format("\\\\x{:02X}", static_cast<unsigned char>(text[i]));
+    else if (is_control(code))
+      out += fmt::format("\\u{:04X}", code);
+    else if (code == '"' || code == '\\')
+      out += '\\', out += text[i];
+    else
+      out += text.substr(i, length);
+    i += std::max<std::size_t>(length, 1);
   }
   return out + '"';
 }

@@ -22,7 +22,8 @@ std::string shortest(double value);
 /// "1e-05" for a string.
 std::string shortest_yaml(double value);
 
-/// A double-quoted YAML scalar: quotes and backslashes escaped, what is not printable made visible.
+/// A double-quoted YAML scalar that reads back to the same text: quotes, backslashes and what is not
+/// printable are escaped. Bytes that are no UTF-8 cannot stand in YAML: they become \\xHH to read.
 std::string quoted_yaml(std::string_view text);
 
 /// `digits` significant digits for people ("0.0123", "1.23e-05").
@@ -40,6 +41,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The whole text as one finite double (std::from_chars rules: no leading '+' or blanks, no
 /// locale), else nothing.
 std::optional<double> parse_double(std::string_view text);
+
+/// Capitals A to Z made small, everything else as it is.
+std::string ascii_lower(std::string_view text);
 
 /// Position of the first byte that is not valid UTF-8, or npos.
 std::size_t first_invalid_utf8(std::string_view text);

@@ -12,16 +12,9 @@
 namespace libchar {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 // "time_us" -> {"time", "us"}; "Time [ns]" -> {"time", "ns"}.
 std::pair<std::string, std::string> split_unit(std::string_view name) {
-  std::string text = lower(name);
+  std::string text = ascii_lower(name);
   if (!text.empty() && (text.back() == ']' || text.back() == ')')) text.pop_back();
   const std::size_t at = text.find_last_of("_[( ");
   if (at == std::string::npos) return {text, ""};
@@ -72,7 +65,7 @@ bool is_time_name(std::string_view name) {
     return std::find(kStems.begin(), kStems.end(), text) != kStems.end();
   };
   const auto [stem, unit] = split_unit(name);
-  return known(lower(name)) || (known(stem) && (unit.empty() || nanoseconds_in(unit) != 0 ||
+  return known(ascii_lower(name)) || (known(stem) && (unit.empty() || nanoseconds_in(unit) != 0 ||
                                                 unit == "sec" || unit == "stamp"));
 }
 

@@ -8,123 +8,15 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/log/csv_content.hpp"
+#include "libchar/log/csv_delimiter.hpp"
 #include "libchar/log/csv_header.hpp"
 #include "libchar/log/csv_number.hpp"
+#include "libchar/log/csv_sample.hpp"
+#include "libchar/log/csv_time_column.hpp"
 
 namespace libchar::csv {
 namespace {
-
-constexpr std::size_t kSample = 100;  // lines studied
-
-struct Line {
-  std::string_view text;
-  std::size_t offset = 0;    ///< in the head
-  std::uint64_t number = 1;  ///< physical line
-  std::size_t after = 0;     ///< offset behind its line end
-  std::uint64_t lines = 1;   ///< physical lines it spans (a quoted header may hold newlines)
-  LineEnd end = LineEnd::none;
-};
-
-// The physical line at `offset`. A line that reaches the end of a head that is not the whole file
-// is cut.
-Line line_at(std::string_view head, std::size_t offset, std::uint64_t number) {
-  Line line;
-  line.offset = offset;
-  line.number = number;
-  const std::size_t end = head.find_first_of("\r\n", offset);
-  if (end == std::string_view::npos) {
-    line.text = head.substr(offset);
-    line.after = head.size();
-    return line;
-  }
-  line.text = head.substr(offset, end - offset);
-  const bool pair = head[end] == '\r' && end + 1 < head.size() && head[end + 1] == '\n';
-  line.end = pair ? LineEnd::crlf : head[end] == '\r' ? LineEnd::cr : LineEnd::lf;
-  line.after = end + (pair ? 2 : 1);
-  return line;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-bool numeric(const Field& field, char delimiter, char* mark = nullptr) {
-  if (read_cell(field.text, '.').kind != Cell::bad) {
-    if (mark != nullptr && field.text.find('.') != std::string::npos) *mark = '.';
-    return true;
-  }
-  if (delimiter == ',' && !field.quoted) return false;
-  if (read_cell(field.text, ',').kind == Cell::bad) return false;
-  if (mark != nullptr) *mark = ',';
-  return true;
-}
-
-// How well a delimiter explains the sample: share of lines with the commonest number of cells,
-// share of numeric cells.
-struct Score {
-  char delimiter = ',';
-  std::size_t columns = 1;
-  double quality = 0;
-};
-
-Score score(const std::vector<Line>& lines, char delimiter) {
-  std::vector<std::size_t> counts;
-  std::size_t cells = 0, numbers = 0;
-  for (const Line& line : lines) {
-    const auto fields = split(line.text, delimiter);
-    std::size_t n = fields.size();
-    if (n > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ') --n;
-    counts.push_back(n);
-    for (const Field& field : fields) {
-      ++cells;
-      numbers += numeric(field, delimiter);
-    }
-  }
-  Score result{delimiter, 1, 0};
-  if (counts.empty()) return result;
-  std::vector<std::size_t> sorted = counts;
-  std::sort(sorted.begin(), sorted.end());
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < sorted.size();) {
-    const std::size_t run =
-        static_cast<std::size_t>(std::upper_bound(sorted.begin(), sorted.end(), sorted[i]) -
-                                 sorted.begin()) -
-        i;
-    if (run >= best) {
-      best = run;
-      result.columns = sorted[i];
-    }
-    i += run;
-  }
-  const double consistent = static_cast<double>(best) / static_cast<double>(counts.size());
-  result.quality =
-      result.columns < 2
-          ? 0
-          : consistent * (0.05 + static_cast<double>(numbers) / static_cast<double>(cells));
-  return result;
-}
-
-char named_delimiter(const std::string& name) {
-  if (name == "tab" || name == "\\t" || name == "\t") return '\t';
-  if (name == "space" || name == " ") return ' ';
-  if (name.size() == 1 && !is_digit(name[0]) && name[0] != '"' && name[0] != '\r' &&
-      name[0] != '\n' && name[0] != '-' && name[0] != '+')
-    return name[0];
-  throw Error({ErrorKind::usage,
-               "",
-               "",
-               "unknown delimiter",
-               name,
-               "use auto, tab, space, or one character such as , or ;"});
-}
-
-std::string delimiter_name(char delimiter) {
-  if (delimiter == '\t') return "tab";
-  if (delimiter == ' ') return "blanks";
-  return std::string(1, delimiter);
-}
 
 // One study of one head; the steps in `understand` call each other's results.
 struct Study {
@@ -156,65 +48,6 @@ struct Study {
                  std::move(hint)});
   }
 
-  void refuse_other_content() const {
-    const auto begins = [&](std::string_view magic) {
-      return head.substr(0, magic.size()) == magic;
-    };
-    const char* what = nullptr;
-    const char* hint = "";
-    if (head.empty())
-      throw Error({ErrorKind::input, "E0322", at(info.file, 1, 1, 0), "the file is empty", "", ""});
-    if (begins("\x93NUMPY"))
-      what = "content is a NumPy array (NPY), not CSV", hint = "read it with --format npy";
-    else if (begins("\x1F\x8B"))
-      what = "content is compressed (gzip), not CSV", hint = "unpack it first: gunzip";
-    else if (begins("PK\x03\x04"))
-      what = "content is a ZIP archive (XLSX or NPZ?), not CSV",
-      hint = "unpack it, or export it as CSV";
-    else if (begins("\x28\xB5\x2F\xFD"))
-      what = "content is compressed (zstd), not CSV", hint = "unpack it first: unzstd";
-    else if (begins("BZh"))
-      what = "content is compressed (bzip2), not CSV", hint = "unpack it first: bunzip2";
-    else if (begins("\xFF\xFE") || begins("\xFE\xFF"))
-      what = "content is UTF-16, not UTF-8", hint = "convert it: iconv -f utf-16 -t utf-8";
-    else if (begins("\x89HDF"))
-      what = "content is HDF5, not CSV", hint = "export it as CSV or .npy";
-    if (what != nullptr)
-      throw Error({ErrorKind::input, "E0301", at(info.file, 1, 1, 0), what, "", hint});
-    if (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) &&
-        ((head[2] == 0) != (head[3] == 0)) && head[0] == head[2 * (head[0] == 0)])
-      throw Error({ErrorKind::input,
-                   "E0301",
-                   at(info.file, 1, 1, 0),
-                   "content is UTF-16, not UTF-8",
-                   "",
-                   "convert it: iconv -f utf-16 -t utf-8"});
-  }
-
-  // Text has next to no control characters; NUL bytes are left to the row parser, which knows logs that a power failure cut.
-  void refuse_binary() const {
-    std::size_t controls = 0, others = 0, first = 0;
-    for (std::size_t i = 0; i < std::min<std::size_t>(head.size(), 4096); ++i) {
-      const auto byte = static_cast<unsigned char>(head[i]);
-      if (byte == 0) continue;
-      const bool control = byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
-      if (control && controls++ == 0) first = i;
-      ++others;
-    }
-    if (controls < 2 || controls * 50 < others) return;
-    std::size_t line = 1, column = 1;
-    for (std::size_t i = 0; i < first; ++i, ++column)
-      if (head[i] == '\n') ++line, column = 0;
-    throw Error({ErrorKind::input,
-                 "E0301",
-                 at(info.file, line, column, first),
-                 fmt::format("content is binary, not text: {} control characters in the first {} bytes",
-                             controls,
-                             std::min<std::size_t>(head.size(), 4096)),
-                 "",
-                 "--format raw with a sidecar reads raw binary (docs: raw binary)"});
-  }
-
   // A delimiter that was given, and that leaves every line whole though its lines are no numbers.
   void refuse_wrong_delimiter() const {
     if (options.delimiter == "auto" || columns_ > 1) return;
@@ -222,7 +55,7 @@ struct Study {
       return !all_numeric(split(line.text, dialect.delimiter));
     });
     if (sample.size() < 2 || odd == sample.end()) return;
-    const Score looks = best_score();
+    const Score looks = best_score(sample);
     if (looks.columns < 2) return;
     fail(*odd,
          0,
@@ -231,65 +64,15 @@ struct Study {
                      delimiter_name(dialect.delimiter)),
          std::string(odd->text),
          fmt::format("the file looks separated by {} ({} columns): leave --delimiter out",
-                     looks.delimiter == ',' ? "commas" : looks.delimiter == ';' ? "semicolons" : looks.delimiter == '\t' ? "tabs" : "blanks",
+                     looks.delimiter == ','    ? "commas"
+                     : looks.delimiter == ';'  ? "semicolons"
+                     : looks.delimiter == '\t' ? "tabs"
+                                               : "blanks",
                      looks.columns));
-  }
-
-  // Lines to study, comments before the data, and the offset and number of the first line used.
-  void collect(std::size_t offset, std::uint64_t number) {
-    bool complete_only = !whole;
-    while (offset < head.size() && sample.size() < kSample) {
-      Line line = line_at(head, offset, number);
-      if (line.end == LineEnd::none && complete_only) {
-        if (sample.empty())  // else the row parser tells
-          fail(line,
-               0,
-               "E0305",
-               "line longer than 1 MiB",
-               "",
-               "is this a text file with line ends?");
-        break;
-      }
-      const std::string_view text = trimmed(line.text);
-      if (sample.empty() && is_comment(text)) {
-        comments.push_back(line);
-      } else if (!text.empty() && !is_comment(text)) {
-        if (sample.empty()) join_quoted_lines(line);
-        sample.push_back(line);
-      }
-      offset = line.after;
-      number += line.lines;
-    }
-  }
-
-  // A header may hold newlines inside quotes: the line goes on until its quotes are closed.
-  void join_quoted_lines(Line& line) const {
-    const auto open = [](std::string_view text) {
-      return std::count(text.begin(), text.end(), '"') % 2 != 0;
-    };
-    if (!open(line.text)) return;
-    Line longer = line;
-    while (open(longer.text) && longer.after < head.size() && longer.text.size() < kMaxField) {
-      const Line next = line_at(head, longer.after, 0);
-      longer.text = head.substr(longer.offset, next.offset + next.text.size() - longer.offset);
-      longer.after = next.after;
-      longer.end = next.end;
-      ++longer.lines;
-    }
-    if (!open(longer.text)) line = longer;
   }
 
   std::string sampled() const {
     return fmt::format("from the first {} line{}", sample.size(), sample.size() == 1 ? "" : "s");
-  }
-
-  Score best_score() const {
-    Score best;
-    for (const char candidate : {',', ';', '\t', ' '}) {
-      const Score s = score(sample, candidate);
-      if (s.quality > best.quality + 1e-9) best = s;
-    }
-    return best;
   }
 
   void choose_delimiter() {
@@ -298,7 +81,7 @@ struct Study {
       best = score(sample, named_delimiter(options.delimiter));
       info.dialect.push_back("delimiter " + delimiter_name(best.delimiter) + " (given)");
     } else {
-      best = best_score();
+      best = best_score(sample);
       if (best.columns > 1) {
         info.dialect.push_back("delimiter " + delimiter_name(best.delimiter));
         if (best.delimiter != ',')
@@ -507,8 +290,7 @@ struct Study {
   }
 
   void run() {
-    refuse_other_content();
-    refuse_binary();
+    refuse_other_content(head, info.file);
     std::size_t offset = 0;
     std::uint64_t number = 1;
     if (head.substr(0, 3) == "\xEF\xBB\xBF") {
@@ -521,7 +303,9 @@ struct Study {
     }
     if (options.skip_rows > 0)
       info.dialect.push_back(fmt::format("{} lines skipped", options.skip_rows));
-    collect(offset, number);
+    Sample found = sample_lines(head, whole, offset, number, info.file);
+    sample = std::move(found.lines);
+    comments = std::move(found.comments);
     if (sample.empty())
       throw Error({ErrorKind::input,
                    "E0322",
@@ -556,58 +340,6 @@ struct Study {
 };
 
 }  // namespace
-
-std::string at(const std::string& file,
-               std::uint64_t line,
-               std::uint64_t column,
-               std::uint64_t byte) {
-  return fmt::format("{}:{}:{} (byte {})", file, line, column, byte);
-}
-
-bool is_comment(std::string_view line) {
-  line = trimmed(line);
-  return !line.empty() && (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//");
-}
-
-std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote) {
-  std::vector<Field> fields;
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  const auto pad = [&](char c) { return blank(c) && (c != delimiter || delimiter == ' '); };
-  const auto is_end = [&](char c) { return delimiter == ' ' ? blank(c) : c == delimiter; };
-  std::size_t i = 0;
-  for (;;) {
-    while (i < line.size() && pad(line[i])) ++i;
-    if (delimiter == ' ' && i == line.size() && !fields.empty()) break;
-    Field field;
-    field.offset = i;
-    if (i < line.size() && line[i] == '"') {
-      field.quoted = true;
-      for (++i;; ++i) {
-        if (i >= line.size()) {
-          if (open_quote != nullptr) *open_quote = true;
-          break;
-        }
-        if (line[i] == '"') {
-          if (i + 1 >= line.size() || line[i + 1] != '"') break;
-          ++i;
-        }
-        field.text += line[i];
-      }
-      i = std::min(i + 1, line.size());
-      field.text = std::string(trimmed(field.text));
-      while (i < line.size() && pad(line[i]) && !is_end(line[i])) ++i;
-      for (; i < line.size() && !is_end(line[i]); ++i) field.text += line[i];
-    } else {
-      const std::size_t start = i;
-      while (i < line.size() && !is_end(line[i])) ++i;
-      field.text = std::string(trimmed(line.substr(start, i - start)));
-    }
-    fields.push_back(std::move(field));
-    if (i >= line.size()) break;
-    ++i;  // the delimiter
-  }
-  return fields;
-}
 
 Dialect understand(std::string_view head, bool whole, const ReadOptions& options, LogInfo& info) {
   Study study(head, whole, options, info);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/csv_line.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -20,8 +21,6 @@ inline constexpr std::size_t kMaxName = 1024;
 inline constexpr std::size_t kMaxColumns = 100000;
 inline constexpr std::size_t kHeadBytes =
     2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
-
-enum class LineEnd : std::uint8_t { none, lf, crlf, cr };
 
 struct Column {
   std::string name, unit;
@@ -44,29 +43,9 @@ struct Dialect {
   std::uint64_t first_data_line = 1;  ///< its physical line number
 };
 
-/// One cell of a line: its text without quotes and outer blanks, and where it begins in the line.
-struct Field {
-  std::string text;
-  std::size_t offset = 0;  ///< of its first byte (of the opening quote)
-  bool quoted = false;
-};
-
-/// Splits one line (without its line end). Throws nothing: an open quote takes the rest of the line
-/// (`open_quote` is set).
-std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote = nullptr);
-
-/// Does this line start with a comment sign (#, %, //)?
-bool is_comment(std::string_view line);
-
 /// Studies `head` (all of the file when `whole`) and fills channels, guesses, dialect, warnings and
 /// what is known of the time base into `info`. Throws Error with a place when the head cannot be a
 /// log.
 Dialect understand(std::string_view head, bool whole, const ReadOptions& options, LogInfo& info);
-
-/// "FILE:LINE:COL (byte N)".
-std::string at(const std::string& file,
-               std::uint64_t line,
-               std::uint64_t column,
-               std::uint64_t byte);
 
 }  // namespace libchar::csv

@@ -1,5 +1,5 @@
 #pragma once
-// Names, units and the time column of a table: what the cells of a header line mean.
+// Names and units: what the cells of a header line mean.
 
 #include <string>
 #include <string_view>
@@ -17,12 +17,6 @@ std::pair<std::string, std::string> name_and_unit(std::string_view header_cell);
 /// Fills names and units of dialect.columns from their header texts; duplicates are an error,
 /// strange names a warning.
 void name_columns(Dialect& dialect, LogInfo& info);
-
-/// Finds the time column and its unit; `rows` are the first data rows.
-void choose_time(Dialect& dialect,
-                 const std::vector<std::vector<Field>>& rows,
-                 const ReadOptions& options,
-                 LogInfo& info);
 
 /// "// Update Rate: 100.0Hz": a comment that states the sampling rate.
 void read_rate_comment(std::string_view comment, LogInfo& info);

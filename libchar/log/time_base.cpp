@@ -12,136 +12,10 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kLearn = 1025;  // rows whose stamps decide on dt
-constexpr std::size_t kAhead = 16;    // rows looked at before a late stamp is called a gap
-constexpr double kLargestGap = 1e8;   // grid points in one gap
-constexpr std::uint64_t kBackward =
-    64;                               // backward rows in a row before the clock is called restarted
-constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
+constexpr std::size_t kLearn = 1025;    // rows whose stamps decide on dt
 constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
-constexpr int kRateRun = 8;             // equal odd steps in a row that make a change of rate
-
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
-
-void StampSketch::add(std::int64_t index, std::int64_t stamp) {
-  const Pair pair{index, stamp};
-  if (in_cell_ == 0 || cells_.empty()) {
-    if (cells_.size() == kCells) {
-      thin();
-    }
-    cells_.push_back({pair, pair, pair});
-    in_cell_ = per_cell_ - 1;
-    return;
-  }
-  --in_cell_;
-  Cell& cell = cells_.back();
-  const double r = residual(pair);
-  if (r < residual(cell.low)) cell.low = pair;
-  if (r > residual(cell.high)) cell.high = pair;
-}
-
-double StampSketch::residual(const Pair& pair) const {
-  const Pair& origin = cells_.front().first;
-  return static_cast<double>(pair.stamp - origin.stamp) -
-         slope_ * static_cast<double>(pair.index - origin.index);
-}
-
-void StampSketch::thin() {
-  slope_ = interval_ns();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i + 1 < cells_.size(); i += 2) {
-    Cell cell = cells_[i];
-    const Cell& other = cells_[i + 1];
-    for (const Pair& pair : {other.first, other.low, other.high}) {
-      if (residual(pair) < residual(cell.low)) cell.low = pair;
-      if (residual(pair) > residual(cell.high)) cell.high = pair;
-    }
-    cells_[kept++] = cell;
-  }
-  cells_.resize(kept);
-  per_cell_ *= 2;
-}
-
-double StampSketch::interval_ns() const {
-  const std::size_t n = cells_.size();
-  if (n == 0) return 0;
-  const std::size_t half = n / 2;
-  std::vector<double> slopes;
-  for (std::size_t i = 0; half > 0 && i + half < n; ++i) {
-    const Pair &a = cells_[i].first, &b = cells_[i + half].first;
-    slopes.push_back(static_cast<double>(b.stamp - a.stamp) /
-                     static_cast<double>(b.index - a.index));
-  }
-  return median(slopes);
-}
-
-StampSketch::Deviation StampSketch::deviation(double interval) const {
-  if (cells_.size() < 3) return {};
-  const Pair origin = cells_.front().first;
-  const auto off = [&](const Pair& pair) {
-    return static_cast<double>(pair.stamp - origin.stamp) -
-           interval * static_cast<double>(pair.index - origin.index);
-  };
-  std::vector<double> r;
-  for (const Cell& cell : cells_) r.push_back(off(cell.first));
-  const double centre = median(r);
-  Deviation result;
-  for (const Cell& cell : cells_)
-    result.largest = std::max(
-        {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
-  for (double& value : r) value = std::fabs(value - centre);
-  result.robust = 1.4826 * median(r);
-  return result;
-}
-
-FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
-  std::vector<double> steps;
-  std::size_t zeros = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    std::int64_t step = 0;
-    if (__builtin_sub_overflow(stamps[i], stamps[i - 1], &step)) continue;
-    zeros += step == 0;
-    if (step > 0) steps.push_back(static_cast<double>(step));
-  }
-  FirstInterval result;
-  if (steps.empty()) return result;
-  result.coarse = stamps.size() > 8 && zeros * 4 > stamps.size();
-  const double middle = median(steps);
-  std::vector<double> scatter;
-  for (const double step : steps) scatter.push_back(std::fabs(step - middle));
-  const double deviation = 1.4826 * median(scatter);
-  double sum = 0;
-  std::size_t close = 0;
-  for (const double step : steps) {
-    if (std::fabs(step - middle) > 0.1 * middle) continue;
-    sum += step;
-    ++close;
-  }
-  if (!result.coarse && close * 2 >= steps.size()) {
-    result.ns = sum / static_cast<double>(close);
-    result.longest_step = 1.5 * result.ns;
-    return result;
-  }
-  // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
-  // dominate.
-  std::vector<double> slopes;
-  const std::size_t half = stamps.size() / 2;
-  for (std::size_t i = 0; i + half < stamps.size(); ++i)
-    slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
-                     static_cast<double>(half));
-  const double slope = median(slopes);
-  result.ns = result.coarse || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
-  if (!(result.ns > 0)) result.ns = middle;
-  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
-  return result;
-}
 
 TimeGrid::TimeGrid(const RowSource& source,
                    const ReadOptions& options,
@@ -165,23 +39,6 @@ TimeGrid::TimeGrid(const RowSource& source,
   if (to_ns_ <= from_ns_)
     throw Error(
         {ErrorKind::usage, "", "", "the window is empty: --to does not lie after --from", "", ""});
-}
-
-std::string TimeGrid::place(const Pending& front, std::size_t row) const {
-  return source_.place(front.block, row, front.rows_before);
-}
-
-void TimeGrid::fail(const Pending& front,
-                    std::size_t row,
-                    std::string code,
-                    std::string what,
-                    std::string hint) const {
-  throw Error({ErrorKind::input,
-               std::move(code),
-               source_.where(front.block, row, front.rows_before),
-               std::move(what),
-               "",
-               std::move(hint)});
 }
 
 bool TimeGrid::push(RowBlock& block) {
@@ -229,7 +86,7 @@ void TimeGrid::process(bool end) {
     if (waiting_ == 0) return;
     learn();
   }
-  const std::size_t ahead = end ? 0 : kAhead;
+  const std::size_t ahead = end ? 0 : kRowsAhead;
   while (waiting_ > ahead && !window_over_) {
     Pending& front = pending_.front();
     const std::size_t count =
@@ -318,185 +175,6 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
     }
   }
   emit_rows(front.block, std::min(run, stop), stop);
-}
-
-// A row whose stamp is not one regular step behind the last one.
-TimeGrid::Verdict TimeGrid::decide(const Pending& front,
-                                   std::size_t row,
-                                   std::int64_t& stamp,
-                                   std::size_t ahead) {
-  if (!have_last_) {
-    first_stamp_ = stamp;
-    return Verdict::keep;
-  }
-  std::int64_t step = 0;
-  if (__builtin_sub_overflow(stamp, last_, &step))
-    fail(front,
-         row,
-         "E0316",
-         "wild time stamp: the distance to the row before does not fit 64-bit nanoseconds",
-         "remove the row, or --time-column none --rate HZ");
-  if (step == 0) {
-    if (stamp < raw_last_) return backward(front, row, stamp);
-    if (coarse_) return Verdict::keep;
-    warnings_.add("duplicate_timestamp",
-                  "rows with the stamp of the row before: the first is kept",
-                  place(front, row));
-    return Verdict::drop;
-  }
-  if (step < 0) return backward(front, row, stamp);
-  watch_rate(front, row, static_cast<double>(step) / dt_);
-  const std::int64_t gap = lag(front, row, stamp, ahead);
-  if (gap <= 0) {
-    // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
-    if (static_cast<double>(step) > kWildSteps * dt_)
-      fail(front,
-           row,
-           "E0316",
-           fmt::format("wild time stamp: {} s ahead of the rows around it",
-                       shortest(static_cast<double>(step) * 1e-9)),
-           "remove the row, or --time-column none --rate HZ");
-    warnings_.add("late_stamp",
-                  "stamps far ahead of the rows behind them: the rows are placed on the grid",
-                  place(front, row));
-    stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
-    return Verdict::keep;
-  }
-  if (static_cast<double>(gap) > kLargestGap)
-    fail(front,
-         row,
-         "E0316",
-         fmt::format("wild time stamp: {} s after the row before ({} missing samples)",
-                     shortest(static_cast<double>(step) * 1e-9),
-                     gap),
-         "remove the row, --from and --to choose a stretch, --time-column none --rate HZ ignores "
-         "the stamps");
-  ++gaps_;
-  warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
-  // Grid points before the window's start are passed over.
-  std::int64_t first = 1;
-  const double before = static_cast<double>(last_ - first_stamp_);
-  if (before < static_cast<double>(from_ns_))
-    first = std::max<std::int64_t>(
-        1, static_cast<std::int64_t>(std::ceil((static_cast<double>(from_ns_) - before) / dt_)));
-  std::int64_t end = gap;
-  if (to_ns_ != INT64_MAX)
-    end = std::min<std::int64_t>(
-        gap,
-        static_cast<std::int64_t>(std::ceil((static_cast<double>(to_ns_) - before) / dt_)) - 1);
-  if (end >= first) {
-    if (!start_ns_)
-      start_ns_ = last_ + static_cast<std::int64_t>(std::llround(static_cast<double>(first) * dt_));
-    missing_ += static_cast<std::uint64_t>(end - first + 1);
-    emit_missing(static_cast<std::uint64_t>(end - first + 1));
-  }
-  index_ += gap;
-  return Verdict::keep;
-}
-
-// Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
-// the row.
-TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  const std::int64_t unit = std::max<std::int64_t>(1,
-                                                   source_.info().time.unit == "ns"   ? 1
-                                                   : source_.info().time.unit == "us" ? 1000
-                                                   : source_.info().time.unit == "ms" ? 1000000
-                                                                                      : 0);
-  const std::int64_t raw = stamp - wrap_, before = last_ - wrap_;
-  for (const int bits : {16, 32}) {
-    const double range = std::ldexp(static_cast<double>(unit), bits);
-    if (range > 4e18 || source_.info().time.unit == "s" || raw < 0 || before < 0 ||
-        static_cast<double>(before) >= range)
-      continue;
-    const double step = static_cast<double>(raw - before) + range;
-    if (step > 0 && step < 0.5 * range && step < 1000 * dt_) {
-      wrap_ += static_cast<std::int64_t>(range);
-      stamp += static_cast<std::int64_t>(range);
-      warnings_.add("clock_rollover",
-                    fmt::format("the {}-bit clock ran over: unwrapped", bits),
-                    place(front, row));
-      const std::int64_t late =
-          stamp - last_ <= limit_
-              ? 0
-              : static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_) / dt_)) -
-                    1;
-      if (late > 0) {
-        ++gaps_;
-        missing_ += static_cast<std::uint64_t>(late);
-        index_ += late;
-        emit_missing(static_cast<std::uint64_t>(late));
-      }
-      return Verdict::keep;
-    }
-  }
-  if (dropped_in_a_row_ == 0) first_dropped_ = source_.where(front.block, row, front.rows_before);
-  if (++dropped_in_a_row_ >= kBackward)
-    throw Error({ErrorKind::input,
-                 "E0317",
-                 first_dropped_,
-                 fmt::format("the time steps back here and {} rows do not catch up (concatenated "
-                             "logs, or a wild stamp before?)",
-                             kBackward),
-                 "",
-                 "split the file there, --to ends before it, --time-column none --rate HZ ignores "
-                 "the stamps"});
-  warnings_.add("backward_timestamp",
-                "rows whose stamp lies before that of the row before: dropped",
-                place(front, row));
-  return Verdict::drop;
-}
-
-// Missing grid points before this row: how much later than expected it and the rows behind it are.
-// A single late row whose followers are on time is no gap.
-std::int64_t TimeGrid::lag(const Pending& front,
-                           std::size_t row,
-                           std::int64_t stamp,
-                           std::size_t ahead) const {
-  const auto late = [&](std::int64_t t, std::size_t j) {
-    return static_cast<double>(t - last_) / dt_ - static_cast<double>(j + 1);
-  };
-  const double own = late(stamp, 0);
-  std::vector<double> lags{own};
-  std::size_t item = 0, i = row;
-  const Pending* at = &front;
-  for (std::size_t j = 1; j < std::min(ahead, kAhead); ++j) {
-    if (++i >= at->block.rows) {
-      if (++item >= pending_.size()) break;
-      at = &pending_[item];
-      i = 0;
-    }
-    std::int64_t t = 0, unused = 0;
-    if (__builtin_add_overflow(at->block.time_ns[i], wrap_, &t) ||
-        __builtin_sub_overflow(t, last_, &unused) || t <= last_)
-      continue;
-    lags.push_back(late(t, j));
-  }
-  std::nth_element(
-      lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 4), lags.end());
-  return static_cast<std::int64_t>(std::llround(std::min(own, lags[lags.size() / 4])));
-}
-
-// The same odd step many times in a row is another sampling rate, not gaps.
-void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
-  const bool odd = ratio > 1.25 || ratio < 0.75;
-  if (!odd) {
-    same_ratio_ = 0;
-    last_ratio_ = 1;
-    return;
-  }
-  if (same_ratio_ == 0 || std::fabs(ratio - last_ratio_) > 0.1 * last_ratio_) {
-    same_ratio_ = 0;
-    last_ratio_ = ratio;
-    // The last row at the old distance.
-    ratio_place_ = row > 0 ? place(front, row - 1) : end_of_block_;
-  }
-  if (++same_ratio_ != kRateRun) return;
-  warnings_.add(
-      "rate_change",
-      fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
-                  1e9 / dt_,
-                  1e9 / (dt_ * ratio)),
-      ratio_place_);
 }
 
 void TimeGrid::without_stamps(Pending& front) {
@@ -601,17 +279,19 @@ void TimeGrid::finish(LogInfo& info) {
   const double stamped_s = static_cast<double>(last_ - first_stamp_) * 1e-9;
   const double grid_s = static_cast<double>(index_) * interval * 1e-9;
   if (index_ > 0 && std::abs(grid_s - stamped_s) > 0.01 * stamped_s)
-    warnings_.add("uneven_sampling",
-                  fmt::format("the stamps span {:.4g} s, the samples at one even rate {:.4g} s: the "
-                              "sampling is uneven and times on the axes are off by that",
-                              stamped_s,
-                              grid_s));
+    warnings_.add(
+        "uneven_sampling",
+        fmt::format("the stamps span {:.4g} s, the samples at one even rate {:.4g} s: the "
+                    "sampling is uneven and times on the axes are off by that",
+                    stamped_s,
+                    grid_s));
   if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
-    warnings_.add("rate_ignored",
-                  fmt::format("the stamps give {:.6g} Hz; the rate of {:.6g} Hz that was given is not "
-                              "used (--time-column none ignores the stamps)",
-                              1e9 / interval,
-                              *options_.rate_hz));
+    warnings_.add(
+        "rate_ignored",
+        fmt::format("the stamps give {:.6g} Hz; the rate of {:.6g} Hz that was given is not "
+                    "used (--time-column none ignores the stamps)",
+                    1e9 / interval,
+                    *options_.rate_hz));
 }
 
 }  // namespace libchar

@@ -2,10 +2,8 @@
 // From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN
 // (never interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and
 // everything is counted.
-//
-// The sampling interval dt that tells a gap from a step is the median of the first differences; the
-// rate that is reported is the median of long-baseline slopes (Theil 1950, in the half-length form)
-// over a thinned set of (grid index, stamp) pairs.
+// The interval comes from stamp_sketch.hpp; what becomes of a stamp that does not fit is decided in
+// time_repairs.cpp.
 
 #include <cstdint>
 #include <deque>
@@ -15,46 +13,12 @@
 
 #include "libchar/log/raw_rows.hpp"
 #include "libchar/log/read.hpp"
+#include "libchar/log/stamp_sketch.hpp"
 
 namespace libchar {
 
-/// A bounded, evenly thinned set of (grid index, stamp) pairs that also keeps the most deviating
-/// pair of every stretch.
-class StampSketch {
- public:
-  void add(std::int64_t index, std::int64_t stamp);
-  /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
-  double interval_ns() const;
-  /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.
-  struct Deviation {
-    double robust = 0, largest = 0;
-  };
-  Deviation deviation(double interval_ns) const;
-
- private:
-  struct Pair {
-    std::int64_t index = 0, stamp = 0;
-  };
-  struct Cell {
-    Pair first, low, high;
-  };
-  double residual(const Pair& pair) const;
-  void thin();
-  std::vector<Cell> cells_;
-  std::uint64_t per_cell_ = 1, in_cell_ = 0;
-  double slope_ = 0;  // provisional, to tell which pair of a cell deviates most
-  static constexpr std::size_t kCells = 4096;
-};
-
-/// Sampling interval from the first stamps; `coarse` when so many are equal that the clock is too
-/// coarse to tell rows apart.
-struct FirstInterval {
-  double ns = 0;
-  double longest_step =
-      0;  ///< a longer one is a gap: 1.5 dt, or more where the stamps scatter widely, ns
-  bool coarse = false;
-};
-FirstInterval first_interval(const std::vector<std::int64_t>& stamps);
+inline constexpr std::size_t kRowsAhead =
+    16;  ///< rows looked at before a late stamp is called a gap
 
 /// Places rows on the grid and passes them to the sink in order.
 class TimeGrid {
@@ -112,7 +76,7 @@ class TimeGrid {
   double dt_ = 0;           // ns
   std::int64_t limit_ = 0;  // longest regular step, ns
   std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;
-  std::int64_t raw_last_ = 0;     // last_ as the file has it
+  std::int64_t raw_last_ = 0;  // last_ as the file has it
   bool have_last_ = false;
   std::int64_t index_ = -1;  // grid index of the last row, from the first row of the file
   std::uint64_t delivered_ = 0, used_ = 0, gaps_ = 0, missing_ = 0, dropped_in_a_row_ = 0;

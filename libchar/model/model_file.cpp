@@ -63,7 +63,7 @@ std::string term_block(const Coefficient& c, std::size_t t, const std::string& u
                                 kTexts[t].curve);
   out += fmt::format("  value: {}\n", c.value ? number(*c.value) : "null");
   out += fmt::format("  unit: {}\n", quoted_yaml(term_unit(name.key, unit)));
-  if (c.value && c.status != Status::given) {
+  if (c.value && (c.status != Status::given || c.ci95.high > 0)) {
     out +=
         fmt::format("  ci95: [{}, {}]\n  ci95_by: {}\n",
                     number(c.ci95.low),

@@ -62,6 +62,7 @@ struct Scene {
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
+  std::vector<std::string> files;          ///< every file that was named and found, resolved
   Warnings warnings;
 };
 
@@ -71,7 +72,7 @@ struct SceneReadOptions {
 
 inline constexpr std::size_t kMostSensors = 10000;
 
-/// Reads `format: scene`, `version: 1`, YAML or JSON (docs/formats.md). Paths are relative to the
+/// Reads `format: scene`, `version: 1`, YAML or JSON (docs/scenes.md). Paths are relative to the
 /// scene's folder and stay inside it. Throws Error(input) with place, key and the nearest valid
 /// key.
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
@@ -81,12 +82,16 @@ Scene parse_scene(std::string_view text,
                   const std::string& path,
                   const SceneReadOptions& options = {});
 
-/// One signal: a map {kind, …} with the keys of its kind. Samples of kind recording are left
-/// unread.
-SignalSpec read_signal(const Document& node, const std::string& file, const std::string& path);
+/// One signal: a map {kind, …} with the keys of its kind; a bare word is a kind, a bare number a
+/// constant. `earlier` names the signals that stand before it (`of` may be such a name or an index
+/// from 0). Samples of kind recording are left unread.
+SignalSpec read_signal(const Document& node,
+                       const std::string& file,
+                       const std::string& path,
+                       const std::vector<std::string>& earlier = {});
 
-/// Throws Error(output) when an output would overwrite an input of the scene, or two outputs are
-/// one.
+/// Throws Error(output) when an output would overwrite the scene or a file that it names, or two
+/// outputs are one.
 void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& outputs);
 
 /// The scene as YAML; paths relative to the folder of `scene.file`; models inline.

@@ -1,3 +1,6 @@
+// The scene as YAML, written by hand as model files are (model/model_file.cpp): every number reads
+// back to the same double, every text to the same text.
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +40,7 @@ std::string recording_block(const std::string& file,
   if (r.delimiter != "auto") add("delimiter", quoted_yaml(r.delimiter));
   if (r.decimal != "auto") add("decimal", r.decimal);
   if (r.header != "auto") add("header", quoted_yaml(r.header));
+  if (r.encoding != "utf-8") add("encoding", r.encoding);
   if (!r.names.empty()) add("names", list_of(r.names));
   if (!r.units.empty()) add("units", list_of(r.units));
   if (r.time_column != "auto") add("time_column", quoted_yaml(r.time_column));
@@ -45,13 +49,18 @@ std::string recording_block(const std::string& file,
   if (r.format != "auto") add("format", r.format);
   if (r.from_s) add("from_s", shortest_yaml(*r.from_s));
   if (r.to_s) add("to_s", shortest_yaml(*r.to_s));
+  if (r.overflow_as_missing) add("overflow_as_missing", "true");
+  if (r.skip_repeated_header) add("skip_repeated_header", "true");
   const std::string path = quoted_yaml(path_for_scene(file, scene));
   return indent + "recording: " +
          (more.empty() ? path + "\n" : "\n" + indent + "  file: " + path + "\n" + more);
 }
 
 // Everything that differs from a signal of the same kind without keys.
-std::string signal_text(const SignalSpec& s, const std::string& name, const std::string& scene) {
+std::string signal_text(const SignalSpec& s,
+                        const std::string& name,
+                        const std::vector<std::string>& truth_names,
+                        const std::string& scene) {
   const SignalSpec plain;
   std::string out = "{kind: " + s.kind;
   if (!name.empty()) out += ", name: " + quoted_yaml(name);
@@ -74,7 +83,7 @@ std::string signal_text(const SignalSpec& s, const std::string& name, const std:
   number("step", s.step, plain.step);
   number("slope", s.slope, plain.slope);
   if (s.kind == "derivative" || s.kind == "sine_of" || s.kind == "cosine_of")
-    out += fmt::format(", of: {}", s.of);
+    out += ", of: " + quoted_yaml(truth_names.at(s.of));
   if (s.kind == "points") {
     out += ", points: [";
     for (std::size_t i = 0; i < s.points.size(); ++i)
@@ -100,22 +109,39 @@ std::string simulation_block(const Scene& scene) {
   if (s.oversampling > 1) out += fmt::format("  oversampling: {}\n", s.oversampling);
   out += "  truth:\n";
   for (std::size_t j = 0; j < s.truth.size(); ++j)
-    out += "    - " + signal_text(s.truth[j], s.truth_names[j], scene.file) + "\n";
+    out += "    - " + signal_text(s.truth[j], s.truth_names[j], s.truth_names, scene.file) + "\n";
   if (s.truth_bandwidth_hz)
     out += "  truth_bandwidth_hz: " + shortest_yaml(*s.truth_bandwidth_hz) + "\n";
-  if (s.temperature) out += "  temperature: " + signal_text(*s.temperature, "", scene.file) + "\n";
+  if (s.temperature)
+    out += "  temperature: " + signal_text(*s.temperature, "", s.truth_names, scene.file) + "\n";
   if (s.low_pass_starts_at_zero) out += "  low_pass_start: zero\n";
   return out;
 }
 
-// The model file itself, its comment left out, indented under its key.
+// A line without the comment behind it; a # in a quoted text is none.
+std::string_view without_comment(std::string_view line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quoted && line[i] == '\\') {
+      ++i;
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && line[i] == '#') {
+      line = line.substr(0, i);
+    }
+  }
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
+
+// The model file itself, its comments left out (a scene of thousands of devices is read again),
+// indented under its key.
 std::string inline_model(const SensorModel& model, const std::string& indent) {
   const std::string text = model_yaml(model);
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    if (!line.empty() && line[0] != '#') out += indent + line + "\n";
+    const std::string_view line = without_comment(std::string_view(text).substr(at, end - at));
+    if (!line.empty()) out.append(indent).append(line).append("\n");
     at = end + 1;
   }
   return out;
@@ -125,9 +151,13 @@ std::string sensors_block(const Scene& scene) {
   std::string out = "sensors:\n";
   for (const SceneSensor& sensor : scene.sensors) {
     out += "  - name: " + quoted_yaml(sensor.name) + "\n";
-    if (sensor.channel != sensor.name) out += "    channel: " + quoted_yaml(sensor.channel) + "\n";
+    if (sensor.channel != sensor.name && !scene.simulate)
+      out += "    channel: " + quoted_yaml(sensor.channel) + "\n";
     if (sensor.h != std::vector<double>{1}) out += "    h: " + list_of(sensor.h) + "\n";
-    if (sensor.model) out += "    model:\n" + inline_model(*sensor.model, "      ");
+    if (sensor.model)
+      out += "    model:\n" + inline_model(*sensor.model, "      ");
+    else if (scene.simulate)
+      out += "    model: none\n";
   }
   return out;
 }
@@ -187,7 +217,11 @@ std::string scene_yaml(const Scene& scene) {
   out += sensors_block(scene);
   if (scene.reference) out += reference_block(*scene.reference, scene.file);
   const auto window = [&](const char* key, const std::optional<TimeWindow>& w) {
-    if (w) out += fmt::format("{}: {}\n", key, list_of(std::vector<double>{w->from_s, w->to_s}));
+    if (w)
+      out += fmt::format("{}: [{}, {}]\n",
+                         key,
+                         shortest_yaml(w->from_s),
+                         std::isfinite(w->to_s) ? shortest_yaml(w->to_s) : "end");
   };
   window("learning", scene.learning);
   window("evaluation", scene.evaluation);

@@ -39,7 +39,7 @@ namespace {
 constexpr double kStep = 0.62;          // a: exp(-pi^2/a) = 1.2e-7
 constexpr int kSlowNodes = 5;           // Gauss nodes for s < 1/(2 length)
 constexpr int kFastNodes = 4;           // Gauss nodes for p < 1/2
-constexpr int kTailTerms = 200;         // of either tail: e^(-200 a/2) = 1e-27
+constexpr int kTailTerms = 200;         // of either tail: e^(-200 a/2) = 1e-27 of its weight
 constexpr double kShortestRecord = 64;  // shorter ones get this design
 
 struct Rule {
@@ -80,7 +80,19 @@ Rule gauss_rule(const Rule& measure, int n) {
   return rule;
 }
 
-// 1 - p_i p_j and p_j - p_i over it, from the losses q = 1 - p: nothing cancels.
+/// The trapezoid nodes j = first, first + step, ... as far as they count, as a measure in node(s).
+template <typename Node>
+Rule tail(int first, int step, const Node& node) {
+  Rule measure;
+  for (int i = 0; i < kTailTerms; ++i) {
+    const double s = std::exp(kStep * (first + step * i));
+    measure.node.push_back(node(s));
+    measure.weight.push_back(node_weight(s));
+  }
+  return measure;
+}
+
+/// 1 - p_i p_j from the losses q = 1 - p: nothing cancels.
 double gap(double qi, double qj) {
   return qi + qj - qi * qj;
 }
@@ -91,34 +103,21 @@ FlickerFilter design_flicker(std::uint64_t length) {
   const double n =
       std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
   const int first = static_cast<int>(std::floor(-std::log(2 * n) / kStep));
+  const Rule fast = gauss_rule(tail(1, 1, [](double s) { return 1 / (1 + s); }), kFastNodes);
+  const Rule slow = gauss_rule(tail(first - 1, -1, [](double s) { return s; }), kSlowNodes);
   FlickerFilter filter;
-  Rule fast, slow;
-  for (int j = kTailTerms; j > 0; --j) {  // p < 1/2
-    const double s = std::exp(kStep * j);
-    fast.node.push_back(1 / (1 + s));
-    fast.weight.push_back(node_weight(s));
-  }
-  std::reverse(fast.node.begin(), fast.node.end());
-  std::reverse(fast.weight.begin(), fast.weight.end());
-  const Rule fast_rule = gauss_rule(fast, kFastNodes);
-  for (int k = kFastNodes; k-- > 0;) {
-    filter.loss.push_back(1 - fast_rule.node[static_cast<std::size_t>(k)]);
-    filter.weight.push_back(fast_rule.weight[static_cast<std::size_t>(k)]);
+  for (std::size_t k = kFastNodes; k-- > 0;) {
+    filter.loss.push_back(1 - fast.node[k]);
+    filter.weight.push_back(fast.weight[k]);
   }
   for (int j = 0; j >= first; --j) {
     const double s = std::exp(kStep * j);
     filter.loss.push_back(s / (1 + s));
     filter.weight.push_back(node_weight(s));
   }
-  for (int j = first - 1; j > first - kTailTerms; --j) {
-    const double s = std::exp(kStep * j);
-    slow.node.push_back(s);
-    slow.weight.push_back(node_weight(s));
-  }
-  const Rule slow_rule = gauss_rule(slow, kSlowNodes);
   for (std::size_t k = 0; k < kSlowNodes; ++k) {
-    filter.loss.push_back(slow_rule.node[k] / (1 + slow_rule.node[k]));
-    filter.weight.push_back(slow_rule.weight[k]);
+    filter.loss.push_back(slow.node[k] / (1 + slow.node[k]));
+    filter.weight.push_back(slow.weight[k]);
   }
   return filter;
 }

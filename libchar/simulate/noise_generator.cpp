@@ -178,7 +178,9 @@ struct NoiseGenerator::State {
   std::optional<Quantization> quantization;
   std::optional<Ramp> ramp;
   bool quantization_after = false;
+  double low_pass_start = 0;
   std::array<double, kBlock> scratch;
+  double past_in_low_pass(const NoiseDesign& design, DeviateStream deviates) const;
 };
 
 NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor)
@@ -209,11 +211,33 @@ NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, st
     state_->quantization_after = band_limited;
   }
   if (const double r = coefficient(Term::ramp); r != 0) state_->ramp = Ramp{r, rate};
+  state_->low_pass_start = state_->past_in_low_pass(design, stream(Purpose::white_start));
+}
+
+// What the past has left in y = a y + (1 - a) u. White: (1-a) sum_k a^k u_{-1-k} has variance
+// (1-a)/(1+a) of u. Quantization: (1-a) Qz/dt [w_{-1} - (1-a) sum_k a^k w_{-2-k}], whose w_{-1} is
+// the one that the first sample subtracts.
+double NoiseGenerator::State::past_in_low_pass(const NoiseDesign& design,
+                                               DeviateStream deviates) const {
+  if (!design.bandwidth_hz || design.sampling == Sampling::band_limited) return 0;
+  const double half = std::numbers::pi * *design.bandwidth_hz / design.rate_hz;
+  const double pass = -std::expm1(-2 * half);       // 1 - a
+  const double share = std::sqrt(std::tanh(half));  // of the standard deviation: (1-a)/(1+a)
+  double past = 0;
+  if (white) past += white->level * share * deviates.normal();
+  deviates.seek(1);
+  if (quantization)
+    past += quantization->level * pass * (quantization->before - share * deviates.normal());
+  return past;
 }
 
 NoiseGenerator::~NoiseGenerator() = default;
 NoiseGenerator::NoiseGenerator(NoiseGenerator&&) noexcept = default;
 NoiseGenerator& NoiseGenerator::operator=(NoiseGenerator&&) noexcept = default;
+
+double NoiseGenerator::low_pass_start() const {
+  return state_->low_pass_start;
+}
 
 bool NoiseGenerator::adds_after() const {
   return state_->filtered_white || (state_->quantization && state_->quantization_after);

@@ -45,6 +45,10 @@ class NoiseGenerator {
   /// its signal, y_t = a y_{t-1} + (1 - a) u_t with a = low_pass_pole(design), to the second what
   /// is added behind it. Both of one length; the second may be empty when `adds_after` is false.
   void add(std::span<double> before_low_pass, std::span<double> after_low_pass);
+  /// Where the low-pass stands before the first sample, on top of the signal's own level: y_{-1},
+  /// drawn so that filtered white and quantization noise are stationary from the first sample on. 0
+  /// when nothing of them goes through it.
+  double low_pass_start() const;
   bool adds_before() const;
   bool adds_after() const;
 

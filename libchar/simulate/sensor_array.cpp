@@ -127,7 +127,7 @@ struct ArraySimulator::State {
     }
     for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
       chains.emplace_back(spec.sensors[i].model,
-                          ChainOptions{rate, spec.seed, i, length, spec.low_pass_starts_at_zero});
+                          ChainOptions{rate, spec.seed, i, spec.low_pass_starts_at_zero});
       draws.push_back(chains.back().draw());
       std::vector<SensorFault> own;
       for (const SensorFault& fault : spec.faults)

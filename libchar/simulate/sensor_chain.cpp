@@ -27,7 +27,6 @@ NoiseDesign noise_design(const SensorModel& m, const ChainOptions& options) {
   if (m.noise_sampling == NoiseSampling::band_limited) design.sampling = Sampling::band_limited;
   if (m.noise_start == NoiseStart::zero) design.start = Start::zero;
   design.flicker_method = m.flicker_method;
-  design.length = options.samples;
   return design;
 }
 
@@ -61,10 +60,6 @@ class HeldNoise {
     design.rate_hz = 1 / hold_s;
     design.bandwidth_hz = std::nullopt;
     design.sampling = Sampling::per_sample;
-    design.length = static_cast<std::uint64_t>(static_cast<double>(options.samples) /
-                                               (hold_s * options.rate_hz)) +
-                    1;
-    if (options.samples == 0) design.length = 0;
     return design;
   }
   double samples_per_renewal_, value_ = 0;
@@ -128,16 +123,9 @@ struct SensorChain::State {
       y[i] = deterministic(at(temperature[i] - model.reference_temperature_degc), y[i]);
   }
 
-  // The level that the low-pass would have reached before the first sample: the signal's, and white
-  // noise in its stationary spread.
-  double steady_start(double first_signal) const {
-    const bool white = model.noise_sampling == NoiseSampling::per_sample && !model.white_hold_s;
-    const double deviation = simulated_value(model[Term::white]) * std::sqrt(options.rate_hz);
-    if (!white || deviation == 0) return first_signal;
-    const double spread = deviation * std::sqrt((1 - low_pass_memory) / (1 + low_pass_memory));
-    return first_signal +
-           spread * DeviateStream({options.seed, options.sensor, Purpose::low_pass_start}).normal();
-  }
+  // The level that the low-pass would have reached before the first sample: the signal's, and the
+  // noise of an infinite past.
+  double steady_start(double first_signal) const { return first_signal + noise.low_pass_start(); }
 
   void low_pass(std::span<double> y, double first_signal) {
     if (!low_pass_started) {

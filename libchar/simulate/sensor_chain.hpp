@@ -14,7 +14,6 @@ struct ChainOptions {
   double rate_hz = 0;  ///< at which the chain runs
   std::uint64_t seed = 1;
   std::uint64_t sensor = 0;              ///< keys the random streams of this device
-  std::uint64_t samples = 0;             ///< length of the whole record, 0 = unknown
   bool low_pass_starts_at_zero = false;  ///< as published; else in its steady state
 };
 

@@ -38,7 +38,7 @@ std::vector<double> record(const NoiseDesign& design,
   std::vector<double> before(n, 0.0), after(n, 0.0);
   generator.add(before, after);
   const double a = low_pass_pole(design);
-  double y = 0;
+  double y = generator.low_pass_start();
   for (std::size_t t = 0; t < n; ++t) {
     y = a * y + (1 - a) * before[t];
     after[t] += y;
@@ -205,6 +205,27 @@ TEST_CASE("noise made sample by sample and low-passed has the spectrum that the 
           Approx(known[j]).epsilon(0.012));
 }
 
+// First and second sample of many sensors: variance and covariance of the filtered noise.
+TEST_CASE("filtered noise is stationary from the first sample on") {
+  constexpr int sensors = 20'000;
+  const double a = std::exp(-2 * std::numbers::pi * 0.07), b = 1 - a;
+  for (const bool white : {true, false}) {
+    NoiseDesign design = design_of({white ? 1.0 : 0.0, 0, 0, white ? 0.0 : 1.0, 0}, 1);
+    design.bandwidth_hz = 0.07;
+    double variance = 0, covariance = 0;
+    for (std::uint64_t r = 0; r < sensors; ++r) {
+      const std::vector<double> y = record(design, 4, r, 2);
+      variance += y[0] * y[0] / sensors;
+      covariance += y[0] * y[1] / sensors;
+    }
+    // response b a^k (white); b (1, -b, -a b, -a^2 b ...) (quantization)
+    const double expected = white ? b / (1 + a) : 2 * b * b / (1 + a);
+    const double next = white ? a * expected : -b * b * b / (1 + a);
+    CHECK(variance == Approx(expected).epsilon(3.3 * std::sqrt(2.0 / sensors)));
+    CHECK(covariance == Approx(next).margin(3.3 * expected * std::sqrt(2.0 / sensors)));
+  }
+}
+
 // Sampled, the low-passed continuous noise has variance Q^2 pi f_c and correlation a; its slow part
 // has the density Q^2 x coth x, x = pi f_c/rate: aliases add to it.
 TEST_CASE("noise band-limited before sampling is aliased as it should be") {
@@ -350,4 +371,11 @@ TEST_CASE("designs that make no sense are refused in a sentence") {
   design.flicker_method = "rv-truncated-iir";
   design.truncated_taps = 0;
   CHECK(refused(design).find("at least one") != std::string::npos);
+}
+
+TEST_CASE("the samples of a seed stay what they are") {
+  const std::vector<double> x = record(design_of({1, 1, 1, 1, 1}, 4), 1, 0, 1000);
+  CHECK(x[0] == Approx(3.2652962283780882).epsilon(1e-12));
+  CHECK(x[1] == Approx(5.0632809997355848).epsilon(1e-12));
+  CHECK(x[999] == Approx(250.77387683495408).epsilon(1e-12));
 }

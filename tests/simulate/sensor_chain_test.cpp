@@ -32,7 +32,7 @@ std::vector<double> run(const SensorModel& m,
                         std::vector<double> x,
                         double temperature,
                         bool from_zero = true) {
-  SensorChain chain(m, {1000, 1, 0, x.size(), from_zero});
+  SensorChain chain(m, {1000, 1, 0, from_zero});
   chain.run(x, std::vector<double>(x.size(), temperature));
   return x;
 }
@@ -76,7 +76,7 @@ TEST_CASE("sensor chain: an identity model passes the input bit for bit") {
   SensorModel m;
   m.rate_hz = 10;
   std::vector<double> y = x;
-  SensorChain(m, {10, 1, 0, 0, false}).run(y, {});
+  SensorChain(m, {10, 1, 0, false}).run(y, {});
   for (std::size_t i = 0; i < x.size(); ++i)
     CHECK(((std::isnan(x[i]) && std::isnan(y[i])) || x[i] == y[i]));
 }
@@ -88,7 +88,7 @@ TEST_CASE("sensor chain: the draws of a device are its own and spread as told") 
   m.bias = {-1, 0.5, 0, 0};
   Moments scale, bias;
   for (std::uint64_t device = 0; device < 4000; ++device) {
-    const DeviceDraw draw = SensorChain(m, {10, 7, device, 0, false}).draw();
+    const DeviceDraw draw = SensorChain(m, {10, 7, device, false}).draw();
     scale.push({&draw.scale_factor, 1});
     bias.push({&draw.bias, 1});
   }
@@ -96,8 +96,8 @@ TEST_CASE("sensor chain: the draws of a device are its own and spread as told") 
   CHECK(scale.standard_deviation() == Approx(0.1).epsilon(0.05));
   CHECK(bias.mean() == Approx(-1).margin(0.5 / std::sqrt(4000.0) * 4));
   CHECK(bias.standard_deviation() == Approx(0.5).epsilon(0.05));
-  CHECK(SensorChain(m, {10, 7, 3, 0, false}).draw().bias ==
-        SensorChain(m, {10, 7, 3, 0, false}).draw().bias);
+  CHECK(SensorChain(m, {10, 7, 3, false}).draw().bias ==
+        SensorChain(m, {10, 7, 3, false}).draw().bias);
 }
 
 TEST_CASE("sensor chain: low-passed noise is stationary from the first sample") {
@@ -113,7 +113,7 @@ TEST_CASE("sensor chain: low-passed noise is stationary from the first sample") 
     Moments first;
     for (std::uint64_t device = 0; device < 3000; ++device) {
       std::vector<double> y(1, 0.0);
-      SensorChain(m, {100, 5, device, 0, false}).run(y, {});
+      SensorChain(m, {100, 5, device, false}).run(y, {});
       first.push(y);
     }
     CHECK(first.variance() == Approx(expected).epsilon(0.1));
@@ -125,7 +125,7 @@ TEST_CASE("sensor chain: a missing input does not stop the filter") {
   m.rate_hz = 100;
   m.bandwidth_hz = 10;
   std::vector<double> y = {1, 1, std::nan(""), 1, 1};
-  SensorChain(m, {100, 1, 0, 0, false}).run(y, {});
+  SensorChain(m, {100, 1, 0, false}).run(y, {});
   CHECK(std::isnan(y[2]));
   CHECK(y[4] == Approx(1));
 }

@@ -1,0 +1,131 @@
+#include "libchar/log/stamp_sketch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace libchar {
+namespace {
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void StampSketch::add(std::int64_t index, std::int64_t stamp) {
+  const Pair pair{index, stamp};
+  if (in_cell_ == 0 || cells_.empty()) {
+    if (cells_.size() == kCells) {
+      thin();
+    }
+    cells_.push_back({pair, pair, pair});
+    in_cell_ = per_cell_ - 1;
+    return;
+  }
+  --in_cell_;
+  Cell& cell = cells_.back();
+  const double r = residual(pair);
+  if (r < residual(cell.low)) cell.low = pair;
+  if (r > residual(cell.high)) cell.high = pair;
+}
+
+double StampSketch::residual(const Pair& pair) const {
+  const Pair& origin = cells_.front().first;
+  return static_cast<double>(pair.stamp - origin.stamp) -
+         slope_ * static_cast<double>(pair.index - origin.index);
+}
+
+void StampSketch::thin() {
+  slope_ = interval_ns();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i + 1 < cells_.size(); i += 2) {
+    Cell cell = cells_[i];
+    const Cell& other = cells_[i + 1];
+    for (const Pair& pair : {other.first, other.low, other.high}) {
+      if (residual(pair) < residual(cell.low)) cell.low = pair;
+      if (residual(pair) > residual(cell.high)) cell.high = pair;
+    }
+    cells_[kept++] = cell;
+  }
+  cells_.resize(kept);
+  per_cell_ *= 2;
+}
+
+double StampSketch::interval_ns() const {
+  const std::size_t n = cells_.size();
+  if (n == 0) return 0;
+  const std::size_t half = n / 2;
+  std::vector<double> slopes;
+  for (std::size_t i = 0; half > 0 && i + half < n; ++i) {
+    const Pair &a = cells_[i].first, &b = cells_[i + half].first;
+    slopes.push_back(static_cast<double>(b.stamp - a.stamp) /
+                     static_cast<double>(b.index - a.index));
+  }
+  return median(slopes);
+}
+
+StampSketch::Deviation StampSketch::deviation(double interval) const {
+  if (cells_.size() < 3) return {};
+  const Pair origin = cells_.front().first;
+  const auto off = [&](const Pair& pair) {
+    return static_cast<double>(pair.stamp - origin.stamp) -
+           interval * static_cast<double>(pair.index - origin.index);
+  };
+  std::vector<double> r;
+  for (const Cell& cell : cells_) r.push_back(off(cell.first));
+  const double centre = median(r);
+  Deviation result;
+  for (const Cell& cell : cells_)
+    result.largest = std::max(
+        {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
+  for (double& value : r) value = std::fabs(value - centre);
+  result.robust = 1.4826 * median(r);
+  return result;
+}
+
+FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
+  std::vector<double> steps;
+  std::size_t zeros = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    std::int64_t step = 0;
+    if (__builtin_sub_overflow(stamps[i], stamps[i - 1], &step)) continue;
+    zeros += step == 0;
+    if (step > 0) steps.push_back(static_cast<double>(step));
+  }
+  FirstInterval result;
+  if (steps.empty()) return result;
+  result.coarse = stamps.size() > 8 && zeros * 4 > stamps.size();
+  const double middle = median(steps);
+  std::vector<double> scatter;
+  for (const double step : steps) scatter.push_back(std::fabs(step - middle));
+  const double deviation = 1.4826 * median(scatter);
+  double sum = 0;
+  std::size_t close = 0;
+  for (const double step : steps) {
+    if (std::fabs(step - middle) > 0.1 * middle) continue;
+    sum += step;
+    ++close;
+  }
+  if (!result.coarse && close * 2 >= steps.size()) {
+    result.ns = sum / static_cast<double>(close);
+    result.longest_step = 1.5 * result.ns;
+    return result;
+  }
+  // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
+  // dominate.
+  std::vector<double> slopes;
+  const std::size_t half = stamps.size() / 2;
+  for (std::size_t i = 0; i + half < stamps.size(); ++i)
+    slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
+                     static_cast<double>(half));
+  const double slope = median(slopes);
+  result.ns = result.coarse || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
+  if (!(result.ns > 0)) result.ns = middle;
+  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
+  return result;
+}
+
+}  // namespace libchar

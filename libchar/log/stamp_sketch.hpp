@@ -1,0 +1,52 @@
+#pragma once
+// The sampling interval behind a series of time stamps, in bounded memory.
+//
+// The interval dt that tells a gap from a step is the median of the first differences; the rate
+// that is reported is the median of long-baseline slopes (Theil 1950, in the half-length form) over
+// a thinned set of (grid index, stamp) pairs.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace libchar {
+
+/// A bounded, evenly thinned set of (grid index, stamp) pairs that also keeps the most deviating
+/// pair of every stretch.
+class StampSketch {
+ public:
+  void add(std::int64_t index, std::int64_t stamp);
+  /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
+  double interval_ns() const;
+  /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.
+  struct Deviation {
+    double robust = 0, largest = 0;
+  };
+  Deviation deviation(double interval_ns) const;
+
+ private:
+  struct Pair {
+    std::int64_t index = 0, stamp = 0;
+  };
+  struct Cell {
+    Pair first, low, high;
+  };
+  double residual(const Pair& pair) const;
+  void thin();
+  std::vector<Cell> cells_;
+  std::uint64_t per_cell_ = 1, in_cell_ = 0;
+  double slope_ = 0;  // provisional, to tell which pair of a cell deviates most
+  static constexpr std::size_t kCells = 4096;
+};
+
+/// Sampling interval from the first stamps; `coarse` when so many are equal that the clock is too
+/// coarse to tell rows apart.
+struct FirstInterval {
+  double ns = 0;
+  double longest_step =
+      0;  ///< a longer one is a gap: 1.5 dt, or more where the stamps scatter widely, ns
+  bool coarse = false;
+};
+FirstInterval first_interval(const std::vector<std::int64_t>& stamps);
+
+}  // namespace libchar
