@@ -68,7 +68,7 @@ AxisOverrides overrides(const std::vector<std::string>& places) {
     const std::size_t sign = text.rfind('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
       throw Error({ErrorKind::usage,
-                   "E0561",
+                   "E0581",
                    "--axis",
                    "expected CHANNEL=PLACE",
                    text,

@@ -176,7 +176,7 @@ Figure positive_figure(const SensorTriad& triad,
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
   throw Error(
       {ErrorKind::input,
-       "E0567",
+       "E0587",
        representative(triad, options).model->channel,
        fmt::format("{} needs {} > 0, and the model has neither a value nor an upper limit of {}",
                    consumer,
@@ -248,7 +248,7 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
     const double own = placed->model->rate_hz;
     if (!(own > 0))
       throw Error({ErrorKind::input,
-                   "E0568",
+                   "E0588",
                    placed->model->channel,
                    "its model names no sampling rate, and the export needs one",
                    "",

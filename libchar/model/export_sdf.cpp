@@ -79,7 +79,7 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
   SensorTriad triad{"barometer", "Pa", {}, true};
   if (!unit || unit->quantity != Quantity::pressure)
     throw Error({ErrorKind::input,
-                 "E0563",
+                 "E0583",
                  m.channel,
                  "its unit is none of pressure, which a barometer needs",
                  m.unit,
@@ -125,7 +125,7 @@ Export export_sdf(const SensorGroup& group, const ExportOptions& options) {
   }
   if (sensors.empty())
     throw Error({ErrorKind::input,
-                 "E0573",
+                 "E0593",
                  "",
                  "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and "
                  "barometers, and none of these was given",

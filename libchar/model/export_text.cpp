@@ -93,12 +93,7 @@ std::vector<std::string> head_lines(const SensorGroup& group,
     channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
   lines.push_back("channels: " + comment_text(channels));
   lines.push_back(fmt::format("formula: {}", formula));
-  if (std::any_of(group.all.begin(), group.all.end(), [](const SensorModel* m) {
-        return m->bandwidth_hz && *m->bandwidth_hz <= m->rate_hz / 2;
-      }))
-    lines.emplace_back(
-        "the low-pass of the sensor is not part of this file: densities are kept, single samples "
-        "scatter less");
+  for (const std::string& line : group.unexpressed) lines.push_back(comment_text(line));
   const std::string axes = axes_said(options.axes);
   if (!axes.empty()) lines.push_back(axes);
   if (options.inflate != 1)
@@ -118,6 +113,7 @@ Json head_json(const SensorGroup& group, const ExportOptions& options, std::stri
   head["formula"] = std::string(formula);
   const std::string axes = axes_said(options.axes);
   if (!axes.empty()) head["axes"] = axes;
+  if (!group.unexpressed.empty()) head["unexpressed"] = group.unexpressed;
   if (options.inflate != 1) head["inflate"] = options.inflate;
   return head;
 }
@@ -175,7 +171,7 @@ std::string topic_scalar(const std::string& topic) {
                     std::all_of(topic.begin(), topic.end(), allowed);
   if (!fine)
     throw Error({ErrorKind::usage,
-                 "E0569",
+                 "E0589",
                  "--topic",
                  "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
                  topic,

@@ -21,30 +21,35 @@ constexpr std::array<ExportTarget, 15> kTargets = {{
      "m/s^3/sqrt(Hz); all > 0",
      "imu.yaml",
      gyroscope_and_accelerometer,
+     "QK",
      export_kalibr},
     {"euroc",
      "EuRoC data sets",
      "continuous densities: Q and K as for Kalibr",
      "sensor.yaml",
      gyroscope_and_accelerometer,
+     "QK",
      export_euroc},
     {"openvins",
      "OpenVINS",
      "continuous densities: Q and K; OpenCV YAML",
      "kalibr_imu_chain.yaml",
      gyroscope_and_accelerometer,
+     "QK",
      export_openvins},
     {"orbslam3",
      "ORB-SLAM3",
      "continuous densities: Q and K, with the rate as a real number; OpenCV YAML",
      "imu_orbslam3.yaml",
      gyroscope_and_accelerometer,
+     "QK",
      export_orbslam3},
     {"basalt",
      "Basalt",
      "continuous densities, though named std: Q and K, one for each axis",
      "calibration_imu.json",
      gyroscope_and_accelerometer,
+     "QK",
      export_basalt},
     {"vins",
      "VINS-Mono, VINS-Fusion",
@@ -52,36 +57,42 @@ constexpr std::array<ExportTarget, 15> kTargets = {{
      "OpenCV YAML",
      "imu_vins.yaml",
      gyroscope_and_accelerometer,
+     "QK",
      export_vins},
     {"gtsam",
      "GTSAM",
      "continuous covariances: Q^2 and K^2",
      "imu_params.cpp",
      gyroscope_and_accelerometer,
+     "QK",
      export_gtsam},
     {"ros",
      "ROS sensor_msgs",
      "variance of a sample: Q^2 f on the diagonal, one for each axis",
      "imu_covariance.yaml",
      gyroscope_or_accelerometer,
+     "Q",
      export_ros},
     {"sdf",
      "SDFormat, Gazebo",
      "stddev of a sample Q sqrt(f); a Gauss-Markov bias by its continuous driving density",
      "imu.sdf",
      any_sensor,
+     "QBK",
      export_sdf},
     {"rotors",
      "RotorS, PX4 Gazebo classic, UUV",
      "continuous densities: Q, and a Gauss-Markov bias by its driving density and correlation time",
      "imu_plugin.xml",
      gyroscope_and_accelerometer,
+     "QBK",
      export_rotors},
     {"airsim",
      "AirSim",
      "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
      "settings.json",
      gyroscope_or_accelerometer,
+     "QK",
      export_airsim},
     {"gnss-ins-sim",
      "gnss-ins-sim",
@@ -89,24 +100,28 @@ constexpr std::array<ExportTarget, 15> kTargets = {{
      "m/s^2",
      "imu_err.py",
      gyroscope_and_accelerometer,
+     "QBK",
      export_gnss_ins_sim},
     {"matlab",
      "MATLAB gyroparams, accelparams",
      "two-sided densities (NoiseType double-sided): Q, K, and B itself",
      "imu_params.m",
      gyroscope_or_accelerometer,
+     "QBK",
      export_matlab},
     {"px4",
      "PX4 EKF2, ArduPilot EK3",
      "per filter step dt: Q / sqrt(dt), K / sqrt(dt); a lower bound, not a tuning",
      "ekf_params.txt",
      gyroscope_or_accelerometer,
+     "QK",
      export_px4},
     {"json",
      "generic JSON",
      "the sensor model itself, every key of its file; reads back",
      "model.json",
      any_sensor,
+     "QBKQzR",
      export_json},
 }};
 
@@ -128,7 +143,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
   const bool both = target.needs == gyroscope_and_accelerometer;
   throw Error(
       {ErrorKind::input,
-       "E0570",
+       "E0590",
        "",
        fmt::format(
            "{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}",
@@ -144,7 +159,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
 void check_options(const ExportOptions& options) {
   const auto positive = [](const char* name, double value) {
     if (!(value > 0))
-      throw Error({ErrorKind::usage, "E0571", name, "expected a number > 0", shortest(value), ""});
+      throw Error({ErrorKind::usage, "E0591", name, "expected a number > 0", shortest(value), ""});
   };
   positive("--inflate", options.inflate);
   positive("--filter-step", options.filter_step_s);
@@ -170,17 +185,38 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
     if (placed) leave(*placed->model);
 }
 
-// Behind a low-pass the samples scatter less than Q sqrt(f), and neighbours are correlated.
-void note_bandwidth(const SensorGroup& group, Export& out) {
-  for (const SensorModel* m : group.all) {
-    if (!m->bandwidth_hz || *m->bandwidth_hz > m->rate_hz / 2) continue;
-    out.notes.push_back(
-        fmt::format("{} has a low-pass at {} Hz, which the file cannot express: its densities are "
-                    "kept, so single "
-                    "samples scatter less than those of a simulation with them",
-                    printable(m->channel, 40),
-                    significant(*m->bandwidth_hz, 3)));
+// What is known of the sensors and gets lost: terms that the consumer has no word for, and the
+// low-pass, behind which samples scatter less than Q sqrt(f) and neighbours are correlated.
+std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGroup& group) {
+  std::vector<std::string> out;
+  if (target.name == "json") return out;
+  const auto among = [&](const auto& concerned) {
+    std::string channels;
+    for (const SensorModel* m : group.all)
+      if (concerned(*m)) channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
+    return channels;
+  };
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (target.terms.find(kTermNames[t].letter) != std::string_view::npos) continue;
+    const std::string channels =
+        among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
+    if (!channels.empty())
+      out.push_back(fmt::format("not in this file: {} of {}", kTermNames[t].key, channels));
   }
+  const std::string filtered = among(
+      [](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
+  if (!filtered.empty())
+    out.push_back(fmt::format(
+        "not in this file: the low-pass of {}; densities are kept, single samples scatter less",
+        filtered));
+  return out;
+}
+
+void drop_repeated(std::vector<std::string>& notes) {
+  std::vector<std::string> once;
+  for (std::string& note : notes)
+    if (std::find(once.begin(), once.end(), note) == once.end()) once.push_back(std::move(note));
+  notes = std::move(once);
 }
 
 }  // namespace
@@ -202,7 +238,7 @@ const ExportTarget& find_export_target(std::string_view name) {
   for (const ExportTarget& target : kTargets) names.emplace_back(target.name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
-               "E0572",
+               "E0592",
                "--to",
                fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
                std::string(name),
@@ -213,14 +249,16 @@ Export export_models(const ExportTarget& target,
                      const std::vector<SensorModel>& models,
                      const ExportOptions& options) {
   check_options(options);
-  const SensorGroup group = group_sensors(models, options.axis);
+  SensorGroup group = group_sensors(models, options.axis);
   check_needs(target, group);
+  group.unexpressed = unexpressed(target, group);
   Export out = target.write(group, options);
+  out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
   if (options.inflate != 1 && target.name != "json")
     out.notes.push_back(
         fmt::format("every noise number is multiplied by {}", shortest(options.inflate)));
-  if (target.name != "json") note_bandwidth(group, out);
   note_left_out(target, group, out);
+  drop_repeated(out.notes);
   return out;
 }
 

@@ -56,6 +56,7 @@ struct ExportTarget {
   std::string_view convention;  ///< one line: units, discrete or continuous, formulas
   std::string_view file;        ///< name that the consumer's users give it
   ExportNeeds needs;
+  std::string_view terms;  ///< letters of the noise terms that the file can express
   Export (*write)(const SensorGroup&, const ExportOptions&);
 };
 

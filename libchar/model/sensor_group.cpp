@@ -46,7 +46,7 @@ Place place_named(const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw Error({ErrorKind::usage,
-                 "E0561",
+                 "E0581",
                  "--axis",
                  fmt::format("no such place; places are {}", fmt::join(names, ", ")),
                  name,
@@ -67,7 +67,7 @@ void check_overrides(const std::vector<SensorModel>& models, const AxisOverrides
     if (std::find(channels.begin(), channels.end(), channel) != channels.end()) continue;
     const auto near = nearest(channel, channels);
     throw Error({ErrorKind::usage,
-                 "E0562",
+                 "E0582",
                  "--axis",
                  "no model of this channel was given",
                  channel,
@@ -90,7 +90,7 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
   if (unit && unit->quantity == kind.quantity) return unit->to_si;
   throw Error(
       {ErrorKind::input,
-       "E0563",
+       "E0583",
        model.channel,
        model.unit.empty()
            ? fmt::format(
@@ -107,7 +107,7 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
   const std::string place = axis < 3 ? fmt::format("the {} axis of the {}", kAxes[axis], kind.name)
                                      : fmt::format("the {}", kind.name);
   throw Error({ErrorKind::input,
-               "E0564",
+               "E0584",
                second.channel,
                fmt::format("two models claim {}: {} and {}",
                            place,
@@ -155,7 +155,7 @@ SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOver
       if (axis == 3 && members[k].size() > 1)
         throw Error(
             {ErrorKind::input,
-             "E0565",
+             "E0585",
              model->channel,
              fmt::format(
                  "is one of {} {} models and names no axis", members[k].size(), kKinds[k].name),
@@ -186,7 +186,7 @@ void require_axes(const SensorTriad& triad, std::optional<std::size_t> only) {
                         printable(triad.axis[present[0]]->model->channel, 40),
                         triad.kind[0]);
   throw Error({ErrorKind::input,
-               "E0566",
+               "E0586",
                "",
                fmt::format("the {} has no model for {}", triad.kind, missing),
                "",

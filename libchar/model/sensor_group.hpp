@@ -31,6 +31,8 @@ struct SensorGroup {
   std::optional<SensorTriad> gyroscope, accelerometer, magnetometer;
   std::vector<const SensorModel*> others;  ///< barometers, thermometers, unknown ones
   std::vector<const SensorModel*> all;     ///< in the order given
+  std::vector<std::string>
+      unexpressed;  ///< what the models hold and the file they go to cannot say
 };
 
 /// What the user says of a channel that neither its name nor its unit says: ("imu_3", "gx"). Places

@@ -176,10 +176,29 @@ TEST_CASE(
 TEST_CASE("a low-pass that the file cannot express is said") {
   auto models = test::euroc_imu();
   models[0].bandwidth_hz = 28.3;
-  CHECK(has(exported("ros", models).text, "the low-pass of the sensor is not part of this file"));
-  CHECK(has(exported("ros", models).notes.back(), "gyr_x has a low-pass at 28.3 Hz"));
+  CHECK(has(exported("sdf", models).text, "not in this file: the low-pass of gyr_x;"));
+  CHECK(has(exported("sdf", models).notes.front(), "the low-pass of gyr_x; densities are kept"));
   models[0].bandwidth_hz = 400;
   CHECK_FALSE(has(exported("ros", models).text, "low-pass"));
+}
+
+TEST_CASE("terms that the consumer has no word for are named") {
+  auto models = test::euroc_imu();
+  models[0].noise[1] = models[3].noise[1] = known(1e-5);
+  models[1].noise[3] = known(1e-6);
+  const std::string b = "not in this file: bias_instability of gyr_x, acc_y",
+                    qz = "not in this file: quantization of acc_x";
+  const std::set<std::string> with_b = {"sdf", "rotors", "gnss-ins-sim", "matlab", "json"};
+  for (const ExportTarget& target : export_targets()) {
+    CAPTURE(target.name);
+    const Export made = export_models(target, models);
+    CHECK(has(made.text, b) == !with_b.contains(std::string(target.name)));
+    CHECK(has(made.text, qz) == (target.name != "json"));
+    CHECK(has(made.text, "not in this file: random_walk of gyr_x, acc_x") ==
+          (target.name == "ros"));
+    CHECK((std::find(made.notes.begin(), made.notes.end(), qz) != made.notes.end()) ==
+          (target.name != "json"));
+  }
 }
 
 TEST_CASE("what differs from axis to axis is said axis by axis") {
