@@ -193,10 +193,15 @@ LogInfo log_info(const ArraySimulation& simulation, const std::string& path, boo
 
 // The scene that replays the recording: its channels by name, the models inline, the truth as
 // reference.
+// What the simulated scene wanted of its replay is kept.
 Scene replay_scene(const ArraySimulation& simulation,
                    const LogInfo& info,
-                   const SimulateVerb& verb) {
+                   const SimulateVerb& verb,
+                   const Scene& given) {
   Scene scene;
+  scene.learning = given.learning;
+  scene.evaluation = given.evaluation;
+  scene.algorithms = given.algorithms;
   scene.file = verb.scene_path;
   scene.name = fs::path(verb.output).stem().string();
   scene.recording = verb.output;
@@ -220,11 +225,11 @@ Scene replay_scene(const ArraySimulation& simulation,
 }
 
 void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
-  const std::string truth_clash = simulation.truth_names.empty() ? "" : simulation.truth_names[0];
-  if (verb.no_truth) return;
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    if (simulation.temperature && sensor.name == "temperature")
-      refuse("simulate", "a sensor has the name of the temperature column", sensor.name);
+  if (verb.no_truth || !simulation.temperature) return;
+  std::vector<std::string> names = simulation.truth_names;
+  for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
+  if (std::find(names.begin(), names.end(), "temperature") != names.end())
+    refuse("simulate", "a channel has the name of the temperature column", "temperature");
 }
 
 void stream(Session& session,
@@ -278,8 +283,11 @@ void run_simulate(Session& session, SimulateVerb& verb) {
     for (const std::string& output : {verb.output, verb.scene_path})
       refuse_same_file(source, output);
   ArraySimulation simulation;
+  Scene scene;
   if (scene_given) {
-    const Scene scene = read_scene_file(verb.sources[0], {verb.allow_outside});
+    scene = read_scene_file(verb.sources[0], {verb.allow_outside});
+    session.terminal.warn(scene.warnings, scene.file);
+    refuse_scene_outputs(scene, {verb.output, verb.scene_path});
     if (!scene.simulate)
       refuse(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
     if (verb.devices > 1) refuse("--devices", "the scene says how many devices there are (count)");
@@ -295,7 +303,7 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   std::optional<WholeFile> scene_file;
   if (!verb.no_scene) {
     scene_file.emplace(verb.scene_path, verb.writing.overwrite);
-    scene_file->write(scene_yaml(replay_scene(simulation, info, verb)));
+    scene_file->write(scene_yaml(replay_scene(simulation, info, verb, scene)));
   }
   stream(session, verb, simulation, *writer);
   session.terminal.clear();

@@ -123,7 +123,7 @@ TEST_CASE("simulate: a scene file says it all") {
       "format: scene\nversion: 1\nname: two\nsimulate:\n  rate_hz: 50\n  samples: 100\n  seed: 4\n"
       "  truth: {kind: uniform, amplitude: 10}\nsensors:\n  - {name: g, count: 2, model: "
       "gyro.sensor.yaml}\n"
-      "faults:\n  - {sensor: g1, kind: dropout, from_s: 1.0, to_s: 1.5}\n");
+      "faults:\n  - {sensor: g1, kind: dropout, from_s: 1.0, to_s: 1.5}\nlearning: [0, 1]\n");
   const auto ran = test::run({"simulate", scene, "-o", bench.path("a.csv"), "--json"});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
@@ -131,6 +131,10 @@ TEST_CASE("simulate: a scene file says it all") {
   CHECK(document["format"] == "simulation");
   CHECK(document["seed"] == 4);
   CHECK(document["sensors"].size() == 2);
+  CHECK_THAT(test::slurp(bench.path("a.scene.yaml")), Contains("learning: [0.0, 1.0]"));
+  CHECK(
+      test::run({"simulate", scene, "-o", bench.path("gyro.sensor.yaml"), "--as", "csv", "--force"})
+          .code == 5);
   const auto log = libchar::read_recording(bench.path("a.csv"));
   CHECK(log.info.samples == 100);
   CHECK(std::isnan(log.samples[0][60]));
