@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -112,6 +113,29 @@ std::span<const double> RealFft::inverse() {
 
 std::size_t RealFft::size() const {
   return state_->n;
+}
+
+struct ComplexFft::State {
+  Plan plan;
+};
+
+ComplexFft::ComplexFft(std::size_t n, std::size_t side_by_side) : state_(std::make_unique<State>()) {
+  const auto length = static_cast<std::ptrdiff_t>(n), count = static_cast<std::ptrdiff_t>(side_by_side);
+  const fftw_iodim64 dimension{length, count, count}, batch{count, 1, 1};
+  // Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the address.
+  const auto memory = aligned<std::complex<double>>(n * side_by_side + 4);
+  const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
+  auto* const values = reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
+  const std::lock_guard lock(planner());
+  state_->plan.reset(fftw_plan_guru64_dft(1, &dimension, side_by_side > 1 ? 1 : 0, &batch, values, values, FFTW_FORWARD, FFTW_ESTIMATE));
+}
+ComplexFft::~ComplexFft() = default;
+ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;
+ComplexFft& ComplexFft::operator=(ComplexFft&&) noexcept = default;
+
+void ComplexFft::transform(double* interleaved) const {
+  auto* const values = reinterpret_cast<fftw_complex*>(interleaved);
+  fftw_execute_dft(state_->plan.get(), values, values);
 }
 
 namespace {

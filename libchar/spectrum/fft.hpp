@@ -29,6 +29,21 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
+/// Forward complex transforms of n values in place, `side_by_side` of them at once: value t of transform i stands at
+/// [t * side_by_side + i]. The memory is the caller's and must be aligned to 64 bytes.
+class ComplexFft {
+ public:
+  ComplexFft(std::size_t n, std::size_t side_by_side);
+  ~ComplexFft();
+  ComplexFft(ComplexFft&&) noexcept;
+  ComplexFft& operator=(ComplexFft&&) noexcept;
+  void transform(double* interleaved) const;  ///< real and imaginary parts in turn
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 /// Orthonormal DCT-II: c_0 = sum y / sqrt(n); c_k = sqrt(2/n) sum_t y_t cos(pi k (t + 1/2) / n), by
 /// one real FFT of permuted data.
 class Dct {
