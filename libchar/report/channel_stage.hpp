@@ -10,12 +10,16 @@
 
 namespace libchar {
 
+inline constexpr std::uint64_t kStreamedBlock = std::uint64_t{1} << 13U;
+
 /// The fixed-size stages of a channel whose samples are not kept.
 struct ChannelStreams {
   AllanPyramid allan;
   std::optional<WelchStream> spectrum;
-  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
-  PowerBinner bins{std::uint64_t{1} << 13U};
+  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway. Where the
+  // spectrum goes by halves the blocks are these halves, and their transforms come from there.
+  PowerBinner bins{kStreamedBlock};
+  bool shared_blocks = false;
   std::optional<SpikeCleaner> cleaner;  // in the second pass
 };
 

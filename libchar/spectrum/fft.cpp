@@ -119,15 +119,17 @@ struct ComplexFft::State {
   Plan plan;
 };
 
-ComplexFft::ComplexFft(std::size_t n, std::size_t side_by_side) : state_(std::make_unique<State>()) {
-  const auto length = static_cast<std::ptrdiff_t>(n), count = static_cast<std::ptrdiff_t>(side_by_side);
-  const fftw_iodim64 dimension{length, count, count}, batch{count, 1, 1};
+ComplexFft::ComplexFft(std::size_t n, std::size_t count, Order order) : state_(std::make_unique<State>()) {
+  const auto length = static_cast<std::ptrdiff_t>(n), several = static_cast<std::ptrdiff_t>(count);
+  const bool beside = order == Order::side_by_side;
+  const std::ptrdiff_t step = beside ? several : 1, distance = beside ? 1 : length;
+  const fftw_iodim64 dimension{length, step, step}, batch{several, distance, distance};
   // Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the address.
-  const auto memory = aligned<std::complex<double>>(n * side_by_side + 4);
+  const auto memory = aligned<std::complex<double>>(n * count + 4);
   const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
   auto* const values = reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
   const std::lock_guard lock(planner());
-  state_->plan.reset(fftw_plan_guru64_dft(1, &dimension, side_by_side > 1 ? 1 : 0, &batch, values, values, FFTW_FORWARD, FFTW_ESTIMATE));
+  state_->plan.reset(fftw_plan_guru64_dft(1, &dimension, 1, &batch, values, values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 ComplexFft::~ComplexFft() = default;
 ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;

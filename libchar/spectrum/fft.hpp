@@ -29,11 +29,13 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
-/// Forward complex transforms of n values in place, `side_by_side` of them at once: value t of transform i stands at
-/// [t * side_by_side + i]. The memory is the caller's and must be aligned to 64 bytes.
+/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i stands at
+/// [t * count + i] (side by side) or [i * n + t] (one after another). Several at once are faster than one by one, because FFTW puts
+/// neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes.
 class ComplexFft {
  public:
-  ComplexFft(std::size_t n, std::size_t side_by_side);
+  enum class Order { side_by_side, one_after_another };
+  ComplexFft(std::size_t n, std::size_t count, Order order);
   ~ComplexFft();
   ComplexFft(ComplexFft&&) noexcept;
   ComplexFft& operator=(ComplexFft&&) noexcept;

@@ -30,7 +30,8 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kColumns = 8;  // transformed side by side: 128 bytes, two lines of the cache
+constexpr std::size_t kColumns = 4;  // transformed side by side: 128 bytes, two lines of the cache
+constexpr std::size_t kRows = 4;     // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
 constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
 
@@ -77,8 +78,8 @@ constexpr Four kSigns = {-1, 1, -1, 1};
 struct ColumnStep {
   std::size_t n1, n2, column;
   const double* shift;      // [n1] exp(-i pi t1 / n1), interleaved: half a bin
-  const double* fine;       // [n1][8] exp(-2 pi i m1 i / q), then the same at m1 + 1/2
-  const double* coarse;     // [q/4] exp(-2 pi i j / (q/4)), interleaved
+  const double* fine;       // [n1][kColumns] exp(-2 pi i m1 j / q), then the same at m1 + 1/2
+  const double* coarse;     // exp(-2 pi i j / period) over a period of 2 q / kColumns, interleaved
 };
 
 /// Eight columns of u less the mean, for the even bins and turned for the odd ones.
@@ -97,7 +98,7 @@ LIBCHAR_WIDE_LANES void gather_columns(const double* x, double mean, const Colum
 
 /// Turns the transformed columns and puts them back as columns of the rows to come.
 LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& step, bool odd, double* to) {
-  const std::size_t period = step.n1 * step.n2 / 4, block = step.column / kColumns;
+  const std::size_t period = 2 * step.n1 * step.n2 / kColumns, block = step.column / kColumns;
   const double* fine = step.fine + (odd ? 2 * kColumns * step.n1 : 0);
   const std::size_t stride = 2 * block % period;
   std::size_t at = odd ? block % period : 0;
@@ -213,7 +214,7 @@ void put(double* row, std::size_t m2, Complex value) {
 
 struct HalfSegments::State {
   std::size_t h, q, n1, n2;
-  ComplexFft columns, rows;
+  ComplexFft columns, rows, row;        // rows: kRows of them
   std::vector<double> shift, fine, coarse, quarter, cotangent;
   Buffer even_columns, odd_columns;     // eight of them
   Buffer even_rows, odd_rows;           // q complex numbers each
@@ -222,6 +223,7 @@ struct HalfSegments::State {
   Buffer segment_sums, block_sums;      // even bins, then odd bins
   double top_sum = 0;
   Buffer scratch;                       // five rows of X
+  std::vector<char> row_done;
   bool joined = false;                  // `before` is there
   double before_mean = 0;
 
@@ -234,7 +236,8 @@ struct HalfSegments::State {
 };
 
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half), q(half / 2), n1(split1), n2(split2), columns(n1, kColumns), rows(n2, 1),
+    : h(half), q(half / 2), n1(split1), n2(split2), columns(n1, kColumns, ComplexFft::Order::side_by_side), rows(n2, kRows, ComplexFft::Order::one_after_another),
+      row(n2, 1, ComplexFft::Order::one_after_another),
       even_columns(zeros(2 * kColumns * n1)), odd_columns(zeros(2 * kColumns * n1)), even_rows(zeros(2 * q)), odd_rows(zeros(2 * q)),
       now(zeros(4 * q)), before(zeros(4 * q)), segment_sums(zeros(2 * q)), block_sums(zeros(2 * q)), scratch(zeros(10 * n2)) {
   const auto push = [](std::vector<double>& table, Complex value) {
@@ -246,7 +249,8 @@ HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t spl
   for (const double part : {0.0, 0.5})
     for (std::size_t m1 = 0; m1 < n1; ++m1)
       for (std::size_t i = 0; i < kColumns; ++i) push(fine, turn(2 * static_cast<double>(i) * (static_cast<double>(m1) + part), count));
-  for (std::size_t j = 0; j < q / 4; ++j) push(coarse, turn(2 * static_cast<double>(j), count / 4));
+  const std::size_t period = 2 * q / kColumns;
+  for (std::size_t j = 0; j < period; ++j) push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
   quarter.resize(2 * n2);
   for (std::size_t m2 = 0; m2 < n2; ++m2) put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
   cotangent.resize(q);
@@ -273,11 +277,19 @@ void HalfSegments::State::transform(const double* x, double mean, bool block) {
 
 void HalfSegments::State::separate_rows(bool block) {
   const std::size_t width = 2 * n2;
+  const auto transformed = [&](double* u, std::size_t r) {
+    const std::size_t first = r / kRows * kRows;
+    if (first + kRows > n1) {  // the last few
+      if (std::exchange(row_done[r], char{1}) == 0) row.transform(u + r * width);
+    } else if (std::exchange(row_done[first], char{1}) == 0) {
+      rows.transform(u + first * width);
+    }
+  };
   const auto pair = [&](std::size_t r, std::size_t mirror, bool odd) {
     double* const u = odd ? odd_rows.get() : even_rows.get();
-    rows.transform(u + r * width);
+    transformed(u, r);
     if (mirror == r) return own_mirror(r, odd, block);
-    rows.transform(u + mirror * width);
+    transformed(u, mirror);
     double* const z = now.get() + (odd ? 2 * q : 0);
     RowPair p{u + r * width, u + mirror * width, z + r * width, z + mirror * width, nullptr, nullptr, quarter.data(), {}, n2};
     if (block) {
@@ -288,8 +300,10 @@ void HalfSegments::State::separate_rows(bool block) {
     p.start = turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h));
     separate(p);
   };
+  row_done.assign(n1, 0);
   pair(0, 0, false);
   for (std::size_t r = 1; r <= n1 / 2; ++r) pair(r, n1 - r, false);
+  row_done.assign(n1, 0);
   for (std::size_t r = 0; r < (n1 + 1) / 2; ++r) pair(r, n1 - 1 - r, true);
 }
 
