@@ -30,12 +30,11 @@ class RealFft {
 };
 
 /// Forward complex transforms of n values in place, `count` of them at once: value t of transform i stands at
-/// [t * count + i] (side by side) or [i * n + t] (one after another). Several at once are faster than one by one, because FFTW puts
-/// neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes.
+/// [i * distance + t * step]. Several at once are faster than one by one, because FFTW puts neighbours into one vector. The memory
+/// is the caller's and must be aligned to 64 bytes.
 class ComplexFft {
  public:
-  enum class Order { side_by_side, one_after_another };
-  ComplexFft(std::size_t n, std::size_t count, Order order);
+  ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);
   ~ComplexFft();
   ComplexFft(ComplexFft&&) noexcept;
   ComplexFft& operator=(ComplexFft&&) noexcept;

@@ -31,6 +31,7 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kColumns = 4;  // transformed side by side: 128 bytes, two lines of the cache
+constexpr std::size_t kPadding = 8;  // between rows, or a column of them would fall into few sets of the cache
 constexpr std::size_t kRows = 4;     // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
 constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
@@ -76,7 +77,7 @@ std::pair<std::size_t, std::size_t> split(std::size_t q) {
 constexpr Four kSigns = {-1, 1, -1, 1};
 
 struct ColumnStep {
-  std::size_t n1, n2, column;
+  std::size_t n1, n2, pitch, column;
   const double* shift;      // [n1] exp(-i pi t1 / n1), interleaved: half a bin
   const double* fine;       // [n1][kColumns] exp(-2 pi i m1 j / q), then the same at m1 + 1/2
   const double* coarse;     // exp(-2 pi i j / period) over a period of 2 q / kColumns, interleaved
@@ -103,7 +104,7 @@ LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& st
   const std::size_t stride = 2 * block % period;
   std::size_t at = odd ? block % period : 0;
   to += 2 * step.column;
-  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += 2 * kColumns, fine += 2 * kColumns, to += 2 * step.n2) {
+  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += 2 * kColumns, fine += 2 * kColumns, to += step.pitch) {
     const double cosine = step.coarse[2 * at];
     const Four crossed = step.coarse[2 * at + 1] * kSigns;
     for (std::size_t i = 0; i < 2 * kColumns; i += 4) {
@@ -213,11 +214,11 @@ void put(double* row, std::size_t m2, Complex value) {
 }  // namespace
 
 struct HalfSegments::State {
-  std::size_t h, q, n1, n2;
+  std::size_t h, q, n1, n2, pitch;
   ComplexFft columns, rows, row;        // rows: kRows of them
   std::vector<double> shift, fine, coarse, quarter, cotangent;
   Buffer even_columns, odd_columns;     // eight of them
-  Buffer even_rows, odd_rows;           // q complex numbers each
+  Buffer even_rows, odd_rows;           // n1 rows, `pitch` apart
   Buffer now, before;                   // Z: even bins, then odd bins
   double now_top = 0, before_top = 0;   // Z_h
   Buffer segment_sums, block_sums;      // even bins, then odd bins
@@ -236,9 +237,8 @@ struct HalfSegments::State {
 };
 
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half), q(half / 2), n1(split1), n2(split2), columns(n1, kColumns, ComplexFft::Order::side_by_side), rows(n2, kRows, ComplexFft::Order::one_after_another),
-      row(n2, 1, ComplexFft::Order::one_after_another),
-      even_columns(zeros(2 * kColumns * n1)), odd_columns(zeros(2 * kColumns * n1)), even_rows(zeros(2 * q)), odd_rows(zeros(2 * q)),
+    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), columns(n1, kColumns, kColumns, 1), rows(n2, kRows, 1, pitch / 2), row(n2, 1, 1, n2),
+      even_columns(zeros(2 * kColumns * n1)), odd_columns(zeros(2 * kColumns * n1)), even_rows(zeros(n1 * pitch)), odd_rows(zeros(n1 * pitch)),
       now(zeros(4 * q)), before(zeros(4 * q)), segment_sums(zeros(2 * q)), block_sums(zeros(2 * q)), scratch(zeros(10 * n2)) {
   const auto push = [](std::vector<double>& table, Complex value) {
     table.push_back(value.real());
@@ -264,7 +264,7 @@ HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t spl
 }
 
 void HalfSegments::State::transform(const double* x, double mean, bool block) {
-  ColumnStep step{n1, n2, 0, shift.data(), fine.data(), coarse.data()};
+  ColumnStep step{n1, n2, pitch, 0, shift.data(), fine.data(), coarse.data()};
   for (; step.column < n2; step.column += kColumns) {
     gather_columns(x, mean, step, even_columns.get(), odd_columns.get());
     columns.transform(even_columns.get());
@@ -280,9 +280,9 @@ void HalfSegments::State::separate_rows(bool block) {
   const auto transformed = [&](double* u, std::size_t r) {
     const std::size_t first = r / kRows * kRows;
     if (first + kRows > n1) {  // the last few
-      if (std::exchange(row_done[r], char{1}) == 0) row.transform(u + r * width);
+      if (std::exchange(row_done[r], char{1}) == 0) row.transform(u + r * pitch);
     } else if (std::exchange(row_done[first], char{1}) == 0) {
-      rows.transform(u + first * width);
+      rows.transform(u + first * pitch);
     }
   };
   const auto pair = [&](std::size_t r, std::size_t mirror, bool odd) {
@@ -291,7 +291,7 @@ void HalfSegments::State::separate_rows(bool block) {
     if (mirror == r) return own_mirror(r, odd, block);
     transformed(u, mirror);
     double* const z = now.get() + (odd ? 2 * q : 0);
-    RowPair p{u + r * width, u + mirror * width, z + r * width, z + mirror * width, nullptr, nullptr, quarter.data(), {}, n2};
+    RowPair p{u + r * pitch, u + mirror * pitch, z + r * width, z + mirror * width, nullptr, nullptr, quarter.data(), {}, n2};
     if (block) {
       double* const c = block_sums.get() + (odd ? q : 0);
       p.c_row = c + r * n2;
@@ -310,7 +310,7 @@ void HalfSegments::State::separate_rows(bool block) {
 /// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and the one in the middle.
 void HalfSegments::State::own_mirror(std::size_t r, bool odd_bins, bool block) {
   const std::size_t width = 2 * n2;
-  const double* const u = (odd_bins ? odd_rows.get() : even_rows.get()) + r * width;
+  const double* const u = (odd_bins ? odd_rows.get() : even_rows.get()) + r * pitch;
   double* const z_row = now.get() + (odd_bins ? 2 * q : 0) + r * width;
   double* const c_row = block_sums.get() + (odd_bins ? q : 0) + r * n2;
   const Complex start = turn(static_cast<double>(2 * r + (odd_bins ? 1 : 0)), static_cast<double>(2 * h));
