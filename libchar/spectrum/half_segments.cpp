@@ -12,7 +12,8 @@
 // Applications, on two real transforms in one). Each transform of q = n1 n2 values goes in two steps that stay in the cache (W. M.
 // Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2 m1 / q), over t2; s = n2 t1 + t2,
 // m = m1 + n1 m2. The result is left where it stands, in rows of fixed m1: the mirror q - m of row r is row n1 - r backwards, the
-// neighbours m ± 1 are the rows beside it, and everything after the transform goes row by row.
+// neighbours m ± 1 are the rows beside it, and everything after the transform goes row by row, as soon as a row is there: memory is what
+// this costs, more than arithmetic.
 //
 // Inside a row four values stand as four real and four imaginary parts, in the order 0 2 1 3 that unpacking gives.
 
@@ -30,7 +31,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kColumns = 4;  // transformed side by side: 128 bytes, two lines of the cache
+constexpr std::size_t kColumns = 4;  // transformed side by side: one line of the cache
 constexpr std::size_t kPadding = 8;  // between rows, or a column of them would fall into few sets of the cache
 constexpr std::size_t kRows = 4;     // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
@@ -78,40 +79,45 @@ constexpr Four kSigns = {-1, 1, -1, 1};
 
 struct ColumnStep {
   std::size_t n1, n2, pitch, column;
-  const double* shift;      // [n1] exp(-i pi t1 / n1), interleaved: half a bin
-  const double* fine;       // [n1][kColumns] exp(-2 pi i m1 j / q), then the same at m1 + 1/2
-  const double* coarse;     // exp(-2 pi i j / period) over a period of 2 q / kColumns, interleaved
+  bool odd;                // bins
+  const double* shift;     // [n1] exp(-i pi t1 / n1), interleaved: half a bin
+  const double* fine;      // [n1] exp(-2 pi i m1 j / q), j < kColumns; four real and four imaginary parts. Odd bins: m1 + 1/2
+  const double* coarse;    // exp(-2 pi i j / period) over a period of 2 q / kColumns, interleaved
 };
 
-/// Eight columns of u less the mean, for the even bins and turned for the odd ones.
-LIBCHAR_WIDE_LANES void gather_columns(const double* x, double mean, const ColumnStep& step, double* even, double* odd) {
+/// Four columns of u less the mean; for the odd bins turned by half a bin.
+LIBCHAR_WIDE_LANES void gather_columns(const double* x, double mean, const ColumnStep& step, double* to) {
   const double* from = x + 2 * step.column;
-  for (std::size_t t1 = 0; t1 < step.n1; ++t1, from += 2 * step.n2, even += 2 * kColumns, odd += 2 * kColumns) {
-    const double cosine = step.shift[2 * t1], sine = step.shift[2 * t1 + 1];
-    const Four crossed = sine * kSigns;
-    for (std::size_t i = 0; i < 2 * kColumns; i += 4) {
-      const Four u = LIBCHAR_FOUR(from + i) - mean;
-      LIBCHAR_FOUR_TO(even + i) = u;
-      LIBCHAR_FOUR_TO(odd + i) = u * cosine + SWAPPED(u) * crossed;
+  for (std::size_t t1 = 0; t1 < step.n1; ++t1, from += 2 * step.n2, to += 2 * kColumns) {
+    const Four u = LIBCHAR_FOUR(from) - mean, v = LIBCHAR_FOUR(from + 4) - mean;
+    if (!step.odd) {
+      LIBCHAR_FOUR_TO(to) = u;
+      LIBCHAR_FOUR_TO(to + 4) = v;
+      continue;
     }
+    const double cosine = step.shift[2 * t1];
+    const Four crossed = step.shift[2 * t1 + 1] * kSigns;
+    LIBCHAR_FOUR_TO(to) = u * cosine + SWAPPED(u) * crossed;
+    LIBCHAR_FOUR_TO(to + 4) = v * cosine + SWAPPED(v) * crossed;
   }
 }
 
 /// Turns the transformed columns and puts them back as columns of the rows to come.
-LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& step, bool odd, double* to) {
+LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& step, double* to) {
   const std::size_t period = 2 * step.n1 * step.n2 / kColumns, block = step.column / kColumns;
-  const double* fine = step.fine + (odd ? 2 * kColumns * step.n1 : 0);
   const std::size_t stride = 2 * block % period;
-  std::size_t at = odd ? block % period : 0;
+  std::size_t at = step.odd ? block % period : 0;
+  const double* fine = step.fine;
   to += 2 * step.column;
   for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += 2 * kColumns, fine += 2 * kColumns, to += step.pitch) {
-    const double cosine = step.coarse[2 * at];
-    const Four crossed = step.coarse[2 * at + 1] * kSigns;
-    for (std::size_t i = 0; i < 2 * kColumns; i += 4) {
-      const Four f = LIBCHAR_FOUR(fine + i), u = LIBCHAR_FOUR(from + i);
-      const Four w = f * cosine + SWAPPED(f) * crossed;
-      LIBCHAR_FOUR_TO(to + i) = u * REAL_PARTS(w) + SWAPPED(u) * (IMAGINARY_PARTS(w) * kSigns);
-    }
+    const double cosine = step.coarse[2 * at], sine = step.coarse[2 * at + 1];
+    const Four fr = LIBCHAR_FOUR(fine), fi = LIBCHAR_FOUR(fine + 4);
+    const Four wr = cosine * fr - sine * fi, wi = cosine * fi + sine * fr;
+    const Four u = LIBCHAR_FOUR(from), v = LIBCHAR_FOUR(from + 4);
+    const Four ur = FOUR_REAL(u, v), ui = FOUR_IMAGINARY(u, v);
+    const Four yr = ur * wr - ui * wi, yi = ur * wi + ui * wr;
+    LIBCHAR_FOUR_TO(to) = FOUR_REAL(yr, yi);             // the same exchange of places undoes itself
+    LIBCHAR_FOUR_TO(to + 4) = FOUR_IMAGINARY(yr, yi);
     at += stride;
     if (at >= period) at -= period;
   }
@@ -156,24 +162,26 @@ LIBCHAR_WIDE_LANES void separate(const RowPair& p) {
   }
 }
 
-/// One row of even bins and one of odd bins of a segment: X of both halves joined, then windowed power. `before` are the rows
-/// of X one index lower.
-struct SegmentRows {
-  const double *even_p, *even_a, *odd_p, *odd_a;  // Z of the two halves
-  const double* cotangent;                        // of the odd bins, with its sign
-  double step;                                    // difference of the means
-  const double *even_before, *odd_before;         // X
-  double *even, *odd;                             // X, written
-  double *even_power, *odd_power_before;          // sums
-  std::size_t n2;
-};
+/// X = P + A for a row of even bins; A takes the place of P.
+LIBCHAR_WIDE_LANES void join_even(const double* a, std::size_t n2, double* p, double* x) {
+  for (std::size_t at = 0; at < 2 * n2; at += 4) {
+    const Four now = LIBCHAR_FOUR(a + at);
+    LIBCHAR_FOUR_TO(x + at) = LIBCHAR_FOUR(p + at) + now;
+    LIBCHAR_FOUR_TO(p + at) = now;
+  }
+}
 
-LIBCHAR_WIDE_LANES void join(const SegmentRows& s) {
-  for (std::size_t at = 0; at < 2 * s.n2; at += 8) {
-    LIBCHAR_FOUR_TO(s.even + at) = LIBCHAR_FOUR(s.even_p + at) + LIBCHAR_FOUR(s.even_a + at);
-    LIBCHAR_FOUR_TO(s.even + at + 4) = LIBCHAR_FOUR(s.even_p + at + 4) + LIBCHAR_FOUR(s.even_a + at + 4);
-    LIBCHAR_FOUR_TO(s.odd + at) = (LIBCHAR_FOUR(s.odd_p + at) - LIBCHAR_FOUR(s.odd_a + at)) + s.step;
-    LIBCHAR_FOUR_TO(s.odd + at + 4) = (LIBCHAR_FOUR(s.odd_p + at + 4) - LIBCHAR_FOUR(s.odd_a + at + 4)) + s.step * LIBCHAR_FOUR(s.cotangent + at / 2);
+/// X = P - A + step (1 - i cot(pi k / L)) for a row of odd bins; `start` is exp(-i pi k / L) at its first.
+LIBCHAR_WIDE_LANES void join_odd(const double* a, std::size_t n2, const double* quarter, Complex start, double step, double* p, double* x) {
+  const double cr = start.real(), ci = start.imag();
+  for (std::size_t at = 0; at < 2 * n2; at += 8) {
+    const Four tr = LIBCHAR_FOUR(quarter + at), ti = LIBCHAR_FOUR(quarter + at + 4);
+    const Four cotangent = (cr * tr - ci * ti) / (cr * ti + ci * tr);  // with its sign
+    const Four re = LIBCHAR_FOUR(a + at), im = LIBCHAR_FOUR(a + at + 4);
+    LIBCHAR_FOUR_TO(x + at) = (LIBCHAR_FOUR(p + at) - re) + step;
+    LIBCHAR_FOUR_TO(x + at + 4) = (LIBCHAR_FOUR(p + at + 4) - im) + step * cotangent;
+    LIBCHAR_FOUR_TO(p + at) = re;
+    LIBCHAR_FOUR_TO(p + at + 4) = im;
   }
 }
 
@@ -216,148 +224,171 @@ void put(double* row, std::size_t m2, Complex value) {
 struct HalfSegments::State {
   std::size_t h, q, n1, n2, pitch;
   ComplexFft columns, rows, row;        // rows: kRows of them
-  std::vector<double> shift, fine, coarse, quarter, cotangent;
-  Buffer even_columns, odd_columns;     // eight of them
-  Buffer even_rows, odd_rows;           // n1 rows, `pitch` apart
-  Buffer now, before;                   // Z: even bins, then odd bins
-  double now_top = 0, before_top = 0;   // Z_h
+  std::vector<double> shift, fine[2], coarse, quarter;  // fine: even bins, odd bins
+  Buffer column_values;                 // four columns
+  Buffer row_values;                    // n1 rows, `pitch` apart
+  Buffer z;                             // of the half before: even bins, then odd bins
+  Buffer x_even;                        // X of the segment
+  Buffer scratch;                       // rows: Z, Z of the mirror, X of odd bins: two rising, two falling, one moved
+  double z_top = 0, x_top = 0;          // bin h
   Buffer segment_sums, block_sums;      // even bins, then odd bins
   double top_sum = 0;
-  Buffer scratch;                       // five rows of X
   std::vector<char> row_done;
-  bool joined = false;                  // `before` is there
+  bool joined = false;                  // z is there
   double before_mean = 0;
 
   State(std::size_t half, std::size_t split1, std::size_t split2);
-  void transform(const double* x, double mean, bool block);
-  void separate_rows(bool block);
-  void own_mirror(std::size_t r, bool odd_bins, bool block);
-  void add_segment(double step);
+  void transform_columns(const double* x, double mean, bool odd);
+  void transform_row(std::size_t r);
+  Complex start_of(std::size_t r, bool odd) const { return turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h)); }
+  void z_of_rows(std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror);
+  void z_of_own_mirror(std::size_t r, bool odd, bool block, double* z_row);
+  void take_even(const double* x, double mean, bool block);
+  void take_odd(const double* x, double mean, bool block);
+  void take_odd_row(std::size_t r, const double* z_row, double step, double* x_odd);
   void natural(const double* sums, double top, std::vector<double>& out) const;
 };
 
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), columns(n1, kColumns, kColumns, 1), rows(n2, kRows, 1, pitch / 2), row(n2, 1, 1, n2),
-      even_columns(zeros(2 * kColumns * n1)), odd_columns(zeros(2 * kColumns * n1)), even_rows(zeros(n1 * pitch)), odd_rows(zeros(n1 * pitch)),
-      now(zeros(4 * q)), before(zeros(4 * q)), segment_sums(zeros(2 * q)), block_sums(zeros(2 * q)), scratch(zeros(10 * n2)) {
+    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), columns(n1, kColumns, kColumns, 1), rows(n2, kRows, 1, pitch / 2),
+      row(n2, 1, 1, n2), column_values(zeros(2 * kColumns * n1)), row_values(zeros(n1 * pitch)), z(zeros(4 * q)), x_even(zeros(2 * q)),
+      scratch(zeros(14 * n2)), segment_sums(zeros(2 * q)), block_sums(zeros(2 * q)) {
   const auto push = [](std::vector<double>& table, Complex value) {
     table.push_back(value.real());
     table.push_back(value.imag());
   };
   const double count = static_cast<double>(q);
   for (std::size_t t1 = 0; t1 < n1; ++t1) push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
-  for (const double part : {0.0, 0.5})
+  for (std::size_t odd = 0; odd < 2; ++odd) {
+    fine[odd].resize(2 * kColumns * n1);
     for (std::size_t m1 = 0; m1 < n1; ++m1)
-      for (std::size_t i = 0; i < kColumns; ++i) push(fine, turn(2 * static_cast<double>(i) * (static_cast<double>(m1) + part), count));
+      for (std::size_t j = 0; j < kColumns; ++j)
+        put(fine[odd].data() + 2 * kColumns * m1, j, turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), count));
+  }
   const std::size_t period = 2 * q / kColumns;
   for (std::size_t j = 0; j < period; ++j) push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
   quarter.resize(2 * n2);
   for (std::size_t m2 = 0; m2 < n2; ++m2) put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
-  cotangent.resize(q);
-  for (std::size_t r = 0; r < n1; ++r) {
-    const Complex start = turn(static_cast<double>(2 * r + 1), static_cast<double>(2 * h));
-    for (std::size_t m2 = 0; m2 < n2; ++m2) {
-      const Complex there = start * value_at(quarter.data(), m2);
-      cotangent[r * n2 + sum_place(m2)] = there.real() / there.imag();
-    }
-  }
 }
 
-void HalfSegments::State::transform(const double* x, double mean, bool block) {
-  ColumnStep step{n1, n2, pitch, 0, shift.data(), fine.data(), coarse.data()};
+void HalfSegments::State::transform_columns(const double* x, double mean, bool odd) {
+  ColumnStep step{n1, n2, pitch, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
   for (; step.column < n2; step.column += kColumns) {
-    gather_columns(x, mean, step, even_columns.get(), odd_columns.get());
-    columns.transform(even_columns.get());
-    columns.transform(odd_columns.get());
-    scatter_columns(even_columns.get(), step, false, even_rows.get());
-    scatter_columns(odd_columns.get(), step, true, odd_rows.get());
+    gather_columns(x, mean, step, column_values.get());
+    columns.transform(column_values.get());
+    scatter_columns(column_values.get(), step, row_values.get());
   }
-  separate_rows(block);
+  row_done.assign(n1, 0);
 }
 
-void HalfSegments::State::separate_rows(bool block) {
-  const std::size_t width = 2 * n2;
-  const auto transformed = [&](double* u, std::size_t r) {
-    const std::size_t first = r / kRows * kRows;
-    if (first + kRows > n1) {  // the last few
-      if (std::exchange(row_done[r], char{1}) == 0) row.transform(u + r * pitch);
-    } else if (std::exchange(row_done[first], char{1}) == 0) {
-      rows.transform(u + first * pitch);
-    }
-  };
-  const auto pair = [&](std::size_t r, std::size_t mirror, bool odd) {
-    double* const u = odd ? odd_rows.get() : even_rows.get();
-    transformed(u, r);
-    if (mirror == r) return own_mirror(r, odd, block);
-    transformed(u, mirror);
-    double* const z = now.get() + (odd ? 2 * q : 0);
-    RowPair p{u + r * pitch, u + mirror * pitch, z + r * width, z + mirror * width, nullptr, nullptr, quarter.data(), {}, n2};
-    if (block) {
-      double* const c = block_sums.get() + (odd ? q : 0);
-      p.c_row = c + r * n2;
-      p.c_mirror = c + mirror * n2;
-    }
-    p.start = turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h));
-    separate(p);
-  };
-  row_done.assign(n1, 0);
-  pair(0, 0, false);
-  for (std::size_t r = 1; r <= n1 / 2; ++r) pair(r, n1 - r, false);
-  row_done.assign(n1, 0);
-  for (std::size_t r = 0; r < (n1 + 1) / 2; ++r) pair(r, n1 - 1 - r, true);
+/// When it is first asked for, with its neighbours in memory.
+void HalfSegments::State::transform_row(std::size_t r) {
+  const std::size_t first = r / kRows * kRows;
+  if (first + kRows > n1) {  // the last few
+    if (std::exchange(row_done[r], char{1}) == 0) row.transform(row_values.get() + r * pitch);
+  } else if (std::exchange(row_done[first], char{1}) == 0) {
+    rows.transform(row_values.get() + first * pitch);
+  }
+}
+
+void HalfSegments::State::z_of_rows(std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror) {
+  transform_row(r);
+  if (mirror == r) return z_of_own_mirror(r, odd, block, z_row);
+  transform_row(mirror);
+  double* const c = block_sums.get() + (odd ? q : 0);
+  separate({row_values.get() + r * pitch, row_values.get() + mirror * pitch, z_row, z_mirror, block ? c + r * n2 : nullptr,
+            block ? c + mirror * n2 : nullptr, quarter.data(), start_of(r, odd), n2});
 }
 
 /// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and the one in the middle.
-void HalfSegments::State::own_mirror(std::size_t r, bool odd_bins, bool block) {
-  const std::size_t width = 2 * n2;
-  const double* const u = (odd_bins ? odd_rows.get() : even_rows.get()) + r * pitch;
-  double* const z_row = now.get() + (odd_bins ? 2 * q : 0) + r * width;
+void HalfSegments::State::z_of_own_mirror(std::size_t r, bool odd_bins, bool block, double* z_row) {
+  const double* const u = row_values.get() + r * pitch;
   double* const c_row = block_sums.get() + (odd_bins ? q : 0) + r * n2;
-  const Complex start = turn(static_cast<double>(2 * r + (odd_bins ? 1 : 0)), static_cast<double>(2 * h));
+  const Complex start = start_of(r, odd_bins);
   const bool moved = r == 0 && !odd_bins;
   const auto at = [&](std::size_t m2) { return Complex(u[2 * m2], u[2 * m2 + 1]); };
   for (std::size_t m2 = 0; m2 < n2; ++m2) {
     const Complex mine = at(m2), other = std::conj(at(moved ? (n2 - m2) % n2 : n2 - 1 - m2));
     const Complex even = 0.5 * (mine + other), odd = Complex(0, -0.5) * (mine - other);
     const Complex turned = start * value_at(quarter.data(), m2);
-    const Complex z = even + turned * turned * odd;
-    put(z_row, m2, z);
-    if (moved && m2 == 0) now_top = even.real() - odd.real();
+    const Complex value = even + turned * turned * odd;
+    put(z_row, m2, value);
+    if (moved && m2 == 0) {
+      const double top = even.real() - odd.real();
+      x_top = std::exchange(z_top, top) + top;
+    }
     if (!block) continue;
-    const double c = turned.real() * z.real() - turned.imag() * z.imag();
+    const double c = turned.real() * value.real() - turned.imag() * value.imag();
     c_row[sum_place(m2)] += c * c;
   }
 }
 
-void HalfSegments::State::add_segment(double step) {
+void HalfSegments::State::take_even(const double* x, double mean, bool block) {
   const std::size_t width = 2 * n2;
-  double *even = scratch.get(), *even_last = even + width, *odd = even_last + width, *odd_last = odd + width, *shifted = odd_last + width;
-  const double *p = before.get(), *a = now.get();
-  const auto join_row = [&](std::size_t r) {
-    join({p + r * width, a + r * width, p + 2 * q + r * width, a + 2 * q + r * width, cotangent.data() + r * n2, step, nullptr, nullptr, even, odd, nullptr, nullptr, n2});
-  };
-  // Below the first row of odd bins stands the last one, moved by one; below bin 1 its conjugate.
-  join_row(n1 - 1);
-  const double top = before_top + now_top;
-  const double top_windowed = 0.5 * top - 0.5 * value_at(odd, n2 - 1).real();
-  top_sum += top_windowed * top_windowed;
-  std::swap(odd, shifted);
-  for (std::size_t m2 = n2 - 1; m2 > 0; --m2) put(odd_last, m2, value_at(shifted, m2 - 1));
-  join_row(0);
-  put(odd_last, 0, std::conj(value_at(odd, 0)));
-  // Above the last row of even bins stands the first one, moved by one; at its end bin h.
-  for (std::size_t m2 = 0; m2 + 1 < n2; ++m2) put(shifted, m2, value_at(even, m2 + 1));
-  put(shifted, n2 - 1, top);
-  for (std::size_t r = 0; r < n1; ++r) {
-    if (r > 0) {
-      join_row(r);
-      add_windowed(even_last, odd_last, even, n2, segment_sums.get() + q + (r - 1) * n2);
-    }
-    add_windowed(odd_last, even, odd, n2, segment_sums.get() + r * n2);
-    std::swap(even, even_last);
-    std::swap(odd, odd_last);
+  double *z_row = scratch.get(), *z_mirror = z_row + width;
+  transform_columns(x, mean, false);
+  for (std::size_t r = 0; r <= n1 / 2; ++r) {
+    const std::size_t mirror = r == 0 ? 0 : n1 - r;
+    if (mirror < r) break;  // n1 odd: done
+    z_of_rows(r, mirror, false, block, z_row, z_mirror);
+    join_even(z_row, n2, z.get() + r * width, x_even.get() + r * width);
+    if (mirror != r) join_even(z_mirror, n2, z.get() + mirror * width, x_even.get() + mirror * width);
   }
-  add_windowed(even_last, odd_last, shifted, n2, segment_sums.get() + q + (n1 - 1) * n2);
+}
+
+/// X of a row of odd bins, and its windowed power (between the even bins below and above, which are there already).
+void HalfSegments::State::take_odd_row(std::size_t r, const double* z_row, double step, double* x_odd) {
+  const std::size_t width = 2 * n2;
+  join_odd(z_row, n2, quarter.data(), start_of(r, true), step, z.get() + 2 * q + r * width, x_odd);
+  if (!joined) return;
+  const double* above = x_even.get() + (r + 1) * width;
+  double* const moved = scratch.get() + 6 * width;
+  if (r + 1 == n1) {  // above the last row stands the first one, moved by one; at its end bin h
+    for (std::size_t m2 = 0; m2 + 1 < n2; ++m2) put(moved, m2, value_at(x_even.get(), m2 + 1));
+    put(moved, n2 - 1, x_top);
+    above = moved;
+  }
+  add_windowed(x_even.get() + r * width, x_odd, above, n2, segment_sums.get() + q + r * n2);
+}
+
+void HalfSegments::State::take_odd(const double* x, double mean, bool block) {
+  const std::size_t width = 2 * n2;
+  double *z_row = scratch.get(), *z_mirror = z_row + width;
+  double *rising = z_mirror + width, *rising_before = rising + width, *falling = rising_before + width, *falling_before = falling + width;
+  double* const moved = falling_before + width;
+  const double step = before_mean - mean;
+  transform_columns(x, mean, true);
+  const auto even_row = [&](std::size_t r, const double* below, const double* above) {
+    if (joined) add_windowed(below, x_even.get() + r * width, above, n2, segment_sums.get() + r * n2);
+  };
+  const std::size_t pairs = (n1 + 1) / 2;
+  for (std::size_t r = 0; r < pairs; ++r) {
+    const std::size_t mirror = n1 - 1 - r;
+    z_of_rows(r, mirror, true, block, z_row, z_mirror);
+    take_odd_row(r, z_row, step, rising);
+    if (mirror != r)
+      take_odd_row(mirror, z_mirror, step, falling);
+    else
+      std::swap(falling, rising);  // the middle row closes both ways
+    if (r == 0) {
+      // Below the first row stands the last one, moved by one; below bin 1 its conjugate.
+      const double* const last = falling;
+      for (std::size_t m2 = n2 - 1; m2 > 0; --m2) put(moved, m2, value_at(last, m2 - 1));
+      put(moved, 0, std::conj(value_at(rising, 0)));
+      even_row(0, moved, rising);
+      const double top = 0.5 * x_top - 0.5 * value_at(last, n2 - 1).real();
+      if (joined) top_sum += top * top;
+    } else if (mirror == r) {
+      even_row(r, rising_before, falling);
+      even_row(r + 1, falling, falling_before);
+    } else {
+      even_row(r, rising_before, rising);
+      even_row(mirror + 1, falling, falling_before);
+    }
+    if (mirror == r + 1) even_row(mirror, rising, falling);
+    std::swap(rising, rising_before);
+    std::swap(falling, falling_before);
+  }
 }
 
 void HalfSegments::State::natural(const double* sums, double top, std::vector<double>& out) const {
@@ -395,14 +426,10 @@ bool HalfSegments::push(const double* x, double mean, bool block) {
     s.joined = false;
     return false;
   }
-  s.transform(x, mean, block);
-  const bool whole = s.joined;
-  if (whole) s.add_segment(s.before_mean - mean);
-  std::swap(s.now, s.before);
-  s.before_top = s.now_top;
+  s.take_even(x, mean, block);
+  s.take_odd(x, mean, block);
   s.before_mean = mean;
-  s.joined = true;
-  return whole;
+  return std::exchange(s.joined, true);
 }
 
 void HalfSegments::take_power(std::vector<double>& power) {
