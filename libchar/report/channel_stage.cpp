@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/error.hpp"
@@ -99,6 +100,14 @@ void ChannelStage::stream(std::span<const double> samples) {
   }
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
   if (fit) streams_->bins.push(samples);
+}
+
+void ChannelStage::reserve(std::size_t samples) {
+  try {
+    kept_.reserve(samples);
+  } catch (const std::bad_alloc&) {
+    // Where address space is short the record grows as it comes.
+  }
 }
 
 void ChannelStage::stop_keeping() {

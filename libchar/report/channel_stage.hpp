@@ -32,8 +32,8 @@ class ChannelStage {
   /// Moves what is kept into the streaming stages and keeps nothing from now on.
   void stop_keeping();
   std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
-  /// Room for a record of this length, so that growing does not take twice the memory.
-  void reserve(std::size_t samples) { kept_.reserve(samples); }
+  /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
+  void reserve(std::size_t samples);
 
   /// After the last push: do spikes ask for a second pass over the log, which cleans them on the way into the fit? Never for
   /// samples that were kept.
