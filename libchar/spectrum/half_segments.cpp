@@ -231,7 +231,7 @@ struct HalfSegments::State {
   Buffer x_even;                        // X of the segment
   Buffer scratch;                       // rows: Z, Z of the mirror, X of odd bins: two rising, two falling, one moved
   double z_top = 0, x_top = 0;          // bin h
-  Buffer segment_sums, block_sums;      // even bins, then odd bins
+  Buffer segment_sums, block_sums;      // even bins, then odd bins; the second when it is first asked for
   double top_sum = 0;
   std::vector<char> row_done;
   bool joined = false;                  // z is there
@@ -252,7 +252,7 @@ struct HalfSegments::State {
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
     : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), columns(n1, kColumns, kColumns, 1), rows(n2, kRows, 1, pitch / 2),
       row(n2, 1, 1, n2), column_values(zeros(2 * kColumns * n1)), row_values(zeros(n1 * pitch)), z(zeros(4 * q)), x_even(zeros(2 * q)),
-      scratch(zeros(14 * n2)), segment_sums(zeros(2 * q)), block_sums(zeros(2 * q)) {
+      scratch(zeros(14 * n2)), segment_sums(zeros(2 * q)) {
   const auto push = [](std::vector<double>& table, Complex value) {
     table.push_back(value.real());
     table.push_back(value.imag());
@@ -295,7 +295,7 @@ void HalfSegments::State::z_of_rows(std::size_t r, std::size_t mirror, bool odd,
   transform_row(r);
   if (mirror == r) return z_of_own_mirror(r, odd, block, z_row);
   transform_row(mirror);
-  double* const c = block_sums.get() + (odd ? q : 0);
+  double* const c = block ? block_sums.get() + (odd ? q : 0) : nullptr;
   separate({row_values.get() + r * pitch, row_values.get() + mirror * pitch, z_row, z_mirror, block ? c + r * n2 : nullptr,
             block ? c + mirror * n2 : nullptr, quarter.data(), start_of(r, odd), n2});
 }
@@ -303,7 +303,7 @@ void HalfSegments::State::z_of_rows(std::size_t r, std::size_t mirror, bool odd,
 /// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and the one in the middle.
 void HalfSegments::State::z_of_own_mirror(std::size_t r, bool odd_bins, bool block, double* z_row) {
   const double* const u = row_values.get() + r * pitch;
-  double* const c_row = block_sums.get() + (odd_bins ? q : 0) + r * n2;
+  double* const c_row = block ? block_sums.get() + (odd_bins ? q : 0) + r * n2 : nullptr;
   const Complex start = start_of(r, odd_bins);
   const bool moved = r == 0 && !odd_bins;
   const auto at = [&](std::size_t m2) { return Complex(u[2 * m2], u[2 * m2 + 1]); };
@@ -426,6 +426,7 @@ bool HalfSegments::push(const double* x, double mean, bool block) {
     s.joined = false;
     return false;
   }
+  if (block && !s.block_sums) s.block_sums = zeros(2 * s.q);
   s.take_even(x, mean, block);
   s.take_odd(x, mean, block);
   s.before_mean = mean;
@@ -446,7 +447,8 @@ std::vector<double> HalfSegments::power() const {
 }
 
 std::vector<double> HalfSegments::block_power() const {
-  std::vector<double> power;
+  std::vector<double> power(state_->h, 0.0);
+  if (!state_->block_sums) return power;
   state_->natural(state_->block_sums.get(), 0, power);
   power.resize(state_->h);
   for (double& c : power) c *= 2 / static_cast<double>(state_->h);

@@ -103,10 +103,9 @@ struct Group {
 struct Worker {
   std::optional<HalfSegments> halves;
   std::optional<Periodogram> periodogram;
+  /// No window: by halves.
   Worker(const WelchOptions& options, const Layout& layout, const std::vector<double>& window) {
-    WelchOptions chosen = options;
-    chosen.segment = layout.segment;
-    if (HalfSegments::suits(chosen))
+    if (window.empty())
       halves.emplace(layout.segment);
     else
       periodogram.emplace(options, window);
@@ -155,7 +154,9 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
   check_rate(rate_hz);
   std::vector<std::string> notes;
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
-  const std::vector<double> window = window_values(options.window, layout.segment);
+  WelchOptions chosen = options;
+  chosen.segment = layout.segment;
+  const std::vector<double> window = HalfSegments::suits(chosen) ? std::vector<double>() : window_values(options.window, layout.segment);
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   Average average(options, layout);
 

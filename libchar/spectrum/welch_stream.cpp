@@ -20,7 +20,7 @@ using namespace welch_detail;
 struct WelchStream::State {
   WelchOptions options;
   Layout layout;
-  std::vector<double> window;
+  std::vector<double> window;  // none: by halves
   std::optional<Periodogram> periodogram;  // one of the two
   std::optional<HalfSegments> halves;
   Average average;
@@ -34,10 +34,10 @@ struct WelchStream::State {
   explicit State(const WelchOptions& chosen)
       : options(chosen),
         layout(layout_of(chosen.segment, chosen.overlap)),
-        window(window_values(chosen.window, layout.segment)),
+        window(HalfSegments::suits(chosen) ? std::vector<double>() : window_values(chosen.window, layout.segment)),
         average(options, layout),
         group(layout.segment / 2 + 1, 0.0) {
-    if (HalfSegments::suits(chosen))
+    if (window.empty())
       halves.emplace(layout.segment);
     else
       periodogram.emplace(options, window);
