@@ -31,7 +31,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kColumns = 4;  // transformed side by side: one line of the cache
+constexpr std::size_t kColumns = 4;  // transformed side by side, or a multiple of it: one line of the cache
 constexpr std::size_t kPadding = 8;  // between rows, or a column of them would fall into few sets of the cache
 constexpr std::size_t kRows = 4;     // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
@@ -66,6 +66,13 @@ std::pair<std::size_t, std::size_t> split(std::size_t q) {
   return {0, 0};
 }
 
+/// Where a column of all rows is more than the cache holds at once, several lines are taken from each row.
+std::size_t columns_at_once(std::size_t q, std::size_t n2) {
+  std::size_t count = q <= (std::size_t{1} << 16U) ? 2 * kColumns : 6 * kColumns;
+  while (n2 % count != 0) count -= kColumns;
+  return count;
+}
+
 // Interleaved complex numbers, two in a vector.
 #define SWAPPED(v) __builtin_shufflevector(v, v, 1, 0, 3, 2)
 #define REAL_PARTS(v) __builtin_shufflevector(v, v, 0, 0, 2, 2)
@@ -78,46 +85,45 @@ std::pair<std::size_t, std::size_t> split(std::size_t q) {
 constexpr Four kSigns = {-1, 1, -1, 1};
 
 struct ColumnStep {
-  std::size_t n1, n2, pitch, column;
+  std::size_t n1, n2, pitch, count, column;
   bool odd;                // bins
   const double* shift;     // [n1] exp(-i pi t1 / n1), interleaved: half a bin
-  const double* fine;      // [n1] exp(-2 pi i m1 j / q), j < kColumns; four real and four imaginary parts. Odd bins: m1 + 1/2
-  const double* coarse;    // exp(-2 pi i j / period) over a period of 2 q / kColumns, interleaved
+  const double* fine;      // [n1] exp(-2 pi i m1 j / q), j < count; four real and four imaginary parts. Odd bins: m1 + 1/2
+  const double* coarse;    // exp(-2 pi i j / period) over a period of 2 q / count, interleaved
 };
 
-/// Four columns of u less the mean; for the odd bins turned by half a bin.
+/// `count` columns of u less the mean; for the odd bins turned by half a bin.
 LIBCHAR_WIDE_LANES void gather_columns(const double* x, double mean, const ColumnStep& step, double* to) {
   const double* from = x + 2 * step.column;
-  for (std::size_t t1 = 0; t1 < step.n1; ++t1, from += 2 * step.n2, to += 2 * kColumns) {
-    const Four u = LIBCHAR_FOUR(from) - mean, v = LIBCHAR_FOUR(from + 4) - mean;
-    if (!step.odd) {
-      LIBCHAR_FOUR_TO(to) = u;
-      LIBCHAR_FOUR_TO(to + 4) = v;
-      continue;
-    }
+  const std::size_t width = 2 * step.count;
+  for (std::size_t t1 = 0; t1 < step.n1; ++t1, from += 2 * step.n2, to += width) {
     const double cosine = step.shift[2 * t1];
     const Four crossed = step.shift[2 * t1 + 1] * kSigns;
-    LIBCHAR_FOUR_TO(to) = u * cosine + SWAPPED(u) * crossed;
-    LIBCHAR_FOUR_TO(to + 4) = v * cosine + SWAPPED(v) * crossed;
+    for (std::size_t i = 0; i < width; i += 4) {
+      const Four u = LIBCHAR_FOUR(from + i) - mean;
+      LIBCHAR_FOUR_TO(to + i) = step.odd ? u * cosine + SWAPPED(u) * crossed : u;
+    }
   }
 }
 
 /// Turns the transformed columns and puts them back as columns of the rows to come.
 LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& step, double* to) {
-  const std::size_t period = 2 * step.n1 * step.n2 / kColumns, block = step.column / kColumns;
+  const std::size_t width = 2 * step.count, period = 2 * step.n1 * step.n2 / step.count, block = step.column / step.count;
   const std::size_t stride = 2 * block % period;
   std::size_t at = step.odd ? block % period : 0;
   const double* fine = step.fine;
   to += 2 * step.column;
-  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += 2 * kColumns, fine += 2 * kColumns, to += step.pitch) {
+  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += width, fine += width, to += step.pitch) {
     const double cosine = step.coarse[2 * at], sine = step.coarse[2 * at + 1];
-    const Four fr = LIBCHAR_FOUR(fine), fi = LIBCHAR_FOUR(fine + 4);
-    const Four wr = cosine * fr - sine * fi, wi = cosine * fi + sine * fr;
-    const Four u = LIBCHAR_FOUR(from), v = LIBCHAR_FOUR(from + 4);
-    const Four ur = FOUR_REAL(u, v), ui = FOUR_IMAGINARY(u, v);
-    const Four yr = ur * wr - ui * wi, yi = ur * wi + ui * wr;
-    LIBCHAR_FOUR_TO(to) = FOUR_REAL(yr, yi);             // the same exchange of places undoes itself
-    LIBCHAR_FOUR_TO(to + 4) = FOUR_IMAGINARY(yr, yi);
+    for (std::size_t i = 0; i < width; i += 8) {
+      const Four fr = LIBCHAR_FOUR(fine + i), fi = LIBCHAR_FOUR(fine + i + 4);
+      const Four wr = cosine * fr - sine * fi, wi = cosine * fi + sine * fr;
+      const Four u = LIBCHAR_FOUR(from + i), v = LIBCHAR_FOUR(from + i + 4);
+      const Four ur = FOUR_REAL(u, v), ui = FOUR_IMAGINARY(u, v);
+      const Four yr = ur * wr - ui * wi, yi = ur * wi + ui * wr;
+      LIBCHAR_FOUR_TO(to + i) = FOUR_REAL(yr, yi);  // the same exchange of places undoes itself
+      LIBCHAR_FOUR_TO(to + i + 4) = FOUR_IMAGINARY(yr, yi);
+    }
     at += stride;
     if (at >= period) at -= period;
   }
@@ -222,7 +228,7 @@ void put(double* row, std::size_t m2, Complex value) {
 }  // namespace
 
 struct HalfSegments::State {
-  std::size_t h, q, n1, n2, pitch;
+  std::size_t h, q, n1, n2, pitch, count;  // count: columns at once
   ComplexFft columns, rows, row;        // rows: kRows of them
   std::vector<double> shift, fine[2], coarse, quarter;  // fine: even bins, odd bins
   Buffer column_values;                 // four columns
@@ -250,30 +256,29 @@ struct HalfSegments::State {
 };
 
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), columns(n1, kColumns, kColumns, 1), rows(n2, kRows, 1, pitch / 2),
-      row(n2, 1, 1, n2), column_values(zeros(2 * kColumns * n1)), row_values(zeros(n1 * pitch)), z(zeros(4 * q)), x_even(zeros(2 * q)),
+    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), count(columns_at_once(q, n2)), columns(n1, count, count, 1), rows(n2, kRows, 1, pitch / 2),
+      row(n2, 1, 1, n2), column_values(zeros(2 * count * n1)), row_values(zeros(n1 * pitch)), z(zeros(4 * q)), x_even(zeros(2 * q)),
       scratch(zeros(14 * n2)), segment_sums(zeros(2 * q)) {
   const auto push = [](std::vector<double>& table, Complex value) {
     table.push_back(value.real());
     table.push_back(value.imag());
   };
-  const double count = static_cast<double>(q);
   for (std::size_t t1 = 0; t1 < n1; ++t1) push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
   for (std::size_t odd = 0; odd < 2; ++odd) {
-    fine[odd].resize(2 * kColumns * n1);
+    fine[odd].resize(2 * count * n1);
     for (std::size_t m1 = 0; m1 < n1; ++m1)
-      for (std::size_t j = 0; j < kColumns; ++j)
-        put(fine[odd].data() + 2 * kColumns * m1, j, turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), count));
+      for (std::size_t j = 0; j < count; ++j)
+        put(fine[odd].data() + 2 * count * m1, j, turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), static_cast<double>(q)));
   }
-  const std::size_t period = 2 * q / kColumns;
+  const std::size_t period = 2 * q / count;
   for (std::size_t j = 0; j < period; ++j) push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
   quarter.resize(2 * n2);
   for (std::size_t m2 = 0; m2 < n2; ++m2) put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
 }
 
 void HalfSegments::State::transform_columns(const double* x, double mean, bool odd) {
-  ColumnStep step{n1, n2, pitch, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
-  for (; step.column < n2; step.column += kColumns) {
+  ColumnStep step{n1, n2, pitch, count, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
+  for (; step.column < n2; step.column += count) {
     gather_columns(x, mean, step, column_values.get());
     columns.transform(column_values.get());
     scatter_columns(column_values.get(), step, row_values.get());
