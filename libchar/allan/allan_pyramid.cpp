@@ -75,10 +75,11 @@ bool safe(double sum) {
 struct AllanPyramid::State {
   struct Level {
     std::array<double, kTail> tail;  // end of the previous block
-    std::vector<double> block;       // kBlock places for the block that is being filled, `held` of them taken
+    std::vector<double>
+        block;  // kBlock places for the block that is being filled, `held` of them taken
     std::size_t held = 0;
-    std::array<Tally, 3> tally;      // sums of 1 and 2 (level 0 only) and of 4
-    bool started = false;            // tail is filled
+    std::array<Tally, 3> tally;  // sums of 1 and 2 (level 0 only) and of 4
+    bool started = false;        // tail is filled
   };
   std::vector<Level> levels;
   std::uint64_t samples = 0, missing = 0;
@@ -130,7 +131,8 @@ void AllanPyramid::State::finish_held(std::size_t level) {
 }
 
 /// Terms inside one block; `sums` of a block without missing values, else null.
-void AllanPyramid::State::within(Level& level, bool base, const double* z, std::size_t n, const double* sums) {
+void AllanPyramid::State::within(
+    Level& level, bool base, const double* z, std::size_t n, const double* sums) {
   for (std::size_t k = base ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k;
     if (n < 2 * width) continue;
@@ -177,7 +179,8 @@ void AllanPyramid::State::finish_block(std::size_t index, const double* z, std::
     squares_of_one_two_four(z, n, sums);
   else
     sums[2] = squares_of_four(z, n);
-  // Every value is in some difference, and what is missing or infinite is in the sum then; only huge values are there too.
+  // Every value is in some difference, and what is missing or infinite is in the sum then; only
+  // huge values are there too.
   const bool clean = n >= 8 && std::isfinite(sums[base ? 0 : 2]) ? true : all_finite(z, n);
   if (base && !clean) {
     for (std::size_t i = 0; i < n; ++i)
@@ -221,7 +224,9 @@ void AllanPyramid::push(std::span<const double> samples) {
 AllanCurve AllanPyramid::finish(double dt_s) const {
   State state = *state_;  // the open blocks are closed in a copy: more samples may still come
   for (std::size_t l = 0; l < state.levels.size(); ++l) {
-    const std::vector<double> rest(state.levels[l].block.begin(), state.levels[l].block.begin() + static_cast<std::ptrdiff_t>(state.levels[l].held));
+    const std::vector<double> rest(
+        state.levels[l].block.begin(),
+        state.levels[l].block.begin() + static_cast<std::ptrdiff_t>(state.levels[l].held));
     state.levels[l].held = 0;
     if (!rest.empty()) state.finish_block(l, rest.data(), rest.size());
   }

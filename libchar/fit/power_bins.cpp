@@ -167,8 +167,8 @@ struct PowerBinner::State {
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
   std::vector<double>
-      means;  ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  double shift = 0;                 ///< first sample of the segment
+      means;         ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
+  double shift = 0;  ///< first sample of the segment
   std::array<double, 4> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<Power> done;  ///< of finished segments (their tails and series of means)
@@ -186,7 +186,8 @@ struct PowerBinner::State {
         continue;
       }
       begin_run(values[0]);
-      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
+      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(
+          values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
       push_run(values.first(run));
       values = values.subspan(run);
     }
@@ -218,7 +219,8 @@ struct PowerBinner::State {
     return n;
   }
 
-  // Samples without a missing one, at most up to the end of the mean and one beyond the end of the block.
+  // Samples without a missing one, at most up to the end of the mean and one beyond the end of the
+  // block.
   void push_run(std::span<const double> run) {
     pending.insert(pending.end(), run.begin(), run.end());
     add_to_mean(run);
@@ -231,7 +233,8 @@ struct PowerBinner::State {
   void add_to_mean(std::span<const double> run) {
     // Four sums, by position in the mean: the bits do not depend on how the samples came.
     std::size_t i = 0;
-    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i) partial[(partial_count + i) % 4] += run[i] - shift;
+    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i)
+      partial[(partial_count + i) % 4] += run[i] - shift;
     for (; i + 4 <= run.size(); i += 4)
       for (std::size_t lane = 0; lane < 4; ++lane) partial[lane] += run[i + lane] - shift;
     for (std::size_t lane = 0; i < run.size(); ++i, ++lane) partial[lane] += run[i] - shift;
@@ -239,7 +242,8 @@ struct PowerBinner::State {
     segment_samples += run.size();
     samples += run.size();
     if (partial_count == per_mean) {
-      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) / std::sqrt(static_cast<double>(per_mean)));
+      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) /
+                      std::sqrt(static_cast<double>(per_mean)));
       partial.fill(0);
       partial_count = 0;
     }
@@ -291,7 +295,8 @@ struct PowerBinner::State {
     if (blocks > 0) {
       Power pooled{block, 1, kLeftToMeans, blocks, {}};
       for (std::uint64_t k = kLeftToMeans; k < block; ++k) {
-        const double sum = (block_power.empty() ? 0 : block_power[k]) + (taken_power.empty() ? 0 : taken_power[k]);
+        const double sum =
+            (block_power.empty() ? 0 : block_power[k]) + (taken_power.empty() ? 0 : taken_power[k]);
         pooled.mean.push_back(sum / static_cast<double>(blocks));
       }
       all.push_back(std::move(pooled));
@@ -320,8 +325,12 @@ void PowerBinner::push(std::span<const double> samples) {
   state_->push(samples);
 }
 
-bool PowerBinner::take_block(std::span<const double> samples) { return state_->take_block(samples); }
-void PowerBinner::set_taken_power(std::vector<double> power) { state_->taken_power = std::move(power); }
+bool PowerBinner::take_block(std::span<const double> samples) {
+  return state_->take_block(samples);
+}
+void PowerBinner::set_taken_power(std::vector<double> power) {
+  state_->taken_power = std::move(power);
+}
 
 std::vector<PowerBin> PowerBinner::finish(double rate_hz) const {
   std::vector<PowerBin> bins;

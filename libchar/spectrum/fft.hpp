@@ -29,9 +29,9 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
-/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i stands at
-/// [i * distance + t * step]. Several at once are faster than one by one, because FFTW puts neighbours into one vector. The memory
-/// is the caller's and must be aligned to 64 bytes.
+/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
+/// stands at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
+/// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes.
 class ComplexFft {
  public:
   ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);

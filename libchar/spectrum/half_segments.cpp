@@ -1,43 +1,51 @@
-// Welch's method with a Hann window and half-overlapping segments, without transforming any sample twice over a whole segment.
+// Welch's method with a Hann window and half-overlapping segments, without transforming any sample
+// twice over a whole segment.
 //
-// With h samples in a half, L = 2h, and Z_k the DFT at the L frequencies of a half less its mean s and padded with zeros, a segment
-// made of the halves p and a, less its own mean (s_p + s_a)/2, has
+// With h samples in a half, L = 2h, and Z_k the DFT at the L frequencies of a half less its mean s
+// and padded with zeros, a segment made of the halves p and a, less its own mean (s_p + s_a)/2, has
 //   X_k = P_k + (-1)^k A_k + (s_p - s_a) (1 - i cot(pi k / L)) [k odd]
-// (the last term is the transform of the step between the means), and with the periodic Hann window, three terms of a cosine sum,
+// (the last term is the transform of the step between the means), and with the periodic Hann
+// window, three terms of a cosine sum,
 //   Y_k = X_k/2 - (X_{k-1} + X_{k+1})/4.
-// The same Z_k gives the orthonormal DCT-II of the half:   c_k = sqrt(2/h) Re(exp(-i pi k / L) Z_k).
+// The same Z_k gives the orthonormal DCT-II of the half:   c_k = sqrt(2/h) Re(exp(-i pi k / L)
+// Z_k).
 //
-// Z itself: even bins k = 2m are the DFT of the half, odd ones k = 2m+1 its DFT at frequencies moved by half a bin. Each is a complex
-// transform of q = h/2 values u_s = x_{2s} + i x_{2s+1} and the usual separation (R. N. Bracewell, The Fourier Transform and Its
-// Applications, on two real transforms in one). Each transform of q = n1 n2 values goes in two steps that stay in the cache (W. M.
-// Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2 m1 / q), over t2; s = n2 t1 + t2,
-// m = m1 + n1 m2. The result is left where it stands, in rows of fixed m1: the mirror q - m of row r is row n1 - r backwards, the
-// neighbours m ± 1 are the rows beside it, and everything after the transform goes row by row, as soon as a row is there: memory is what
-// this costs, more than arithmetic.
+// Z itself: even bins k = 2m are the DFT of the half, odd ones k = 2m+1 its DFT at frequencies
+// moved by half a bin. Each is a complex transform of q = h/2 values u_s = x_{2s} + i x_{2s+1} and
+// the usual separation (R. N. Bracewell, The Fourier Transform and Its Applications, on two real
+// transforms in one). Each transform of q = n1 n2 values goes in two steps that stay in the cache
+// (W. M. Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2
+// pi i t2 m1 / q), over t2; s = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in
+// rows of fixed m1: the mirror q - m of row r is row n1 - r backwards, the neighbours m ± 1 are the
+// rows beside it, and everything after the transform goes row by row, as soon as a row is there:
+// memory is what this costs, more than arithmetic.
 //
-// Inside a row four values stand as four real and four imaginary parts, in the order 0 2 1 3 that unpacking gives.
+// Inside a row four values stand as four real and four imaginary parts, in the order 0 2 1 3 that
+// unpacking gives.
 
 #include "libchar/spectrum/half_segments.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <new>
 #include <numbers>
 #include <utility>
 
-#include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/fft.hpp"
+#include "libchar/spectrum/half_segment_kernels.hpp"
 
 namespace libchar {
+
+using namespace halves;
+
 namespace {
 
-constexpr std::size_t kColumns = 4;  // transformed side by side, or a multiple of it: one line of the cache
-constexpr std::size_t kPadding = 8;  // between rows, or a column of them would fall into few sets of the cache
-constexpr std::size_t kRows = 4;     // transformed one after another
+constexpr std::size_t kColumns =
+    4;  // transformed side by side, or a multiple of it: one line of the cache
+constexpr std::size_t kPadding =
+    8;  // between rows, or a column of them would fall into few sets of the cache
+constexpr std::size_t kRows = 4;              // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
-constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
-
-using Complex = std::complex<double>;
 
 struct Freed {
   void operator()(double* memory) const { ::operator delete[](memory, std::align_val_t{64}); }
@@ -55,7 +63,8 @@ Complex turn(double num, double den) {
   return {std::cos(angle), -std::sin(angle)};
 }
 
-/// n1 <= n2 as near to each other as can be, n2 a multiple of 8; {0, 0} when q has other factors than 2, 3, 5, 7.
+/// n1 <= n2 as near to each other as can be, n2 a multiple of 8; {0, 0} when q has other factors
+/// than 2, 3, 5, 7.
 std::pair<std::size_t, std::size_t> split(std::size_t q) {
   std::size_t rest = q;
   for (const std::size_t prime : {2U, 3U, 5U, 7U})
@@ -66,188 +75,41 @@ std::pair<std::size_t, std::size_t> split(std::size_t q) {
   return {0, 0};
 }
 
-/// Where a column of all rows is more than the cache holds at once, several lines are taken from each row.
+/// Where a column of all rows is more than the cache holds at once, several lines are taken from
+/// each row.
 std::size_t columns_at_once(std::size_t q, std::size_t n2) {
   std::size_t count = q <= (std::size_t{1} << 16U) ? 2 * kColumns : 6 * kColumns;
   while (n2 % count != 0) count -= kColumns;
   return count;
 }
 
-// Interleaved complex numbers, two in a vector.
-#define SWAPPED(v) __builtin_shufflevector(v, v, 1, 0, 3, 2)
-#define REAL_PARTS(v) __builtin_shufflevector(v, v, 0, 0, 2, 2)
-#define IMAGINARY_PARTS(v) __builtin_shufflevector(v, v, 1, 1, 3, 3)
-#define BACKWARDS(v) __builtin_shufflevector(v, v, 3, 2, 1, 0)
-// Two vectors of interleaved numbers to four real or imaginary parts, in the order 0 2 1 3.
-#define FOUR_REAL(v, w) __builtin_shufflevector(v, w, 0, 4, 2, 6)
-#define FOUR_IMAGINARY(v, w) __builtin_shufflevector(v, w, 1, 5, 3, 7)
-
-constexpr Four kSigns = {-1, 1, -1, 1};
-
-struct ColumnStep {
-  std::size_t n1, n2, pitch, count, column;
-  bool odd;                // bins
-  const double* shift;     // [n1] exp(-i pi t1 / n1), interleaved: half a bin
-  const double* fine;      // [n1] exp(-2 pi i m1 j / q), j < count; four real and four imaginary parts. Odd bins: m1 + 1/2
-  const double* coarse;    // exp(-2 pi i j / period) over a period of 2 q / count, interleaved
-};
-
-/// `count` columns of u less the mean; for the odd bins turned by half a bin.
-LIBCHAR_WIDE_LANES void gather_columns(const double* x, double mean, const ColumnStep& step, double* to) {
-  const double* from = x + 2 * step.column;
-  const std::size_t width = 2 * step.count;
-  for (std::size_t t1 = 0; t1 < step.n1; ++t1, from += 2 * step.n2, to += width) {
-    const double cosine = step.shift[2 * t1];
-    const Four crossed = step.shift[2 * t1 + 1] * kSigns;
-    for (std::size_t i = 0; i < width; i += 4) {
-      const Four u = LIBCHAR_FOUR(from + i) - mean;
-      LIBCHAR_FOUR_TO(to + i) = step.odd ? u * cosine + SWAPPED(u) * crossed : u;
-    }
-  }
-}
-
-/// Turns the transformed columns and puts them back as columns of the rows to come.
-LIBCHAR_WIDE_LANES void scatter_columns(const double* from, const ColumnStep& step, double* to) {
-  const std::size_t width = 2 * step.count, period = 2 * step.n1 * step.n2 / step.count, block = step.column / step.count;
-  const std::size_t stride = 2 * block % period;
-  std::size_t at = step.odd ? block % period : 0;
-  const double* fine = step.fine;
-  to += 2 * step.column;
-  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += width, fine += width, to += step.pitch) {
-    const double cosine = step.coarse[2 * at], sine = step.coarse[2 * at + 1];
-    for (std::size_t i = 0; i < width; i += 8) {
-      const Four fr = LIBCHAR_FOUR(fine + i), fi = LIBCHAR_FOUR(fine + i + 4);
-      const Four wr = cosine * fr - sine * fi, wi = cosine * fi + sine * fr;
-      const Four u = LIBCHAR_FOUR(from + i), v = LIBCHAR_FOUR(from + i + 4);
-      const Four ur = FOUR_REAL(u, v), ui = FOUR_IMAGINARY(u, v);
-      const Four yr = ur * wr - ui * wi, yi = ur * wi + ui * wr;
-      LIBCHAR_FOUR_TO(to + i) = FOUR_REAL(yr, yi);  // the same exchange of places undoes itself
-      LIBCHAR_FOUR_TO(to + i + 4) = FOUR_IMAGINARY(yr, yi);
-    }
-    at += stride;
-    if (at >= period) at -= period;
-  }
-}
-
-/// Row r and its mirror row: from the complex transform to Z and to the squares of the cosine transform.
-struct RowPair {
-  const double *row, *mirror;        // interleaved
-  double *z_row, *z_mirror;          // four real, four imaginary
-  double *c_row = nullptr, *c_mirror = nullptr;  // sums of squares; none: not wanted
-  const double* quarter;             // exp(-i pi m2 / (2 n2)), four and four
-  Complex start;                     // exp(-i pi k / L) at m2 = 0
-  std::size_t n2;
-};
-
-LIBCHAR_WIDE_LANES void separate(const RowPair& p) {
-  const double cr = p.start.real(), ci = p.start.imag();
-  for (std::size_t b = 0; b < p.n2 / 4; ++b) {
-    const std::size_t at = 8 * b, back = 2 * p.n2 - 8 - at;
-    const Four u0 = LIBCHAR_FOUR(p.row + at), u1 = LIBCHAR_FOUR(p.row + at + 4);
-    const Four v0 = LIBCHAR_FOUR(p.mirror + back), v1 = LIBCHAR_FOUR(p.mirror + back + 4);
-    const Four ur = FOUR_REAL(u0, u1), ui = FOUR_IMAGINARY(u0, u1);
-    const Four vr0 = FOUR_REAL(v0, v1), vi0 = FOUR_IMAGINARY(v0, v1);
-    const Four vr = BACKWARDS(vr0), vi = BACKWARDS(vi0);
-    const Four er = 0.5 * (ur + vr), ei = 0.5 * (ui - vi);      // of the even samples
-    const Four odd_r = 0.5 * (ui + vi), odd_i = 0.5 * (vr - ur);  // of the odd samples
-    const Four tr = LIBCHAR_FOUR(p.quarter + at), ti = LIBCHAR_FOUR(p.quarter + at + 4);
-    const Four rr = cr * tr - ci * ti, ri = cr * ti + ci * tr;    // exp(-i pi k / L)
-    const Four wr = rr * rr - ri * ri, wi = 2.0 * rr * ri;        // its square
-    const Four or_ = wr * odd_r - wi * odd_i, oi = wr * odd_i + wi * odd_r;
-    const Four fr = er + or_, fi = ei + oi, gr = er - or_, gi = ei - oi;
-    LIBCHAR_FOUR_TO(p.z_row + at) = fr;
-    LIBCHAR_FOUR_TO(p.z_row + at + 4) = fi;
-    const Four mirrored = -gi;
-    LIBCHAR_FOUR_TO(p.z_mirror + back) = BACKWARDS(gr);
-    LIBCHAR_FOUR_TO(p.z_mirror + back + 4) = BACKWARDS(mirrored);
-    if (p.c_row == nullptr) continue;
-    const Four c = rr * fr - ri * fi, d = rr * gi + ri * gr;
-    LIBCHAR_FOUR_TO(p.c_row + at / 2) = LIBCHAR_FOUR(p.c_row + at / 2) + c * c;
-    const Four squared = d * d;
-    LIBCHAR_FOUR_TO(p.c_mirror + back / 2) = LIBCHAR_FOUR(p.c_mirror + back / 2) + BACKWARDS(squared);
-  }
-}
-
-/// X = P + A for a row of even bins; A takes the place of P.
-LIBCHAR_WIDE_LANES void join_even(const double* a, std::size_t n2, double* p, double* x) {
-  for (std::size_t at = 0; at < 2 * n2; at += 4) {
-    const Four now = LIBCHAR_FOUR(a + at);
-    LIBCHAR_FOUR_TO(x + at) = LIBCHAR_FOUR(p + at) + now;
-    LIBCHAR_FOUR_TO(p + at) = now;
-  }
-}
-
-/// X = P - A + step (1 - i cot(pi k / L)) for a row of odd bins; `start` is exp(-i pi k / L) at its first.
-LIBCHAR_WIDE_LANES void join_odd(const double* a, std::size_t n2, const double* quarter, Complex start, double step, double* p, double* x) {
-  const double cr = start.real(), ci = start.imag();
-  for (std::size_t at = 0; at < 2 * n2; at += 8) {
-    const Four tr = LIBCHAR_FOUR(quarter + at), ti = LIBCHAR_FOUR(quarter + at + 4);
-    const Four cotangent = (cr * tr - ci * ti) / (cr * ti + ci * tr);  // with its sign
-    const Four re = LIBCHAR_FOUR(a + at), im = LIBCHAR_FOUR(a + at + 4);
-    LIBCHAR_FOUR_TO(x + at) = (LIBCHAR_FOUR(p + at) - re) + step;
-    LIBCHAR_FOUR_TO(x + at + 4) = (LIBCHAR_FOUR(p + at + 4) - im) + step * cotangent;
-    LIBCHAR_FOUR_TO(p + at) = re;
-    LIBCHAR_FOUR_TO(p + at + 4) = im;
-  }
-}
-
-/// power += |centre/2 - (low + high)/4|^2
-LIBCHAR_WIDE_LANES void add_windowed(const double* low, const double* centre, const double* high, std::size_t n2, double* power) {
-  for (std::size_t at = 0; at < 2 * n2; at += 8) {
-    const Four re = 0.5 * LIBCHAR_FOUR(centre + at) - 0.25 * (LIBCHAR_FOUR(low + at) + LIBCHAR_FOUR(high + at));
-    const Four im = 0.5 * LIBCHAR_FOUR(centre + at + 4) - 0.25 * (LIBCHAR_FOUR(low + at + 4) + LIBCHAR_FOUR(high + at + 4));
-    LIBCHAR_FOUR_TO(power + at / 2) = LIBCHAR_FOUR(power + at / 2) + (re * re + im * im);
-  }
-}
-
-/// Mean about the first value, in eight lanes.
-LIBCHAR_WIDE_LANES double mean_about_first(const double* x, std::size_t n) {
-  const double first = x[0];
-  Four low = {}, high = {};
-  std::size_t t = 0;
-  for (; t + 8 <= n; t += 8) {
-    low += LIBCHAR_FOUR(x + t) - first;
-    high += LIBCHAR_FOUR(x + t + 4) - first;
-  }
-  const Four sum = low + high;
-  double total = (sum[0] + sum[2]) + (sum[1] + sum[3]);
-  for (; t < n; ++t) total += x[t] - first;
-  return first + total / static_cast<double>(n);
-}
-
-/// Places of the real and imaginary parts of value m2 of a row, and of a sum.
-std::size_t real_place(std::size_t m2) { return m2 / 4 * 8 + kSlot[m2 % 4]; }
-std::size_t sum_place(std::size_t m2) { return m2 / 4 * 4 + kSlot[m2 % 4]; }
-
-Complex value_at(const double* row, std::size_t m2) { return {row[real_place(m2)], row[real_place(m2) + 4]}; }
-void put(double* row, std::size_t m2, Complex value) {
-  row[real_place(m2)] = value.real();
-  row[real_place(m2) + 4] = value.imag();
-}
-
 }  // namespace
 
 struct HalfSegments::State {
-  std::size_t h, q, n1, n2, pitch, count;  // count: columns at once
-  ComplexFft columns, rows, row;        // rows: kRows of them
+  std::size_t h, q, n1, n2, pitch, count;               // count: columns at once
+  ComplexFft columns, rows, row;                        // rows: kRows of them
   std::vector<double> shift, fine[2], coarse, quarter;  // fine: even bins, odd bins
-  Buffer column_values;                 // four columns
-  Buffer row_values;                    // n1 rows, `pitch` apart
-  Buffer z;                             // of the half before: even bins, then odd bins
-  Buffer x_even;                        // X of the segment
-  Buffer scratch;                       // rows: Z, Z of the mirror, X of odd bins: two rising, two falling, one moved
-  double z_top = 0, x_top = 0;          // bin h
-  Buffer segment_sums, block_sums;      // even bins, then odd bins; the second when it is first asked for
+  Buffer column_values;                                 // four columns
+  Buffer row_values;                                    // n1 rows, `pitch` apart
+  Buffer z;        // of the half before: even bins, then odd bins
+  Buffer x_even;   // X of the segment
+  Buffer scratch;  // rows: Z, Z of the mirror, X of odd bins: two rising, two falling, one moved
+  double z_top = 0, x_top = 0;  // bin h
+  Buffer segment_sums,
+      block_sums;  // even bins, then odd bins; the second when it is first asked for
   double top_sum = 0;
   std::vector<char> row_done;
-  bool joined = false;                  // z is there
+  bool joined = false;  // z is there
   double before_mean = 0;
 
   State(std::size_t half, std::size_t split1, std::size_t split2);
   void transform_columns(const double* x, double mean, bool odd);
   void transform_row(std::size_t r);
-  Complex start_of(std::size_t r, bool odd) const { return turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h)); }
-  void z_of_rows(std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror);
+  Complex start_of(std::size_t r, bool odd) const {
+    return turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h));
+  }
+  void z_of_rows(
+      std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror);
   void z_of_own_mirror(std::size_t r, bool odd, bool block, double* z_row);
   void take_even(const double* x, double mean, bool block);
   void take_odd(const double* x, double mean, bool block);
@@ -256,28 +118,47 @@ struct HalfSegments::State {
 };
 
 HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half), q(half / 2), n1(split1), n2(split2), pitch(2 * n2 + kPadding), count(columns_at_once(q, n2)), columns(n1, count, count, 1), rows(n2, kRows, 1, pitch / 2),
-      row(n2, 1, 1, n2), column_values(zeros(2 * count * n1)), row_values(zeros(n1 * pitch)), z(zeros(4 * q)), x_even(zeros(2 * q)),
-      scratch(zeros(14 * n2)), segment_sums(zeros(2 * q)) {
+    : h(half),
+      q(half / 2),
+      n1(split1),
+      n2(split2),
+      pitch(2 * n2 + kPadding),
+      count(columns_at_once(q, n2)),
+      columns(n1, count, count, 1),
+      rows(n2, kRows, 1, pitch / 2),
+      row(n2, 1, 1, n2),
+      column_values(zeros(2 * count * n1)),
+      row_values(zeros(n1 * pitch)),
+      z(zeros(4 * q)),
+      x_even(zeros(2 * q)),
+      scratch(zeros(14 * n2)),
+      segment_sums(zeros(2 * q)) {
   const auto push = [](std::vector<double>& table, Complex value) {
     table.push_back(value.real());
     table.push_back(value.imag());
   };
-  for (std::size_t t1 = 0; t1 < n1; ++t1) push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
+  for (std::size_t t1 = 0; t1 < n1; ++t1)
+    push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
   for (std::size_t odd = 0; odd < 2; ++odd) {
     fine[odd].resize(2 * count * n1);
     for (std::size_t m1 = 0; m1 < n1; ++m1)
       for (std::size_t j = 0; j < count; ++j)
-        put(fine[odd].data() + 2 * count * m1, j, turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), static_cast<double>(q)));
+        put(fine[odd].data() + 2 * count * m1,
+            j,
+            turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd),
+                 static_cast<double>(q)));
   }
   const std::size_t period = 2 * q / count;
-  for (std::size_t j = 0; j < period; ++j) push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
+  for (std::size_t j = 0; j < period; ++j)
+    push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
   quarter.resize(2 * n2);
-  for (std::size_t m2 = 0; m2 < n2; ++m2) put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
+  for (std::size_t m2 = 0; m2 < n2; ++m2)
+    put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
 }
 
 void HalfSegments::State::transform_columns(const double* x, double mean, bool odd) {
-  ColumnStep step{n1, n2, pitch, count, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
+  ColumnStep step{
+      n1, n2, pitch, count, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
   for (; step.column < n2; step.column += count) {
     gather_columns(x, mean, step, column_values.get());
     columns.transform(column_values.get());
@@ -296,16 +177,25 @@ void HalfSegments::State::transform_row(std::size_t r) {
   }
 }
 
-void HalfSegments::State::z_of_rows(std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror) {
+void HalfSegments::State::z_of_rows(
+    std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror) {
   transform_row(r);
   if (mirror == r) return z_of_own_mirror(r, odd, block, z_row);
   transform_row(mirror);
   double* const c = block ? block_sums.get() + (odd ? q : 0) : nullptr;
-  separate({row_values.get() + r * pitch, row_values.get() + mirror * pitch, z_row, z_mirror, block ? c + r * n2 : nullptr,
-            block ? c + mirror * n2 : nullptr, quarter.data(), start_of(r, odd), n2});
+  separate({row_values.get() + r * pitch,
+            row_values.get() + mirror * pitch,
+            z_row,
+            z_mirror,
+            block ? c + r * n2 : nullptr,
+            block ? c + mirror * n2 : nullptr,
+            quarter.data(),
+            start_of(r, odd),
+            n2});
 }
 
-/// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and the one in the middle.
+/// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and
+/// the one in the middle.
 void HalfSegments::State::z_of_own_mirror(std::size_t r, bool odd_bins, bool block, double* z_row) {
   const double* const u = row_values.get() + r * pitch;
   double* const c_row = block ? block_sums.get() + (odd_bins ? q : 0) + r * n2 : nullptr;
@@ -337,12 +227,17 @@ void HalfSegments::State::take_even(const double* x, double mean, bool block) {
     if (mirror < r) break;  // n1 odd: done
     z_of_rows(r, mirror, false, block, z_row, z_mirror);
     join_even(z_row, n2, z.get() + r * width, x_even.get() + r * width);
-    if (mirror != r) join_even(z_mirror, n2, z.get() + mirror * width, x_even.get() + mirror * width);
+    if (mirror != r)
+      join_even(z_mirror, n2, z.get() + mirror * width, x_even.get() + mirror * width);
   }
 }
 
-/// X of a row of odd bins, and its windowed power (between the even bins below and above, which are there already).
-void HalfSegments::State::take_odd_row(std::size_t r, const double* z_row, double step, double* x_odd) {
+/// X of a row of odd bins, and its windowed power (between the even bins below and above, which are
+/// there already).
+void HalfSegments::State::take_odd_row(std::size_t r,
+                                       const double* z_row,
+                                       double step,
+                                       double* x_odd) {
   const std::size_t width = 2 * n2;
   join_odd(z_row, n2, quarter.data(), start_of(r, true), step, z.get() + 2 * q + r * width, x_odd);
   if (!joined) return;
@@ -359,12 +254,14 @@ void HalfSegments::State::take_odd_row(std::size_t r, const double* z_row, doubl
 void HalfSegments::State::take_odd(const double* x, double mean, bool block) {
   const std::size_t width = 2 * n2;
   double *z_row = scratch.get(), *z_mirror = z_row + width;
-  double *rising = z_mirror + width, *rising_before = rising + width, *falling = rising_before + width, *falling_before = falling + width;
+  double *rising = z_mirror + width, *rising_before = rising + width,
+         *falling = rising_before + width, *falling_before = falling + width;
   double* const moved = falling_before + width;
   const double step = before_mean - mean;
   transform_columns(x, mean, true);
   const auto even_row = [&](std::size_t r, const double* below, const double* above) {
-    if (joined) add_windowed(below, x_even.get() + r * width, above, n2, segment_sums.get() + r * n2);
+    if (joined)
+      add_windowed(below, x_even.get() + r * width, above, n2, segment_sums.get() + r * n2);
   };
   const std::size_t pairs = (n1 + 1) / 2;
   for (std::size_t r = 0; r < pairs; ++r) {
@@ -409,8 +306,9 @@ void HalfSegments::State::natural(const double* sums, double top, std::vector<do
 
 bool HalfSegments::suits(const WelchOptions& options) {
   const std::uint64_t h = options.segment / 2;
-  return options.window == Window::hann && options.overlap == 0.5 && options.detrend == Detrend::constant && options.segment % 4 == 0 &&
-         h >= kShortest && split(h / 2).first != 0;
+  return options.window == Window::hann && options.overlap == 0.5 &&
+         options.detrend == Detrend::constant && options.segment % 4 == 0 && h >= kShortest &&
+         split(h / 2).first != 0;
 }
 
 HalfSegments::HalfSegments(std::size_t segment) {
@@ -421,9 +319,15 @@ HalfSegments::~HalfSegments() = default;
 HalfSegments::HalfSegments(HalfSegments&&) noexcept = default;
 HalfSegments& HalfSegments::operator=(HalfSegments&&) noexcept = default;
 
-std::size_t HalfSegments::half() const { return state_->h; }
-double HalfSegments::mean_of(const double* x) const { return mean_about_first(x, state_->h); }
-void HalfSegments::forget() { state_->joined = false; }
+std::size_t HalfSegments::half() const {
+  return state_->h;
+}
+double HalfSegments::mean_of(const double* x) const {
+  return mean_about_first(x, state_->h);
+}
+void HalfSegments::forget() {
+  state_->joined = false;
+}
 
 bool HalfSegments::push(const double* x, double mean, bool block) {
   State& s = *state_;

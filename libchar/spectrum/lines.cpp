@@ -89,7 +89,8 @@ Density averaged(const Density& d, std::size_t count) {
 // Median of at most kFlank values.
 double median_of(const double* values, std::size_t count) {
   std::array<double, kFlank> sorted;
-  std::partial_sort_copy(values, values + count, sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  std::partial_sort_copy(
+      values, values + count, sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
   return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
 }
 
@@ -112,8 +113,8 @@ class LocalFloor {
     const boost::math::chi_squared distribution(density.dof);
     typical_ = quantile(distribution, 0.5) / density.dof;
   }
-  // Of the flanks that have enough bins the higher; none: count 0. Slopes fall to the right: without
-  // a left flank nothing tells a slope from a line.
+  // Of the flanks that have enough bins the higher; none: count 0. Slopes fall to the right:
+  // without a left flank nothing tells a slope from a line.
   Floor at(std::size_t k) const {
     Floor floor;
     if (k < begin_ + guard_ + kLeast) return floor;
@@ -122,7 +123,8 @@ class LocalFloor {
     if (right_of(k)) raise(floor, median_of(power_.data() + k + guard_ + 1, kFlank), kFlank);
     return floor;
   }
-  // The answer for nearly every bin, without a median: is the floor of whole flanks at least `level`?
+  // The answer for nearly every bin, without a median: is the floor of whole flanks at least
+  // `level`?
   bool surely_at_least(std::size_t k, double level) const {
     if (k < begin_ + guard_ + kFlank) return false;
     const double value = level * typical_ * (1 + 1e-12);

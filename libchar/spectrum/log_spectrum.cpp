@@ -31,7 +31,8 @@ double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
   const double count = static_cast<double>(end - begin);
   double variance = 0;
   // All bins but the first and last of a spectrum have the same degrees of freedom.
-  const bool same = std::all_of(s.dof.begin() + static_cast<std::ptrdiff_t>(begin), s.dof.begin() + static_cast<std::ptrdiff_t>(end),
+  const bool same = std::all_of(s.dof.begin() + static_cast<std::ptrdiff_t>(begin),
+                                s.dof.begin() + static_cast<std::ptrdiff_t>(end),
                                 [&](double dof) { return dof == s.dof[begin]; });
   if (same) {
     double terms = count;
@@ -51,7 +52,9 @@ double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
 struct LogAxis {
   double low = 1, per_e = 1;
   double log_low = std::log(low);
-  long bin(double log_f) const { return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9)); }
+  long bin(double log_f) const {
+    return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9));
+  }
 };
 
 LogAxis axis_of(double low, double high, std::size_t bins) {

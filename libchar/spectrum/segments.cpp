@@ -273,7 +273,8 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   out.neighbour_correlation = neighbour_correlation(options_.window, layout_, used_, pairs_);
 
   // Of the Hann window with itself half its length away: 1/6.
-  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6} : window_correlation(window, layout_.hop, recent_.size());
+  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6}
+                                : window_correlation(window, layout_.hop, recent_.size());
   double correlated = count;
   for (std::size_t lag = 1; lag < r.size(); ++lag)
     correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];

@@ -73,8 +73,8 @@ class HalfListener {
 };
 
 /// The same, streaming, for a fixed segment length (options.segment > 0): the same bits however the
-/// samples are pushed, in the memory of a few segments. `finish` throws Error(numeric) when no whole
-/// segment was seen, and may be called at any time.
+/// samples are pushed, in the memory of a few segments. `finish` throws Error(numeric) when no
+/// whole segment was seen, and may be called at any time.
 class WelchStream {
  public:
   explicit WelchStream(const WelchOptions& options);
@@ -84,8 +84,9 @@ class WelchStream {
   void push(std::span<const double> samples, HalfListener* listener = nullptr);
   Spectrum finish(double rate_hz) const;
 
-  /// Samples of half a segment when the spectrum goes by halves, each transformed once: then the block cosine transform of a half
-  /// costs next to nothing. 0: it does not, and no listener hears anything.
+  /// Samples of half a segment when the spectrum goes by halves, each transformed once: then the
+  /// block cosine transform of a half costs next to nothing. 0: it does not, and no listener hears
+  /// anything.
   std::uint64_t half() const;
   /// Sums of c_k^2 over the halves that a listener asked for; k = 0 is not filled.
   std::vector<double> block_power() const;

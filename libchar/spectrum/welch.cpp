@@ -99,7 +99,8 @@ struct Group {
   std::vector<char> used;
 };
 
-// What one thread works with: halves, each transformed once, where the options allow it; else whole segments.
+// What one thread works with: halves, each transformed once, where the options allow it; else whole
+// segments.
 struct Worker {
   std::optional<HalfSegments> halves;
   std::optional<Periodogram> periodogram;
@@ -119,7 +120,8 @@ Group sum_of_group(std::uint64_t index,
                    Worker& worker) {
   Group out{index, std::vector<double>(layout.segment / 2 + 1, 0.0), {}};
   const std::uint64_t first = index * layout.group;
-  const std::uint64_t last = std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
+  const std::uint64_t last =
+      std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
   if (!worker.halves) {
     for (std::uint64_t i = first; i < last; ++i)
       out.used.push_back(worker.periodogram->add(record.data() + i * layout.hop, out.power.data()));
@@ -156,7 +158,9 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
   WelchOptions chosen = options;
   chosen.segment = layout.segment;
-  const std::vector<double> window = HalfSegments::suits(chosen) ? std::vector<double>() : window_values(options.window, layout.segment);
+  const std::vector<double> window = HalfSegments::suits(chosen)
+                                         ? std::vector<double>()
+                                         : window_values(options.window, layout.segment);
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   Average average(options, layout);
 
@@ -166,7 +170,8 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
     for (std::uint64_t g = 0; g < groups; ++g)
       take(sum_of_group(g, record, layout, worker), average);
   } else {
-    tbb::enumerable_thread_specific<Worker> workers([&] { return Worker(options, layout, window); });
+    tbb::enumerable_thread_specific<Worker> workers(
+        [&] { return Worker(options, layout, window); });
     tbb::task_arena arena(threads);
     arena.execute([&] {
       std::uint64_t next = 0;

@@ -1,5 +1,5 @@
-// Welch's method on samples as they come. By halves, where that is possible: each is transformed once. Else one segment is kept,
-// its tail is the head of the next.
+// Welch's method on samples as they come. By halves, where that is possible: each is transformed
+// once. Else one segment is kept, its tail is the head of the next.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ using namespace welch_detail;
 struct WelchStream::State {
   WelchOptions options;
   Layout layout;
-  std::vector<double> window;  // none: by halves
+  std::vector<double> window;              // none: by halves
   std::optional<Periodogram> periodogram;  // one of the two
   std::optional<HalfSegments> halves;
   Average average;
@@ -34,7 +34,8 @@ struct WelchStream::State {
   explicit State(const WelchOptions& chosen)
       : options(chosen),
         layout(layout_of(chosen.segment, chosen.overlap)),
-        window(HalfSegments::suits(chosen) ? std::vector<double>() : window_values(chosen.window, layout.segment)),
+        window(HalfSegments::suits(chosen) ? std::vector<double>()
+                                           : window_values(chosen.window, layout.segment)),
         average(options, layout),
         group(layout.segment / 2 + 1, 0.0) {
     if (window.empty())
@@ -131,14 +132,17 @@ void WelchStream::push(std::span<const double> samples, HalfListener* listener) 
   state_->halves ? state_->push_by_halves(samples, listener) : state_->push_by_segments(samples);
 }
 
-std::uint64_t WelchStream::half() const { return state_->halves ? state_->layout.hop : 0; }
+std::uint64_t WelchStream::half() const {
+  return state_->halves ? state_->layout.hop : 0;
+}
 
 std::vector<double> WelchStream::block_power() const {
   return state_->halves ? state_->halves->block_power() : std::vector<double>();
 }
 
 std::span<const double> WelchStream::rest() const {
-  return state_->halves ? std::span<const double>(state_->segment).first(state_->filled) : std::span<const double>();
+  return state_->halves ? std::span<const double>(state_->segment).first(state_->filled)
+                        : std::span<const double>();
 }
 
 Spectrum WelchStream::finish(double rate_hz) const {

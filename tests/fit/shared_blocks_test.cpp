@@ -28,7 +28,8 @@ std::vector<PowerBin> by_blocks(const std::vector<double>& x, std::size_t& taken
   std::vector<double> power(kBlock, 0.0);
   taken = 0;
   for (std::size_t at = 0; at < x.size(); at += kBlock) {
-    const std::span<const double> piece = std::span(x).subspan(at, std::min<std::size_t>(kBlock, x.size() - at));
+    const std::span<const double> piece =
+        std::span(x).subspan(at, std::min<std::size_t>(kBlock, x.size() - at));
     bool whole = piece.size() == kBlock;
     for (const double v : piece) whole = whole && !std::isnan(v);
     if (whole && binner.take_block(piece)) {
@@ -84,11 +85,13 @@ TEST_CASE("after a missing sample the blocks no longer fit and are transformed b
 
 TEST_CASE("a long gap between taken blocks starts a new segment") {
   auto x = walk(8 * kBlock + 10);
-  for (std::size_t t = 2 * kBlock; t < 4 * kBlock; ++t) x[t] = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t t = 2 * kBlock; t < 4 * kBlock; ++t)
+    x[t] = std::numeric_limits<double>::quiet_NaN();
   std::size_t taken = 0;
   const auto bins = by_blocks(x, taken);
   CHECK(taken == 6);
-  // A block that ends a segment is a tail when it is pushed, so that only the sums can be compared: all samples are in.
+  // A block that ends a segment is a tail when it is pushed, so that only the sums can be compared:
+  // all samples are in.
   double got = 0, wanted = 0;
   for (const PowerBin& bin : bins) got += bin.dof;
   for (const PowerBin& bin : pushed(x)) wanted += bin.dof;

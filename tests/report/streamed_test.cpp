@@ -13,9 +13,12 @@ using namespace libchar;
 
 namespace {
 
-// 60000 rows of white noise with a random walk in two channels; `gap`: rows left out, one cell empty.
+// 60000 rows of white noise with a random walk in two channels; `gap`: rows left out, one cell
+// empty.
 std::filesystem::path log_of(bool gap) {
-  const auto path = std::filesystem::temp_directory_path() / (std::string("libchar_streamed_") + std::to_string(::getpid()) + (gap ? "g.csv" : ".csv"));
+  const auto path =
+      std::filesystem::temp_directory_path() /
+      (std::string("libchar_streamed_") + std::to_string(::getpid()) + (gap ? "g.csv" : ".csv"));
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal;
   std::ofstream out(path);
@@ -26,13 +29,22 @@ std::filesystem::path log_of(bool gap) {
     walk += 0.002 * normal(generator);
     const double a = 0.05 * normal(generator) + walk, b = 9.81 + normal(generator);
     if (gap && i >= 30000 && i < 30200) continue;
-    std::snprintf(line, sizeof line, gap && i == 41000 ? "%.3f,%.9g,\n" : "%.3f,%.9g,%.9g\n", i * 0.005, a, b);
+    std::snprintf(line,
+                  sizeof line,
+                  gap && i == 41000 ? "%.3f,%.9g,\n" : "%.3f,%.9g,%.9g\n",
+                  i * 0.005,
+                  a,
+                  b);
     out << line;
   }
   return path;
 }
 
-Characterization streamed(const std::filesystem::path& path, std::size_t block_bytes, int threads, std::uint64_t memory, std::uint64_t segment = 8192) {
+Characterization streamed(const std::filesystem::path& path,
+                          std::size_t block_bytes,
+                          int threads,
+                          std::uint64_t memory,
+                          std::uint64_t segment = 8192) {
   CharacterizeOptions options;
   options.spectrum.segment = segment;
   options.memory_bytes = memory;
@@ -59,7 +71,8 @@ TEST_CASE("a streamed log gives the same bits whatever the blocks and threads, w
   for (const bool gap : {false, true}) {
     const auto path = log_of(gap);
     const Characterization first = streamed(path, std::size_t{1} << 20U, 0, 1);
-    for (const std::size_t block : {std::size_t{1} << 14U, std::size_t{70000}, std::size_t{3000000}})
+    for (const std::size_t block :
+         {std::size_t{1} << 14U, std::size_t{70000}, std::size_t{3000000}})
       for (const int threads : {1, 2}) {
         CAPTURE(gap, block, threads);
         same_bits(streamed(path, block, threads, 1), first);
@@ -76,10 +89,12 @@ TEST_CASE("a streamed log agrees with a kept one well within the intervals, shar
       const Characterization s = streamed(path, std::size_t{1} << 20U, 0, 1, segment);
       for (std::size_t c = 0; c < 2; ++c)
         for (const Term term : {Term::white, Term::walk}) {
-          const Coefficient &whole = (*kept.channels[c].fit)[term], &part = (*s.channels[c].fit)[term];
+          const Coefficient &whole = (*kept.channels[c].fit)[term],
+                            &part = (*s.channels[c].fit)[term];
           CAPTURE(gap, segment, c);
           REQUIRE(whole.value.has_value() == part.value.has_value());
-          if (whole.value) CHECK(std::abs(*part.value / *whole.value - 1) < 0.5 * whole.relative_sd);
+          if (whole.value)
+            CHECK(std::abs(*part.value / *whole.value - 1) < 0.5 * whole.relative_sd);
         }
       CHECK(s.channels[0].quality.mean == Approx(kept.channels[0].quality.mean).epsilon(1e-12));
     }
