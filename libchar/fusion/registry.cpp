@@ -8,6 +8,7 @@
 #include "libchar/fusion/inverse_variance.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
+#include "libchar/fusion/minque.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -32,6 +33,7 @@ constexpr std::array kAlgorithms{
     entry<Mean>(),
     entry<Median>(),
     entry<InverseVariance>(),
+    entry<Minque>(),
 };
 
 }  // namespace

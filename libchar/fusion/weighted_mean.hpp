@@ -10,9 +10,11 @@
 
 namespace libchar::fusion {
 
-/// A sample that carries a value: NaN marks a missing one, and infinity is no measurement either.
+/// Beyond it a sample is no measurement (and its square would overflow).
+inline constexpr double kLargestSample = 1e100;
+/// A sample that carries a value: NaN marks a missing one.
 inline bool usable(double sample) {
-  return std::isfinite(sample);
+  return std::abs(sample) <= kLargestSample;
 }
 
 struct WeightedMean {
@@ -50,7 +52,7 @@ inline WeightedMean weighted_mean(const double* y, const double* w, Eigen::Index
   }
   if (i < n) a += w[i] * (y[i] - base);
   const double sum = a + b;
-  if (std::isfinite(sum)) return {base + sum, 1};
+  if (std::abs(sum) <= kLargestSample) return {base + sum, 1};
   return weighted_mean_of_present(y, w, n);
 }
 

@@ -30,7 +30,7 @@ TEST_CASE("inverse-variance: weights and error of the known answers") {
     weights[i] = answer["weights"][static_cast<std::size_t>(i)];
   }
   auto fusion = test::make("inverse-variance", given);
-  CHECK(test::worst(*fusion->weights(), weights, 1e-17) <= 1);
+  CHECK(test::worst(*fusion->weights(), weights, 1e-16) <= 1);
   const Eigen::VectorXd error =
       test::run(*fusion, inputs.block("c", 5)).x.transpose() - inputs["x"];
   CHECK(std::sqrt(error.squaredNorm() / 2000) ==

@@ -1,0 +1,124 @@
+#include "libchar/fusion/minque.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "libchar/fusion/weighted_mean.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+ReweightingOptions reweighting(const Settings& s) {
+  return {s["gamma"], s["damping"], s["floor"], s["floor_largest"], s["start_variance"]};
+}
+
+FaultWatchOptions watching(const Settings& s) {
+  return {s["fault_gamma"], s["fault_threshold"], static_cast<std::int64_t>(s["recovery_samples"])};
+}
+
+/// A moment of rounding errors proves no fault.
+constexpr double kRounding = 1e4;
+
+}  // namespace
+
+Minque::Minque(const Given& given, const Settings& settings)
+    : variances_(static_cast<std::size_t>(given.channels), reweighting(settings)),
+      watch_(static_cast<std::size_t>(given.channels), watching(settings)),
+      detection_(settings["fault_detection"] != 0),
+      // The variances must have settled before they can accuse anybody.
+      armed_from_(std::max<std::int64_t>(
+          given.fault_free_samples,
+          static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+      everybody_(static_cast<std::size_t>(given.channels)),
+      present_(everybody_.size()) {
+  std::iota(everybody_.begin(), everybody_.end(), 0);
+  in_use_ = everybody_.data();
+  m_ = static_cast<int>(everybody_.size());
+}
+
+Estimate Minque::step(const Sample& y) {
+  if (watch_.count_out() == 0)
+    use_all();
+  else
+    use_present(y);
+  double x = m_ > 0 ? variances_.fuse(y.data(), in_use_, m_) : std::nan("");
+  // Written so that NaN fails.
+  if (!(std::abs(x) <= kLargestSample)) {
+    use_present(y);
+    if (m_ > 0) x = variances_.fuse(y.data(), in_use_, m_);
+  }
+  Estimate estimate = Estimate::none(1);
+  if (m_ > 0) {
+    const bool found = detection_ && found_fault();
+    if (found) {
+      use_present(y);
+      x = variances_.fuse(y.data(), in_use_, m_);
+    }
+    estimate =
+        Estimate::scalar(x, variances_.started() ? variances_.fused_variance() : std::nan(""));
+    if (watch_.count_out() > 0) check_recovery(y, x);
+    // What a failing channel has done to the residuals of this instant is not to be learnt.
+    if (!found) variances_.update();
+  }
+  ++now_;
+  return estimate;
+}
+
+void Minque::use_all() {
+  in_use_ = everybody_.data();
+  m_ = static_cast<int>(everybody_.size());
+}
+
+void Minque::use_present(const Sample& y) {
+  m_ = 0;
+  for (int i = 0; i < static_cast<int>(y.size()); ++i)
+    if (usable(y[i]) && !watch_.out(static_cast<std::size_t>(i)))
+      present_[static_cast<std::size_t>(m_++)] = i;
+  in_use_ = present_.data();
+}
+
+/// Takes out the worst channel, if one is beyond its threshold.
+bool Minque::found_fault() {
+  if (!variances_.started() || m_ < 3) return false;
+  const double least = kRounding * variances_.rounding();
+  double worst = 0;
+  int where = -1;
+  for (int k = 0; k < m_; ++k) {
+    const auto i = static_cast<std::size_t>(in_use_[k]);
+    const double ratio =
+        watch_.ratio(i, variances_.residual(i), std::max(variances_.residual_variance(i), least));
+    if (ratio > worst) {
+      worst = ratio;
+      where = in_use_[k];
+    }
+  }
+  if (now_ < armed_from_ || worst <= watch_.threshold()) return false;
+  for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use_[k]));
+  watch_.take_out(static_cast<std::size_t>(where), now_);
+  return true;
+}
+
+void Minque::check_recovery(const Sample& y, double x) {
+  const double least = kRounding * variances_.rounding();
+  for (std::size_t i = 0; i < variances_.size(); ++i) {
+    const double sample = y[static_cast<Eigen::Index>(i)];
+    if (!watch_.out(i) || !usable(sample)) continue;
+    const double expectation =
+        std::max(variances_.variance(i) + variances_.fused_variance(), least);
+    if (watch_.calmed(i, sample - x, expectation)) watch_.let_in(i, now_ + 1);
+  }
+}
+
+Eigen::MatrixXd Minque::weights() const {
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(variances_.size()), 1);
+  for (std::size_t i = 0; i < variances_.size(); ++i)
+    if (!watch_.out(i)) w(static_cast<Eigen::Index>(i), 0) = 1 / variances_.variance(i);
+  return w / w.sum();
+}
+
+Eigen::VectorXd Minque::variances() const {
+  return Eigen::Map<const Eigen::VectorXd>(variances_.variances().data(),
+                                           static_cast<Eigen::Index>(variances_.size()));
+}
+
+}  // namespace libchar::fusion
