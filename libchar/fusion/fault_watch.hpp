@@ -49,7 +49,10 @@ class FaultWatch {
   void forget(std::size_t i) { moment_[i] = -1; }
   /// A channel that is out: true when it may come in again.
   bool calmed(std::size_t i, double residual, double expectation) {
-    calm_[i] = ratio(i, residual, expectation) < options_.threshold ? calm_[i] + 1 : 0;
+    const bool calm = ratio(i, residual, expectation) < options_.threshold;
+    // However bad it has been: what counts is how long ago.
+    moment_[i] = std::min(moment_[i], 2 * options_.threshold * expectation);
+    calm_[i] = calm ? calm_[i] + 1 : 0;
     return calm_[i] >= options_.recovery;
   }
   void let_in(std::size_t i, std::int64_t sample) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "libchar/fusion/weighted_mean.hpp"
 
@@ -19,12 +20,21 @@ FaultWatchOptions watching(const Settings& s) {
 /// A moment of rounding errors proves no fault.
 constexpr double kRounding = 1e4;
 
+/// Relative standard deviation of a variance above which a reader must know.
+constexpr double kPoorlyKnown = 0.5;
+
+/// A second moment can only be judged by variances that are known clearly better than itself.
+bool shorter(double fault_gamma, double gamma) {
+  return 1 - fault_gamma >= 5 * (1 - gamma);
+}
+
 }  // namespace
 
 Minque::Minque(const Given& given, const Settings& settings)
     : variances_(static_cast<std::size_t>(given.channels), reweighting(settings)),
       watch_(static_cast<std::size_t>(given.channels), watching(settings)),
-      detection_(settings["fault_detection"] != 0),
+      asked_(settings["fault_detection"] != 0),
+      detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
       // The variances must have settled before they can accuse anybody.
       armed_from_(std::max<std::int64_t>(
           given.fault_free_samples,
@@ -107,6 +117,25 @@ void Minque::check_recovery(const Sample& y, double x) {
         std::max(variances_.variance(i) + variances_.fused_variance(), least);
     if (watch_.calmed(i, sample - x, expectation)) watch_.let_in(i, now_ + 1);
   }
+}
+
+void Minque::remarks(Warnings& warnings) const {
+  if (asked_ && !detection_)
+    warnings.add("faults_not_watched",
+                 "minque looks for no faults: the memory of the variances (gamma) is not five "
+                 "times that of the "
+                 "fault rule (fault_gamma)");
+  if (!variances_.started()) return;
+  std::vector<double> direction;
+  if (variances_.blindness(direction) <= kPoorlyKnown) return;
+  std::string names;
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
+  warnings.add("variances_not_identifiable",
+               "minque cannot tell the variances of these channels apart (their sum is known, the "
+               "other channels are too noisy to "
+               "divide it): " +
+                   names);
 }
 
 Eigen::MatrixXd Minque::weights() const {

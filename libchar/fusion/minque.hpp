@@ -63,6 +63,7 @@ struct Minque {
   Eigen::MatrixXd weights() const;
   Eigen::VectorXd variances() const;
   const FaultLog& faults() const { return watch_.log(); }
+  void remarks(Warnings& warnings) const;
 
  private:
   bool found_fault();
@@ -72,7 +73,7 @@ struct Minque {
 
   ReweightedVariances variances_;
   FaultWatch watch_;
-  bool detection_;
+  bool asked_, detection_;
   std::int64_t armed_from_, now_ = 0;
   std::vector<int> everybody_, present_;
   const int* in_use_ = nullptr;  // channels of this instant: one of the two lists

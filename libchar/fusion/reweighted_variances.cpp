@@ -1,5 +1,6 @@
 #include "libchar/fusion/reweighted_variances.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -106,14 +107,15 @@ void ReweightedVariances::solve(double a, double lambda) {
 }
 
 void ReweightedVariances::apply() {
-  double largest = 0;
+  double largest = 0, others = 0;
   for (int k = 0; k < m_; ++k) {
-    double& v = v_[index_[k]];
-    v *= e_[k];
-    largest = v > largest ? v : largest;
+    const int i = index_[k];
+    // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
+    others += k == heaviest_ ? 0 : inverse_[i];
+    v_[i] *= e_[k];
+    largest = v_[i] > largest ? v_[i] : largest;
   }
-  const double others = sum_ - inverse_[index_[heaviest_]];
-  const double lowest = std::max({options_.floor / std::max(others, kTiny),
+  const double lowest = std::max({options_.floor / others,
                                   largest * std::max(options_.floor_largest, kSmallestRatio),
                                   rounding_});
   for (int k = 0; k < m_; ++k) {
@@ -122,6 +124,17 @@ void ReweightedVariances::apply() {
     v_[i] = v;
     inverse_[i] = 1 / v;
   }
+}
+
+double ReweightedVariances::blindness(std::vector<double>& direction) const {
+  const auto n = static_cast<Eigen::Index>(v_.size());
+  const Eigen::Map<const Eigen::VectorXd> inverse(inverse_.data(), n);
+  const Eigen::VectorXd p = inverse / inverse.sum();
+  Eigen::MatrixXd information = p * p.transpose();
+  information.diagonal() += (1 - 2 * p.array()).matrix();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  direction.assign(eigen.eigenvectors().col(0).data(), eigen.eigenvectors().col(0).data() + n);
+  return std::sqrt((1 - options_.gamma) / std::max(eigen.eigenvalues()[0], 1e-300));
 }
 
 }  // namespace libchar::fusion

@@ -54,6 +54,11 @@ class ReweightedVariances {
   bool started() const { return started_; }
   const std::vector<double>& variances() const { return v_; }
 
+  /// Relative standard deviation that the memory alone leaves in the worst-seen mixture of
+  /// variances, and that mixture: above one third or so, the data do not tell these channels apart.
+  /// All channels; for reports, not for every instant.
+  double blindness(std::vector<double>& direction) const;
+
  private:
   void start();
   double gain();
