@@ -9,6 +9,8 @@
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
+#include "libchar/fusion/minque_published.hpp"
+#include "libchar/fusion/random_weighting.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -34,6 +36,9 @@ constexpr std::array kAlgorithms{
     entry<Median>(),
     entry<InverseVariance>(),
     entry<Minque>(),
+    entry<MinquePublished>(),
+    entry<RandomWeighting>(),
+    entry<RandomWeightingPublished>(),
 };
 
 }  // namespace
