@@ -5,7 +5,10 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fusion/blind_calibration.hpp"
+#include "libchar/fusion/bounds.hpp"
 #include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/least_squares.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
@@ -39,6 +42,11 @@ constexpr std::array kAlgorithms{
     entry<MinquePublished>(),
     entry<RandomWeighting>(),
     entry<RandomWeightingPublished>(),
+    entry<BlindCalibration>(), entry<BlindCalibrationPublished>(), entry<LeastSquares>(),
+    entry<LeastSquaresPublished>(),
+    entry<BestSensor>(),
+    entry<OptimalWeights>(),
+    entry<SectionedLeastSquares>(),
 };
 
 }  // namespace

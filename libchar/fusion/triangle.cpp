@@ -27,7 +27,9 @@ const Eigen::MatrixXd& Triangle::upper() {
   return upper_;
 }
 
-Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper, Eigen::Index unknowns, Eigen::Index& dependent) {
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
+                             Eigen::Index unknowns,
+                             Eigen::Index& dependent) {
   Eigen::VectorXd length = upper.leftCols(unknowns).colwise().norm().transpose();
   for (double& l : length)
     if (!(l > 0)) l = 1;

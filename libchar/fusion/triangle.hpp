@@ -1,6 +1,7 @@
 #pragma once
-// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder QR, so that a learning set of any
-// length takes no more room than a few squares of its width, and no normal matrix is formed.
+// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder
+// QR, so that a learning set of any length takes no more room than a few squares of its width, and
+// no normal matrix is formed.
 
 #include <Eigen/Core>
 
@@ -22,8 +23,11 @@ class Triangle {
   std::int64_t rows_ = 0;
 };
 
-/// argmin |A w - b| from the triangle of rows [A b]: columns scaled to length one, then QR with pivoting. `dependent` receives the
-/// number of columns that say nothing beyond the others (their part of w is zero).
-Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper, Eigen::Index unknowns, Eigen::Index& dependent);
+/// argmin |A w - b| from the triangle of rows [A b]: columns scaled to length one, then QR with
+/// pivoting. `dependent` receives the number of columns that say nothing beyond the others (their
+/// part of w is zero).
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
+                             Eigen::Index unknowns,
+                             Eigen::Index& dependent);
 
 }  // namespace libchar::fusion
