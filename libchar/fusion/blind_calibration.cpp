@@ -17,8 +17,13 @@ constexpr double kLeastNoise = 1e-14;
 
 void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* option) {
   if (wanted > channels)
-    throw Error({ErrorKind::usage, "E0725", "", std::string(option) + " must be one of the " + std::to_string(channels) + " channels",
-                 std::to_string(wanted), ""});
+    throw Error(
+        {ErrorKind::usage,
+         "E0725",
+         "",
+         std::string(option) + " must be one of the " + std::to_string(channels) + " channels",
+         std::to_string(wanted),
+         ""});
 }
 
 }  // namespace
@@ -89,7 +94,8 @@ bool BlindCalibration::solve_factor() {
     scratch_ = factor_.cwiseQuotient(noise_);
     delta_.noalias() = covariance * scratch_;
     delta_ /= instants_;
-    // delta_ = C D^-1 g; Rayleigh quotient of the scaled problem: lambda = g'D^-1 C D^-1 g / g'D^-1 g.
+    // delta_ = C D^-1 g; Rayleigh quotient of the scaled problem: lambda = g'D^-1 C D^-1 g / g'D^-1
+    // g.
     const double lambda = scratch_.dot(delta_) / scratch_.dot(factor_);
     const double length = std::sqrt(delta_.cwiseAbs2().cwiseQuotient(noise_).sum());
     if (!(lambda > 1) || !(length > 0)) return false;
@@ -120,7 +126,8 @@ bool BlindCalibration::solve_gram() {
       conditions(i, j) = projector * squares_(std::max(i, j), std::min(i, j)) / scale;
     }
   for (Eigen::Index i = 0; i < n; ++i)
-    conditions(i, n) = conditions(n, i) = gauge_ == 0 ? 1 / static_cast<double>(n) : (i == gauge_ - 1 ? 1.0 : 0.0);
+    conditions(i, n) = conditions(n, i) =
+        gauge_ == 0 ? 1 / static_cast<double>(n) : (i == gauge_ - 1 ? 1.0 : 0.0);
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(conditions);
   if (!lu.isInvertible()) return false;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
@@ -141,9 +148,13 @@ void BlindCalibration::set_offsets() {
 
 void BlindCalibration::remarks(Warnings& warnings) const {
   if (!solved_)
-    warnings.add("not_calibrated", "blind-calibration found no common movement of the channels: it was the plain mean");
+    warnings.add(
+        "not_calibrated",
+        "blind-calibration found no common movement of the channels: it was the plain mean");
   if (!noise_removal_ && mean_.size() < 3)
-    warnings.add("noise_bias", "blind-calibration of two channels without noise levels takes their noise for gain");
+    warnings.add(
+        "noise_bias",
+        "blind-calibration of two channels without noise levels takes their noise for gain");
 }
 
 BlindCalibrationPublished::BlindCalibrationPublished(const Given& given, const Settings& settings)
@@ -163,7 +174,8 @@ Estimate BlindCalibrationPublished::step(const Sample& y) {
   double x = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double ratio = reference / (y[i] - mean_[i]);
-    if (i != reference_ && std::isfinite(ratio)) inverse_gain_[i] = gamma_ * inverse_gain_[i] + (1 - gamma_) * ratio;
+    if (i != reference_ && std::isfinite(ratio))
+      inverse_gain_[i] = gamma_ * inverse_gain_[i] + (1 - gamma_) * ratio;
     offset_[i] = mean_[i] - centre;
     x += inverse_gain_[i] * (y[i] - offset_[i]);
   }
