@@ -6,9 +6,13 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/kalman_takens.hpp"
+#include "libchar/fusion/kalman_takens_published.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
+#include "libchar/fusion/tilt_complementary.hpp"
+#include "libchar/fusion/tilt_kalman.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -34,6 +38,13 @@ constexpr std::array kAlgorithms{
     entry<Median>(),
     entry<InverseVariance>(),
     entry<Minque>(),
+    entry<KalmanTakens>(),
+    entry<KalmanTakensTaught>(),
+    entry<KalmanTakensPublished>(),
+    entry<TiltGyroscope>(),
+    entry<TiltAccelerometer>(),
+    entry<TiltComplementary>(),
+    entry<TiltKalman>(),
 };
 
 }  // namespace
