@@ -11,6 +11,7 @@
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
+#include "libchar/fusion/perceptron.hpp"
 #include "libchar/fusion/tilt_complementary.hpp"
 #include "libchar/fusion/tilt_kalman.hpp"
 
@@ -38,6 +39,7 @@ constexpr std::array kAlgorithms{
     entry<Median>(),
     entry<InverseVariance>(),
     entry<Minque>(),
+    entry<Perceptron>(),
     entry<KalmanTakens>(),
     entry<KalmanTakensTaught>(),
     entry<KalmanTakensPublished>(),
