@@ -3,6 +3,7 @@
 
 #include "libchar/fusion/perceptron.hpp"
 
+#include <Eigen/QR>
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
