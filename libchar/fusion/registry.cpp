@@ -14,6 +14,7 @@
 #include "libchar/fusion/perceptron.hpp"
 #include "libchar/fusion/tilt_complementary.hpp"
 #include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/fusion/tilt_tuned.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -47,6 +48,8 @@ constexpr std::array kAlgorithms{
     entry<TiltAccelerometer>(),
     entry<TiltComplementary>(),
     entry<TiltKalman>(),
+    entry<TiltComplementaryTuned>(),
+    entry<TiltKalmanTuned>(),
 };
 
 }  // namespace
