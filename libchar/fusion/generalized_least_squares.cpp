@@ -82,6 +82,15 @@ double GeneralizedLeastSquares::leverage(int k) const {
   return q_.row(k).squaredNorm();
 }
 
+double GeneralizedLeastSquares::predicted_variance(Eigen::Index i) const {
+  double sum = 0;
+  for (Eigen::Index j = 0; j < h_.cols(); ++j) {
+    const double along = h_.row(i).head(j + 1).dot(inverse_.col(j).head(j + 1));
+    sum += along * along;
+  }
+  return sum;
+}
+
 Eigen::MatrixXd GeneralizedLeastSquares::gain() const {
   Eigen::MatrixXd gain = inverse_.triangularView<Eigen::Upper>() * q_.topRows(m_).transpose();
   for (int k = 0; k < m_; ++k) gain.col(k) *= root_[k];

@@ -26,6 +26,8 @@ class GeneralizedLeastSquares {
   double leverage(int k) const;
   /// Variance of input j.
   double variance(Eigen::Index j) const { return inverse_.row(j).squaredNorm(); }
+  /// Of what the inputs say that channel i reads: h_i (H' R^-1 H)^-1 h_i'.
+  double predicted_variance(Eigen::Index i) const;
   /// X = gain * y: r x m, columns in the order of `index`.
   Eigen::MatrixXd gain() const;
   int channels() const { return m_; }

@@ -31,7 +31,7 @@ bool shorter(double fault_gamma, double gamma) {
 }  // namespace
 
 Minque::Minque(const Given& given, const Settings& settings)
-    : variances_(static_cast<std::size_t>(given.channels), reweighting(settings)),
+    : scalar_(static_cast<std::size_t>(given.channels), reweighting(settings)),
       watch_(static_cast<std::size_t>(given.channels), watching(settings)),
       asked_(settings["fault_detection"] != 0),
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
@@ -39,36 +39,43 @@ Minque::Minque(const Given& given, const Settings& settings)
       armed_from_(std::max<std::int64_t>(
           given.fault_free_samples,
           static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+      inputs_(given.inputs()),
       everybody_(static_cast<std::size_t>(given.channels)),
       present_(everybody_.size()) {
   std::iota(everybody_.begin(), everybody_.end(), 0);
-  in_use_ = everybody_.data();
-  m_ = static_cast<int>(everybody_.size());
+  if (!given.plain()) general_.emplace(given.observation_matrix, reweighting(settings));
+  use_all();
 }
 
 Estimate Minque::step(const Sample& y) {
+  return general_ ? step_with(*general_, y) : step_with(scalar_, y);
+}
+
+template <class Variances>
+Estimate Minque::step_with(Variances& variances, const Sample& y) {
   if (watch_.count_out() == 0)
     use_all();
   else
     use_present(y);
-  double x = m_ > 0 ? variances_.fuse(y.data(), in_use_, m_) : std::nan("");
+  const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), in_use_, m_) : std::nan(""); };
   // Written so that NaN fails.
-  if (!(std::abs(x) <= kLargestSample)) {
+  const auto good = [](double x) { return std::abs(x) <= kLargestSample; };
+  double x = fuse();
+  if (!good(x)) {
     use_present(y);
-    if (m_ > 0) x = variances_.fuse(y.data(), in_use_, m_);
+    x = fuse();
   }
-  Estimate estimate = Estimate::none(1);
-  if (m_ > 0) {
-    const bool found = detection_ && found_fault();
+  Estimate estimate = Estimate::none(inputs_);
+  if (good(x)) {
+    const bool found = detection_ && found_fault(variances);
     if (found) {
       use_present(y);
-      x = variances_.fuse(y.data(), in_use_, m_);
+      x = fuse();
     }
-    estimate =
-        Estimate::scalar(x, variances_.started() ? variances_.fused_variance() : std::nan(""));
-    if (watch_.count_out() > 0) check_recovery(y, x);
+    if (good(x)) estimate = variances.estimate();
+    if (good(x) && watch_.count_out() > 0) check_recovery(variances, y);
     // What a failing channel has done to the residuals of this instant is not to be learnt.
-    if (!found) variances_.update();
+    if (good(x) && !found) variances.update();
   }
   ++now_;
   return estimate;
@@ -88,15 +95,16 @@ void Minque::use_present(const Sample& y) {
 }
 
 /// Takes out the worst channel, if one is beyond its threshold.
-bool Minque::found_fault() {
-  if (!variances_.started() || m_ < 3) return false;
-  const double least = kRounding * variances_.rounding();
+template <class Variances>
+bool Minque::found_fault(const Variances& variances) {
+  if (!variances.started() || m_ < inputs_ + 2) return false;
+  const double least = kRounding * variances.rounding();
   double worst = 0;
   int where = -1;
   for (int k = 0; k < m_; ++k) {
     const auto i = static_cast<std::size_t>(in_use_[k]);
     const double ratio =
-        watch_.ratio(i, variances_.residual(i), std::max(variances_.residual_variance(i), least));
+        watch_.ratio(i, variances.residual(i), std::max(variances.residual_variance(i), least));
     if (ratio > worst) {
       worst = ratio;
       where = in_use_[k];
@@ -108,14 +116,14 @@ bool Minque::found_fault() {
   return true;
 }
 
-void Minque::check_recovery(const Sample& y, double x) {
-  const double least = kRounding * variances_.rounding();
-  for (std::size_t i = 0; i < variances_.size(); ++i) {
+template <class Variances>
+void Minque::check_recovery(const Variances& variances, const Sample& y) {
+  const double least = kRounding * variances.rounding();
+  for (std::size_t i = 0; i < variances.size(); ++i) {
     const double sample = y[static_cast<Eigen::Index>(i)];
     if (!watch_.out(i) || !usable(sample)) continue;
-    const double expectation =
-        std::max(variances_.variance(i) + variances_.fused_variance(), least);
-    if (watch_.calmed(i, sample - x, expectation)) watch_.let_in(i, now_ + 1);
+    const double expectation = std::max(variances.innovation_variance(i), least);
+    if (watch_.calmed(i, variances.innovation(i, sample), expectation)) watch_.let_in(i, now_ + 1);
   }
 }
 
@@ -125,9 +133,9 @@ void Minque::remarks(Warnings& warnings) const {
                  "minque looks for no faults: the memory of the variances (gamma) is not five "
                  "times that of the "
                  "fault rule (fault_gamma)");
-  if (!variances_.started()) return;
+  if (general_ || !scalar_.started()) return;
   std::vector<double> direction;
-  if (variances_.blindness(direction) <= kPoorlyKnown) return;
+  if (scalar_.blindness(direction) <= kPoorlyKnown) return;
   std::string names;
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
@@ -139,15 +147,12 @@ void Minque::remarks(Warnings& warnings) const {
 }
 
 Eigen::MatrixXd Minque::weights() const {
-  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(variances_.size()), 1);
-  for (std::size_t i = 0; i < variances_.size(); ++i)
-    if (!watch_.out(i)) w(static_cast<Eigen::Index>(i), 0) = 1 / variances_.variance(i);
-  return w / w.sum();
+  return general_ ? general_->weights() : scalar_.weights();
 }
 
 Eigen::VectorXd Minque::variances() const {
-  return Eigen::Map<const Eigen::VectorXd>(variances_.variances().data(),
-                                           static_cast<Eigen::Index>(variances_.size()));
+  const std::vector<double>& v = general_ ? general_->variances() : scalar_.variances();
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
 }  // namespace libchar::fusion

@@ -4,20 +4,23 @@
 // (fault_watch.hpp), then the weighted mean or generalized least squares.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/fault_watch.hpp"
+#include "libchar/fusion/reweighted_matrix.hpp"
 #include "libchar/fusion/reweighted_variances.hpp"
 
 namespace libchar::fusion {
 
 struct Minque {
-  static constexpr Card card{.name = "minque",
-                             .title = "MINQUE, recursive and re-weighted",
-                             .source = "[RV 4, 5]; Patterson & Thompson 1971",
-                             .complexity = "O(n) for one input, O(n^2) otherwise",
-                             .needs = {.more_than_inputs = 2, .accepts_missing = true}};
+  static constexpr Card card{
+      .name = "minque",
+      .title = "MINQUE, recursive and re-weighted",
+      .source = "[RV 4, 5]; Patterson & Thompson 1971",
+      .complexity = "O(n) for one input, O(n^2) otherwise",
+      .needs = {.more_than_inputs = 2, .observation_matrix = true, .accepts_missing = true}};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the variances: 1/(1 - gamma) instants"},
       Option{"damping",
@@ -66,15 +69,21 @@ struct Minque {
   void remarks(Warnings& warnings) const;
 
  private:
-  bool found_fault();
-  void check_recovery(const Sample& y, double x);
+  template <class Variances>
+  Estimate step_with(Variances& variances, const Sample& y);
+  template <class Variances>
+  bool found_fault(const Variances& variances);
+  template <class Variances>
+  void check_recovery(const Variances& variances, const Sample& y);
   void use_all();
   void use_present(const Sample& y);
 
-  ReweightedVariances variances_;
+  ReweightedVariances scalar_;               // one input seen by all alike
+  std::optional<ReweightedMatrix> general_;  // any other H
   FaultWatch watch_;
   bool asked_, detection_;
   std::int64_t armed_from_, now_ = 0;
+  Eigen::Index inputs_;
   std::vector<int> everybody_, present_;
   const int* in_use_ = nullptr;  // channels of this instant: one of the two lists
   int m_ = 0;

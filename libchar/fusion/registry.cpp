@@ -5,13 +5,18 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fusion/blind_calibration.hpp"
+#include "libchar/fusion/bounds.hpp"
 #include "libchar/fusion/inverse_variance.hpp"
 #include "libchar/fusion/kalman_takens.hpp"
 #include "libchar/fusion/kalman_takens_published.hpp"
+#include "libchar/fusion/least_squares.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
+#include "libchar/fusion/minque_published.hpp"
 #include "libchar/fusion/perceptron.hpp"
+#include "libchar/fusion/random_weighting.hpp"
 #include "libchar/fusion/tilt_complementary.hpp"
 #include "libchar/fusion/tilt_kalman.hpp"
 #include "libchar/fusion/tilt_tuned.hpp"
@@ -40,16 +45,26 @@ constexpr std::array kAlgorithms{
     entry<Median>(),
     entry<InverseVariance>(),
     entry<Minque>(),
-    entry<Perceptron>(),
+    entry<MinquePublished>(),
+    entry<RandomWeighting>(),
+    entry<RandomWeightingPublished>(),
     entry<KalmanTakens>(),
-    entry<KalmanTakensTaught>(),
     entry<KalmanTakensPublished>(),
+    entry<BlindCalibration>(),
+    entry<BlindCalibrationPublished>(),
+    entry<LeastSquares>(),
+    entry<LeastSquaresPublished>(),
+    entry<Perceptron>(),
+    entry<KalmanTakensTaught>(),
     entry<TiltGyroscope>(),
     entry<TiltAccelerometer>(),
     entry<TiltComplementary>(),
     entry<TiltKalman>(),
     entry<TiltComplementaryTuned>(),
     entry<TiltKalmanTuned>(),
+    entry<BestSensor>(),
+    entry<OptimalWeights>(),
+    entry<SectionedLeastSquares>(),
 };
 
 }  // namespace

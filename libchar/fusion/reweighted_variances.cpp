@@ -44,6 +44,7 @@ double ReweightedVariances::fuse(const double* y, const int* index, int m) {
   const double shift = weighted / sum;
   for (int k = 0; k < m; ++k) r_[index_[k]] = (y[index_[k]] - base) - shift;
   const double x = base + shift;
+  x_ = x;
   const double ulp = std::numeric_limits<double>::epsilon() * x;
   rounding_ = std::max(ulp * ulp, kTiny);
   return x;
@@ -124,6 +125,12 @@ void ReweightedVariances::apply() {
     v_[i] = v;
     inverse_[i] = 1 / v;
   }
+}
+
+Eigen::MatrixXd ReweightedVariances::weights() const {
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(v_.size()), 1);
+  for (int k = 0; k < m_; ++k) weights(index_[k], 0) = inverse_[index_[k]];
+  return m_ > 0 ? Eigen::MatrixXd(weights / weights.sum()) : weights;
 }
 
 double ReweightedVariances::blindness(std::vector<double>& direction) const {

@@ -18,7 +18,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::fusion {
 
@@ -42,8 +45,14 @@ class ReweightedVariances {
   /// Improves the variances of the channels of the last `fuse` by its residuals.
   void update();
 
-  /// Of the last fused value.
+  /// Of the last `fuse`.
+  Estimate estimate() const {
+    return Estimate::scalar(x_, started_ ? 1 / sum_ : std::numeric_limits<double>::quiet_NaN());
+  }
   double fused_variance() const { return 1 / sum_; }
+  /// Of a channel that was not in use: sample less fused value, and its variance.
+  double innovation(std::size_t, double sample) const { return sample - x_; }
+  double innovation_variance(std::size_t i) const { return v_[i] + 1 / sum_; }
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
   /// Part of the variance of channel i in the last `fuse` that shows in its residual.
@@ -53,6 +62,8 @@ class ReweightedVariances {
   double rounding() const { return rounding_; }
   bool started() const { return started_; }
   const std::vector<double>& variances() const { return v_; }
+  /// n x 1, zero for channels that are not in use.
+  Eigen::MatrixXd weights() const;
 
   /// Relative standard deviation that the memory alone leaves in the worst-seen mixture of
   /// variances, and that mixture: above one third or so, the data do not tell these channels apart.
@@ -73,7 +84,7 @@ class ReweightedVariances {
   const int* index_ = nullptr;
   int m_ = 0;
   double sum_ = 1;  // of the inverse variances in use
-  double rounding_ = 0;
+  double x_ = 0, rounding_ = 0;
   double instants_ = 0;
   int heaviest_ = 0;  // position of the largest p
   bool started_ = false;

@@ -47,7 +47,8 @@ TEST_CASE("every card is complete, every option's default is in its range") {
     CHECK_FALSE(entry.card->title.empty());
     CHECK_FALSE(entry.card->source.empty());
     CHECK_FALSE(entry.card->complexity.empty());
-    CHECK(entry.card->needs.reference == !entry.card->learning_complexity.empty());
+    CHECK((entry.card->needs.reference || entry.card->needs.reference_throughout) ==
+          !entry.card->learning_complexity.empty());
     for (const Option& option : entry.options) {
       INFO(option.name);
       CHECK_FALSE(option.meaning.empty());
