@@ -120,7 +120,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
 TEST_CASE("perceptron: learns a bent sensor") {
   Scene s = scene(8000, 4000);
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
-  auto runner = taught(s);
+  auto runner = taught(s, {{"starts", 1}, {"neurons", 6}});
   const double ours =
       rms(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
@@ -184,6 +184,18 @@ TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no 
   CHECK(std::isnan(run.x(0, 5)));
   CHECK(std::isfinite(run.x(0, 6)));
   CHECK(rms(run.x.rightCols(990).transpose() - s.x.tail(990)) < 0.25);
+}
+
+TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
+  const auto remarks = [](Eigen::Index channels) {
+    Given given = test::given(channels);
+    given.learning_samples = 1000;
+    libchar::Warnings warnings;
+    test::make("perceptron", given)->remarks(warnings);
+    return warnings;
+  };
+  CHECK(remarks(5).empty());
+  CHECK_FALSE(remarks(200).empty());
 }
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
