@@ -69,8 +69,7 @@ class RunnerOf final : public Runner {
       for (Eigen::Index k = 0; k < samples.cols(); ++k) {
         const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
         const Sample x(truth.data() + k * truth.outerStride(), truth.rows());
-        if (x.allFinite() && (A::card.needs.accepts_missing || y.allFinite()))
-          algorithm_.learn(y, x);
+        if (complete(x) && (A::card.needs.accepts_missing || complete(y))) algorithm_.learn(y, x);
       }
     }
   }
@@ -110,7 +109,7 @@ class RunnerOf final : public Runner {
  private:
   Estimate step(const Sample& y) {
     if constexpr (!A::card.needs.accepts_missing)
-      if (!y.allFinite()) return Estimate::none(inputs_);
+      if (!complete(y)) return Estimate::none(inputs_);
     return algorithm_.step(y);
   }
 
