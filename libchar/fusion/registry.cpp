@@ -8,12 +8,18 @@
 #include "libchar/fusion/blind_calibration.hpp"
 #include "libchar/fusion/bounds.hpp"
 #include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/kalman_takens.hpp"
+#include "libchar/fusion/kalman_takens_published.hpp"
 #include "libchar/fusion/least_squares.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
 #include "libchar/fusion/minque_published.hpp"
+#include "libchar/fusion/perceptron.hpp"
 #include "libchar/fusion/random_weighting.hpp"
+#include "libchar/fusion/tilt_complementary.hpp"
+#include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/fusion/tilt_tuned.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -21,7 +27,7 @@ namespace {
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Given& given, const Settings& settings) {
   if (std::string sentence = why_not(A::card, given); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0722", "", std::move(sentence), "", ""});
+    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
   return std::make_unique<RunnerOf<A>>(given, settings);
 }
 
@@ -42,10 +48,20 @@ constexpr std::array kAlgorithms{
     entry<MinquePublished>(),
     entry<RandomWeighting>(),
     entry<RandomWeightingPublished>(),
+    entry<KalmanTakens>(),
+    entry<KalmanTakensPublished>(),
     entry<BlindCalibration>(),
     entry<BlindCalibrationPublished>(),
     entry<LeastSquares>(),
     entry<LeastSquaresPublished>(),
+    entry<Perceptron>(),
+    entry<KalmanTakensTaught>(),
+    entry<TiltGyroscope>(),
+    entry<TiltAccelerometer>(),
+    entry<TiltComplementary>(),
+    entry<TiltKalman>(),
+    entry<TiltComplementaryTuned>(),
+    entry<TiltKalmanTuned>(),
     entry<BestSensor>(),
     entry<OptimalWeights>(),
     entry<SectionedLeastSquares>(),
@@ -69,7 +85,7 @@ const Entry& algorithm(std::string_view name) {
   for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.card->name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
-               "E0723",
+               "E0853",
                "",
                "no fusion algorithm has this name",
                std::string(name),
