@@ -213,6 +213,11 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
     refuse("simulate", "for how long?", "", "give --duration or --samples");
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
+  if (!verb.truth.empty() && simulation.truth_names.size() != 1)
+    refuse("--truth",
+           fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
+           "",
+           "change them in the scene");
   if (!verb.truth.empty()) simulation.truth = {signal_from_words(verb.truth, "--truth")};
   if (!verb.temperature.empty())
     simulation.temperature = signal_from_words(verb.temperature, "--temperature");
