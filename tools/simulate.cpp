@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/scene.hpp"
@@ -47,6 +50,12 @@ struct SimulateVerb {
 
 // "sine,amplitude=2,frequency_hz=0.1" as the map that a scene file would hold.
 SignalSpec signal_from_words(const std::string& text, const std::string& option) {
+  if (const auto value = parse_double(text)) {
+    SignalSpec constant;
+    constant.kind = "constant";
+    constant.value = *value;
+    return constant;
+  }
   std::string map = "{kind: " + text.substr(0, text.find(','));
   for (std::size_t at = text.find(','); at != std::string::npos;) {
     const std::size_t end = text.find(',', at + 1);
@@ -59,6 +68,36 @@ SignalSpec signal_from_words(const std::string& text, const std::string& option)
     at = end;
   }
   return read_signal(parse_yaml_document(map + "}", option), option, "");
+}
+
+// The samples of a signal that comes from a log; its path is the user's own, not a scene's.
+void read_signal_samples(SignalSpec& spec,
+                         const std::string& option,
+                         const ArraySimulation& simulation,
+                         Warnings& warnings) {
+  ReadOptions reading;
+  reading.hash = false;
+  if (!spec.channel.empty()) reading.channels = {spec.channel};
+  Recording log = read_recording(spec.file, reading);
+  if (log.samples.size() != 1)
+    refuse(option,
+           fmt::format("the recording holds {} channels", log.samples.size()),
+           spec.file,
+           "name one: channel=NAME");
+  const double rate = log.info.time.rate_hz;
+  if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
+    refuse(option,
+           fmt::format("the recording has {} Hz, and the simulation runs at {} Hz",
+                       significant(rate, 6),
+                       significant(simulation.rate_hz, 6)),
+           spec.file,
+           fmt::format("--rate {}Hz", significant(rate, 6)));
+  spec.samples = std::move(log.samples[0]);
+  if (spec.samples.empty()) refuse(option, "the recording holds no sample", spec.file);
+  if (spec.samples.size() < simulation.samples)
+    warnings.add("recorded_signal_short",
+                 "a recorded signal ends before the simulation; its last sample is held",
+                 option);
 }
 
 // "gyr_x:bias=0.2@100..200" in seconds; an open end is the end of the record.
@@ -97,6 +136,8 @@ SensorFault fault_from_words(const std::string& text, const ArraySimulation& sim
   if (valueless != (equals == std::string::npos))
     refuse("--fault", valueless ? kind + " takes no value" : kind + " needs a value", text, form);
   if (!valueless) fault.value = number(what.substr(equals + 1));
+  if ((fault.kind == FaultKind::saturation || fault.kind == FaultKind::noise) && fault.value < 0)
+    refuse("--fault", kind + " needs a value of at least 0", what.substr(equals + 1));
   const std::size_t dots = when.find("..");
   if (dots == std::string::npos) refuse("--fault", "expected FROM..TO in seconds", when, form);
   fault.from_s = number(when.substr(0, dots));
@@ -153,10 +194,17 @@ ArraySimulation from_models(const SimulateVerb& verb) {
 }
 
 // What the command line says on top of models or scene.
-void apply_options(const SimulateVerb& verb, ArraySimulation& simulation) {
+void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnings& warnings) {
   if (verb.rate_hz) simulation.rate_hz = *verb.rate_hz;
   if (!(simulation.rate_hz > 0))
     refuse(verb.sources[0], "states no sampling rate", "", "give --rate");
+  if (simulation.rate_hz < 1e-9 || simulation.rate_hz > 1e9)
+    refuse(verb.sources[0],
+           "states a sampling rate that is not between 1e-9 and 1e9 Hz",
+           significant(simulation.rate_hz, 6),
+           "give --rate");
+  if (verb.samples > 0 && verb.duration_s)
+    refuse("--samples", "does not go with --duration", "", "give one of them");
   if (verb.samples > 0) simulation.samples = verb.samples;
   if (verb.duration_s)
     simulation.samples =
@@ -165,11 +213,33 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation) {
     refuse("simulate", "for how long?", "", "give --duration or --samples");
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
+  if (!verb.truth.empty() && simulation.truth_names.size() != 1)
+    refuse("--truth",
+           fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
+           "",
+           "change them in the scene");
   if (!verb.truth.empty()) simulation.truth = {signal_from_words(verb.truth, "--truth")};
   if (!verb.temperature.empty())
     simulation.temperature = signal_from_words(verb.temperature, "--temperature");
   for (const std::string& fault : verb.faults)
     simulation.faults.push_back(fault_from_words(fault, simulation));
+  const auto recorded = [&](SignalSpec& spec, const std::string& option) {
+    if (spec.kind != "recording") return;
+    for (const std::string& output : {verb.output, verb.scene_path})
+      refuse_same_file(spec.file, output);
+    read_signal_samples(spec, option, simulation, warnings);
+  };
+  if (!verb.truth.empty()) recorded(simulation.truth[0], "--truth");
+  if (!verb.temperature.empty()) recorded(*simulation.temperature, "--temperature");
+  const double end_s = static_cast<double>(simulation.samples) / simulation.rate_hz;
+  for (const SensorFault& fault : simulation.faults)
+    if (fault.from_s >= end_s)
+      warnings.add("fault_after_end",
+                   "a fault begins after the end of the recording and changes nothing",
+                   fmt::format("{} from {} s, the end is at {} s",
+                               simulation.sensors[fault.sensor].name,
+                               significant(fault.from_s, 6),
+                               significant(end_s, 6)));
 }
 
 std::string output_unit(const SensorModel& model) {
@@ -282,20 +352,26 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   for (const std::string& source : verb.sources)
     for (const std::string& output : {verb.output, verb.scene_path})
       refuse_same_file(source, output);
+  std::vector<std::string> outputs = {verb.output};
+  if (!verb.no_scene) outputs.push_back(verb.scene_path);
   ArraySimulation simulation;
   Scene scene;
   if (scene_given) {
     scene = read_scene_file(verb.sources[0], {verb.allow_outside});
     session.terminal.warn(scene.warnings, scene.file);
-    refuse_scene_outputs(scene, {verb.output, verb.scene_path});
+    refuse_scene_outputs(scene, outputs);
     if (!scene.simulate)
       refuse(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
     if (verb.devices > 1) refuse("--devices", "the scene says how many devices there are (count)");
     simulation = *scene.simulate;
   } else {
     simulation = from_models(verb);
+    scene.file = verb.sources[0];
+    refuse_scene_outputs(scene, outputs);
   }
-  apply_options(verb, simulation);
+  Warnings warnings;
+  apply_options(verb, simulation, warnings);
+  session.terminal.warn(warnings, "simulate");
   check(simulation);
   check_names(simulation, verb);
   const LogInfo info = log_info(simulation, verb.output, !verb.no_truth);
@@ -358,7 +434,11 @@ void add_simulate(CLI::App& app, Session& session) {
   sub->add_option_function<std::string>(
          "--seed",
          [verb](const std::string& text) {
-           verb->seed = parse_count(text);
+           try {
+             verb->seed = parse_count(text);
+           } catch (const Error&) {
+             refuse("--seed", "expected a whole number from 0 to 18446744073709551615", text);
+           }
            verb->seed_given = true;
          },
          "seed of all random numbers (default: 1); the same seed gives the same samples")
@@ -370,10 +450,12 @@ void add_simulate(CLI::App& app, Session& session) {
       "devices made from each model, each with its own scale factor, bias and noise (default: 1)",
       1,
       kMostDevices);
-  sub->add_option("--truth",
-                  verb->truth,
-                  "true input: KIND,key=value,… with KIND zero, constant, sine, chirp, noise, "
-                  "uniform, random_walk, ramp, recording… (default: zero)")
+  sub->add_option(
+         "--truth",
+         verb->truth,
+         "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, "
+         "noise, uniform, random_walk, ramp, or recording,file=LOG,channel=NAME; its keys "
+         "are those of scenes (default: zero)")
       ->type_name("SIGNAL");
   sub->add_option("--temperature",
                   verb->temperature,

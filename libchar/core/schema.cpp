@@ -207,7 +207,7 @@ std::pair<double, double> MapReader::interval(std::string_view key) const {
   if (ends.size() == 2 && ends[0] <= ends[1]) return {ends[0], ends[1]};
   fail("E0543",
        where(require(key)),
-       fmt::format("{}: expected two numbers [low, high]", path_of(key)),
+       fmt::format("{}: expected two numbers [low, high], the lower first", path_of(key)),
        shown(require(key)),
        "");
 }

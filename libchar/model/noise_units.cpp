@@ -5,6 +5,7 @@
 // instability), -1/2 (random walk), 1 (quantization), -1 (ramp) (design.md 2).
 #include "libchar/model/noise_units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -176,7 +177,9 @@ std::vector<std::string> noise_unit_examples(Term term, std::string_view channel
   if (term == Term::white) out.push_back(u + "/√Hz");
   out.push_back(term_unit(key, u));
   for (const HabitualValue& habit : habitual_units(key, channel_unit))
-    if (find_noise_unit(term, habit.symbol, channel_unit)) out.push_back(habit.symbol);
+    if (find_noise_unit(term, habit.symbol, channel_unit) &&
+        std::find(out.begin(), out.end(), habit.symbol) == out.end())
+      out.push_back(habit.symbol);
   return out;
 }
 

@@ -90,7 +90,9 @@ void check(const ArraySimulation& s) {
   if (names.size() != s.truth_names.size()) refuse("two truth signals have one name");
   for (const SimulatedSensor& sensor : s.sensors) {
     if (!names.insert(sensor.name).second)
-      refuse(fmt::format("two channels would be called {}", sensor.name));
+      refuse(fmt::format("two channels would be called {}", sensor.name),
+             "rename the sensor (channel: in a model, name: in a scene); a truth signal is called "
+             "truth unless it has a name");
     check_sensor(s, sensor);
   }
   for (const SensorFault& fault : s.faults)

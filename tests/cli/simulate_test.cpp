@@ -161,6 +161,22 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
       {{model, "-o", out, "--samples", "5", "--fault", "gyr_x:bais=1@0..1"},
        2,
        "expected one of scale, bias"},
+      {{model, "-o", out, "--samples", "5", "--fault", "gyr_x:noise=-1@0..1"},
+       2,
+       "noise needs a value of at least 0"},
+      {{model, "-o", out, "--samples", "5", "--duration", "3"}, 2, "does not go with --duration"},
+      {{model, "-o", out, "--samples", "5", "--seed", "-1"}, 2, "--seed: error"},
+      {{model, "-o", out, "--samples", "5", "--scene", out}, 5, "two outputs are one file"},
+      {{model, "-o", out, "--samples", "5", "--truth", "recording,file=absent.csv"},
+       3,
+       "absent.csv"},
+      {{bench.file("fast.yaml", "format: sensor-model\nversion: 1\nrate_hz: 1e300\n"),
+        "-o",
+        out,
+        "--samples",
+        "5"},
+       2,
+       "not between 1e-9 and 1e9 Hz"},
       {{model, "-o", out, "--samples", "5", "--truth", "sinus"}, 3, "did you mean sine?"},
       {{model, "-o", out, "--samples", "5", "--truth", "sine,amplitud=1"},
        3,
@@ -189,6 +205,37 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
   }
   REQUIRE(test::run({"simulate", model, "-o", out, "--samples", "5"}).code == 0);
   CHECK(test::run({"simulate", model, "-o", out, "--samples", "5"}).code == 5);
+}
+
+TEST_CASE("simulate: truth from a log, a bare number, and a fault after the end") {
+  const Bench bench;
+  const std::string model = bench.file(
+      "ideal.yaml", "format: sensor-model\nversion: 1\nchannel: a\nunit: deg/s\nrate_hz: 100\n");
+  const std::string log =
+      bench.file("log.csv", "t[s],x[deg/s],y[deg/s]\n0,1,5\n0.01,2,6\n0.02,4,7\n");
+  const std::string out = bench.path("o.csv");
+  const std::string truth = "recording,file=" + log;
+  const auto simulate = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"simulate", model, "-o", out, "--force", "--samples", "4"};
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run(words);
+  };
+  auto ran = simulate({"--truth", truth + ",channel=x"});
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.err, Contains("its last sample is held"));
+  CHECK(libchar::read_recording(out, {}).samples[0] == std::vector<double>{1, 2, 4, 4});
+  ran = simulate({"--truth", truth});
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Contains("channel=NAME"));
+  ran = simulate({"--rate", "50", "--truth", truth + ",channel=x"});
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Contains("--rate 100Hz"));
+  REQUIRE(simulate({"--truth", "3"}).code == 0);
+  CHECK(libchar::read_recording(out, {}).samples[1] == std::vector<double>(4, 3.0));
+  ran = simulate({"--fault", "a:bias=1@10..20"});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.err, Contains("after the end of the recording"));
 }
 
 TEST_CASE("simulate: a characterized model closes the loop on the command line") {
