@@ -208,7 +208,7 @@ std::string algorithms_block(const Scene& scene) {
 
 std::string scene_yaml(const Scene& scene) {
   std::string out = fmt::format(
-      "# A recording of sensors and what is known about it: sensorchar replay, "
+      "# A recording of sensors and what is known about it: "
       "docs/scenes.md\nformat: scene\nversion: 1\ntool: {{name: sensorchar, version: {}}}\n",
       quoted_yaml(version()));
   if (!scene.name.empty()) out += "name: " + quoted_yaml(scene.name) + "\n";
