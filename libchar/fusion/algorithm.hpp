@@ -1,0 +1,127 @@
+#pragma once
+// The contract of a fusion algorithm: a plain struct with a card, a constructor from what is given,
+// and `step`.
+//
+//   struct Mean {
+//     static constexpr Card card{.name = "mean", …};
+//     explicit Mean(const Given& given);
+//     Estimate step(const Sample& y);
+//   };
+//
+// It may also have
+//   static constexpr std::array options{Option{…}…};  and the constructor Mean(const Given&, const
+//   Settings&) void learn(const Sample& y, const Sample& truth);  one instant of the learning
+//   window (card.needs says so) void finish_learning();                            after the last
+//   one; throws Error(numeric) when nothing can be learnt Eigen::MatrixXd weights() const; n x r,
+//   as they stand now Eigen::VectorXd variances() const;                 of a sample's noise,
+//   channel by channel, as estimated now const FaultLog& faults() const; void remarks(Warnings&)
+//   const;                     what the reader of the result must know
+// and is known to the engine by one line in registry.cpp.
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "libchar/core/warnings.hpp"
+#include "libchar/fusion/fault_log.hpp"
+#include "libchar/fusion/given.hpp"
+#include "libchar/fusion/options.hpp"
+
+namespace libchar::fusion {
+
+inline constexpr int kMaxStates = 8;  ///< inputs r that an algorithm can estimate
+
+/// Lives inside the object: `step` makes no trip to the heap.
+using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
+/// One instant, one value a channel, NaN = missing; or the true inputs of that instant.
+using Sample = Eigen::Map<const Eigen::VectorXd>;
+
+struct Estimate {
+  State x;         ///< r values; NaN: no estimate at this instant
+  State variance;  ///< of x as the algorithm believes it; NaN: it has no opinion
+
+  static Estimate scalar(double x, double variance) {
+    return {State::Constant(1, x), State::Constant(1, variance)};
+  }
+  static Estimate none(Eigen::Index inputs) {
+    return {State::Constant(inputs, std::numeric_limits<double>::quiet_NaN()),
+            State::Constant(inputs, std::numeric_limits<double>::quiet_NaN())};
+  }
+};
+
+struct Needs {
+  Eigen::Index min_channels = 1;
+  Eigen::Index more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
+  std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
+  bool reference = false;             ///< learns from a reference, in the learning window
+  bool reference_throughout =
+      false;                  ///< looks at the reference of the run itself: a bound, not a method
+  bool noise_levels = false;  ///< a noise variance for each channel
+  bool observation_matrix =
+      false;  ///< takes any H (otherwise every channel must see the one input with gain one)
+  bool accepts_missing = false;   ///< otherwise an instant with a missing sample has no estimate
+  bool fault_free_start = false;  ///< a stretch without faults at the beginning of the run
+  bool rate = false;              ///< the sampling rate
+  bool tilt = false;              ///< one gyroscope axis and two accelerometer axes
+};
+
+/// What the plan, the docs and the report print about an algorithm.
+struct Card {
+  std::string_view name;        ///< stable key: "inverse-variance"
+  std::string_view title;       ///< for people
+  std::string_view source;      ///< where the equations stand
+  std::string_view complexity;  ///< of a step
+  Needs needs = {};
+  std::string_view learning_complexity =
+      "";  ///< of one learning instant; "" when nothing is learnt
+};
+
+/// Empty: the algorithm can run on this. Else the sentence that a report prints.
+std::string why_not(const Card& card, const Given& given);
+
+template <class A>
+concept Steps = requires(A a, const Sample& y) {
+  { a.step(y) } -> std::same_as<Estimate>;
+};
+template <class A>
+concept HasCard = requires {
+  { A::card } -> std::convertible_to<const Card&>;
+};
+template <class A>
+concept HasOptions = requires {
+  {std::span<const Option>(A::options)};
+};
+template <class A>
+concept Made = (HasOptions<A> && std::constructible_from<A, const Given&, const Settings&>) ||
+               (!HasOptions<A> && std::constructible_from<A, const Given&>);
+template <class A>
+concept Algorithm = HasCard<A> && Steps<A> && Made<A>;
+
+template <class A>
+concept Learns = requires(A a, const Sample& y, const Sample& truth) {
+  a.learn(y, truth);
+};
+template <class A>
+concept FinishesLearning = requires(A a) {
+  a.finish_learning();
+};
+template <class A>
+concept HasWeights = requires(const A a) {
+  { a.weights() } -> std::convertible_to<Eigen::MatrixXd>;
+};
+template <class A>
+concept HasVariances = requires(const A a) {
+  { a.variances() } -> std::convertible_to<Eigen::VectorXd>;
+};
+template <class A>
+concept HasFaults = requires(const A a) {
+  { a.faults() } -> std::same_as<const FaultLog&>;
+};
+template <class A>
+concept HasRemarks = requires(const A a, Warnings& warnings) {
+  a.remarks(warnings);
+};
+
+}  // namespace libchar::fusion

@@ -1,0 +1,50 @@
+#pragma once
+// What a scene can feed, as plain numbers: the fusion floor knows nothing of logs and files.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace libchar::fusion {
+
+/// Which channels a tilt filter reads.
+struct TiltChannels {
+  Eigen::Index gyroscope = 0;        ///< rate about the tilt axis, rad/s
+  Eigen::Index accelerometer_x = 1;  ///< grows with sin(tilt)
+  Eigen::Index accelerometer_z = 2;  ///< grows with cos(tilt)
+};
+
+struct Given {
+  Eigen::Index channels = 0;  ///< n
+  Eigen::MatrixXd
+      observation_matrix;  ///< H, n rows of r inputs; empty: one input seen equally by all (H = 1)
+  Eigen::VectorXd
+      noise_levels;    ///< variance of a sample's noise, channel by channel; empty: not known
+  double rate_hz = 0;  ///< 0: not known
+  std::int64_t learning_samples =
+      0;  ///< instants with a reference before the run (0: no learning window)
+  std::int64_t fault_free_samples =
+      0;  ///< the first so many instants of the run are known to hold no fault
+  bool reference_throughout =
+      false;  ///< the reference covers the whole run: bounds and oracles may look at it
+  std::vector<std::int64_t>
+      section_starts;  ///< instants of the run at which a sensor fails or comes back
+  std::optional<TiltChannels> tilt;
+
+  Eigen::Index inputs() const {
+    return observation_matrix.size() == 0 ? 1 : observation_matrix.cols();
+  }  ///< r
+  /// H as a matrix in any case.
+  Eigen::MatrixXd h() const {
+    return observation_matrix.size() == 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Ones(channels, 1))
+                                          : observation_matrix;
+  }
+  /// One input, seen by every channel with gain one: means need no matrix.
+  bool plain() const {
+    return observation_matrix.size() == 0 ||
+           (observation_matrix.cols() == 1 && (observation_matrix.array() == 1).all());
+  }
+};
+
+}  // namespace libchar::fusion

@@ -1,0 +1,158 @@
+#include "libchar/fusion/minque.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "libchar/fusion/weighted_mean.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+ReweightingOptions reweighting(const Settings& s) {
+  return {s["gamma"], s["damping"], s["floor"], s["floor_largest"], s["start_variance"]};
+}
+
+FaultWatchOptions watching(const Settings& s) {
+  return {s["fault_gamma"], s["fault_threshold"], static_cast<std::int64_t>(s["recovery_samples"])};
+}
+
+/// A moment of rounding errors proves no fault.
+constexpr double kRounding = 1e4;
+
+/// Relative standard deviation of a variance above which a reader must know.
+constexpr double kPoorlyKnown = 0.5;
+
+/// A second moment can only be judged by variances that are known clearly better than itself.
+bool shorter(double fault_gamma, double gamma) {
+  return 1 - fault_gamma >= 5 * (1 - gamma);
+}
+
+}  // namespace
+
+Minque::Minque(const Given& given, const Settings& settings)
+    : scalar_(static_cast<std::size_t>(given.channels), reweighting(settings)),
+      watch_(static_cast<std::size_t>(given.channels), watching(settings)),
+      asked_(settings["fault_detection"] != 0),
+      detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
+      // The variances must have settled before they can accuse anybody.
+      armed_from_(std::max<std::int64_t>(
+          given.fault_free_samples,
+          static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+      inputs_(given.inputs()),
+      everybody_(static_cast<std::size_t>(given.channels)),
+      present_(everybody_.size()) {
+  std::iota(everybody_.begin(), everybody_.end(), 0);
+  if (!given.plain()) general_.emplace(given.observation_matrix, reweighting(settings));
+  use_all();
+}
+
+Estimate Minque::step(const Sample& y) {
+  return general_ ? step_with(*general_, y) : step_with(scalar_, y);
+}
+
+template <class Variances>
+Estimate Minque::step_with(Variances& variances, const Sample& y) {
+  if (watch_.count_out() == 0)
+    use_all();
+  else
+    use_present(y);
+  const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), in_use_, m_) : std::nan(""); };
+  // Written so that NaN fails.
+  const auto good = [](double x) { return std::abs(x) <= kLargestSample; };
+  double x = fuse();
+  if (!good(x)) {
+    use_present(y);
+    x = fuse();
+  }
+  Estimate estimate = Estimate::none(inputs_);
+  if (good(x)) {
+    const bool found = detection_ && found_fault(variances);
+    if (found) {
+      use_present(y);
+      x = fuse();
+    }
+    if (good(x)) estimate = variances.estimate();
+    if (good(x) && watch_.count_out() > 0) check_recovery(variances, y);
+    // What a failing channel has done to the residuals of this instant is not to be learnt.
+    if (good(x) && !found) variances.update();
+  }
+  ++now_;
+  return estimate;
+}
+
+void Minque::use_all() {
+  in_use_ = everybody_.data();
+  m_ = static_cast<int>(everybody_.size());
+}
+
+void Minque::use_present(const Sample& y) {
+  m_ = 0;
+  for (int i = 0; i < static_cast<int>(y.size()); ++i)
+    if (usable(y[i]) && !watch_.out(static_cast<std::size_t>(i)))
+      present_[static_cast<std::size_t>(m_++)] = i;
+  in_use_ = present_.data();
+}
+
+/// Takes out the worst channel, if one is beyond its threshold.
+template <class Variances>
+bool Minque::found_fault(const Variances& variances) {
+  if (!variances.started() || m_ < inputs_ + 2) return false;
+  const double least = kRounding * variances.rounding();
+  double worst = 0;
+  int where = -1;
+  for (int k = 0; k < m_; ++k) {
+    const auto i = static_cast<std::size_t>(in_use_[k]);
+    const double ratio =
+        watch_.ratio(i, variances.residual(i), std::max(variances.residual_variance(i), least));
+    if (ratio > worst) {
+      worst = ratio;
+      where = in_use_[k];
+    }
+  }
+  if (now_ < armed_from_ || worst <= watch_.threshold()) return false;
+  for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use_[k]));
+  watch_.take_out(static_cast<std::size_t>(where), now_);
+  return true;
+}
+
+template <class Variances>
+void Minque::check_recovery(const Variances& variances, const Sample& y) {
+  const double least = kRounding * variances.rounding();
+  for (std::size_t i = 0; i < variances.size(); ++i) {
+    const double sample = y[static_cast<Eigen::Index>(i)];
+    if (!watch_.out(i) || !usable(sample)) continue;
+    const double expectation = std::max(variances.innovation_variance(i), least);
+    if (watch_.calmed(i, variances.innovation(i, sample), expectation)) watch_.let_in(i, now_ + 1);
+  }
+}
+
+void Minque::remarks(Warnings& warnings) const {
+  if (asked_ && !detection_)
+    warnings.add("faults_not_watched",
+                 "minque looks for no faults: the memory of the variances (gamma) is not five "
+                 "times that of the "
+                 "fault rule (fault_gamma)");
+  if (general_ || !scalar_.started()) return;
+  std::vector<double> direction;
+  if (scalar_.blindness(direction) <= kPoorlyKnown) return;
+  std::string names;
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
+  warnings.add("variances_not_identifiable",
+               "minque cannot tell the variances of these channels apart (their sum is known, the "
+               "other channels are too noisy to "
+               "divide it): " +
+                   names);
+}
+
+Eigen::MatrixXd Minque::weights() const {
+  return general_ ? general_->weights() : scalar_.weights();
+}
+
+Eigen::VectorXd Minque::variances() const {
+  const std::vector<double>& v = general_ ? general_->variances() : scalar_.variances();
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,68 @@
+#include "libchar/fusion/options.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+std::string range_of(const Option& option) {
+  std::string text = option.whole ? "a whole number" : "a number";
+  if (std::isfinite(option.low)) text += " of at least " + shortest(option.low);
+  if (std::isfinite(option.high))
+    text += (std::isfinite(option.low) ? " and at most " : " of at most ") + shortest(option.high);
+  if (!option.unit.empty()) text += ", in " + std::string(option.unit);
+  return text;
+}
+
+[[noreturn]] void unknown(std::span<const Option> table, std::string_view name) {
+  std::vector<std::string> names;
+  for (const Option& option : table) names.emplace_back(option.name);
+  std::string hint = "this algorithm has no options";
+  if (const auto near = nearest(name, names)) {
+    hint = "did you mean " + *near + "?";
+  } else if (!names.empty()) {
+    hint = "its options are " + names[0];
+    for (std::size_t i = 1; i < names.size(); ++i) hint += ", " + names[i];
+  }
+  throw Error({ErrorKind::usage, "E0720", "", "no such option", std::string(name), hint});
+}
+
+}  // namespace
+
+Settings::Settings(std::span<const Option> table) : table_(table) {
+  for (const Option& option : table) values_.push_back(option.standard);
+}
+
+void Settings::set(std::string_view name, double value) {
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    const Option& option = table_[i];
+    if (option.name != name) continue;
+    // Written so that NaN fails.
+    const bool fits = value >= option.low && value <= option.high && std::isfinite(value) &&
+                      (!option.whole || value == std::floor(value));
+    if (!fits)
+      throw Error({ErrorKind::usage,
+                   "E0721",
+                   "",
+                   std::string(name) + " takes " + range_of(option),
+                   shortest(value),
+                   ""});
+    values_[i] = value;
+    return;
+  }
+  unknown(table_, name);
+}
+
+double Settings::operator[](std::string_view name) const {
+  for (std::size_t i = 0; i < table_.size(); ++i)
+    if (table_[i].name == name) return values_[i];
+  assert(!"an option that is not in the table");
+  return std::nan("");
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,77 @@
+#include "libchar/fusion/registry.hpp"
+
+#include <array>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/fusion/blind_calibration.hpp"
+#include "libchar/fusion/bounds.hpp"
+#include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/least_squares.hpp"
+#include "libchar/fusion/mean.hpp"
+#include "libchar/fusion/median.hpp"
+#include "libchar/fusion/minque.hpp"
+#include "libchar/fusion/minque_published.hpp"
+#include "libchar/fusion/random_weighting.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+template <Algorithm A>
+std::unique_ptr<Runner> make(const Given& given, const Settings& settings) {
+  if (std::string sentence = why_not(A::card, given); !sentence.empty())
+    throw Error({ErrorKind::usage, "E0722", "", std::move(sentence), "", ""});
+  return std::make_unique<RunnerOf<A>>(given, settings);
+}
+
+template <Algorithm A>
+constexpr Entry entry() {
+  if constexpr (HasOptions<A>)
+    return {&A::card, A::options, &make<A>};
+  else
+    return {&A::card, {}, &make<A>};
+}
+
+// The order of reports: baselines, blind methods, taught methods, bounds.
+constexpr std::array kAlgorithms{
+    entry<Mean>(),
+    entry<Median>(),
+    entry<InverseVariance>(),
+    entry<Minque>(),
+    entry<MinquePublished>(),
+    entry<RandomWeighting>(),
+    entry<RandomWeightingPublished>(),
+    entry<BlindCalibration>(), entry<BlindCalibrationPublished>(), entry<LeastSquares>(),
+    entry<LeastSquaresPublished>(),
+    entry<BestSensor>(),
+    entry<OptimalWeights>(),
+    entry<SectionedLeastSquares>(),
+};
+
+}  // namespace
+
+std::span<const Entry> algorithms() {
+  return kAlgorithms;
+}
+
+const Entry* find_algorithm(std::string_view name) {
+  for (const Entry& candidate : kAlgorithms)
+    if (candidate.card->name == name) return &candidate;
+  return nullptr;
+}
+
+const Entry& algorithm(std::string_view name) {
+  if (const Entry* found = find_algorithm(name)) return *found;
+  std::vector<std::string> names;
+  for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.card->name);
+  const auto near = nearest(name, names);
+  throw Error({ErrorKind::usage,
+               "E0723",
+               "",
+               "no fusion algorithm has this name",
+               std::string(name),
+               near ? "did you mean " + *near + "?" : "the page on fusion lists them"});
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,25 @@
+#pragma once
+// All fusion algorithms, in the order in which reports list them.
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "libchar/fusion/runner.hpp"
+
+namespace libchar::fusion {
+
+struct Entry {
+  const Card* card;
+  std::span<const Option> options;
+  /// Throws Error(usage) when the algorithm cannot run on what is given (ask `why_not` first).
+  std::unique_ptr<Runner> (*make)(const Given&, const Settings&);
+};
+
+std::span<const Entry> algorithms();
+/// nullptr: no algorithm has this name.
+const Entry* find_algorithm(std::string_view name);
+/// Throws Error(usage) with the nearest name.
+const Entry& algorithm(std::string_view name);
+
+}  // namespace libchar::fusion

@@ -1,0 +1,147 @@
+#include "libchar/fusion/reweighted_variances.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace libchar::fusion {
+namespace {
+
+/// Variances never reach the denormals, whatever is fed.
+constexpr double kTiny = 1e-280;
+/// Ratio of standard deviations of 1e13: beyond it the squares tell nothing.
+constexpr double kSmallestRatio = 1e-26;
+/// The falling gain of the start: a = 1 / (k + kStart).
+constexpr double kStart = 10;
+
+}  // namespace
+
+ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions& options)
+    : options_(options),
+      v_(n, options.start_variance > 0 ? options.start_variance : 1),
+      inverse_(n, 1 / v_[0]),
+      r_(n, 0),
+      p_(n),
+      b_(n),
+      e_(n),
+      everybody_(n),
+      started_(options.start_variance > 0) {
+  std::iota(everybody_.begin(), everybody_.end(), 0);
+}
+
+double ReweightedVariances::fuse(const double* y, const int* index, int m) {
+  index_ = index != nullptr ? index : everybody_.data();
+  m_ = m;
+  const double base = y[index_[0]];
+  double sum = 0, weighted = 0;
+  for (int k = 0; k < m; ++k) {
+    const int i = index_[k];
+    sum += inverse_[i];
+    weighted += inverse_[i] * (y[i] - base);
+  }
+  sum_ = sum;
+  const double shift = weighted / sum;
+  for (int k = 0; k < m; ++k) r_[index_[k]] = (y[index_[k]] - base) - shift;
+  const double x = base + shift;
+  x_ = x;
+  const double ulp = std::numeric_limits<double>::epsilon() * x;
+  rounding_ = std::max(ulp * ulp, kTiny);
+  return x;
+}
+
+void ReweightedVariances::start() {
+  double squares = 0;
+  for (int k = 0; k < m_; ++k) squares += r_[index_[k]] * r_[index_[k]];
+  if (!(squares > 0) || m_ < 2) return;
+  const double level = std::max(squares / (m_ - 1), kTiny);
+  std::fill(v_.begin(), v_.end(), level);
+  std::fill(inverse_.begin(), inverse_.end(), 1 / level);
+  sum_ = m_ / level;
+  started_ = true;
+}
+
+double ReweightedVariances::gain() {
+  const double lasting = 1 - options_.gamma;
+  if (options_.start_variance > 0) return lasting;
+  instants_ += 1;
+  return std::max(lasting, 1 / (instants_ + kStart));
+}
+
+void ReweightedVariances::update() {
+  if (m_ < 3) return;  // two channels tell the sum of their variances only
+  if (!started_) {
+    start();
+    return;
+  }
+  const double a = gain();
+  solve(a, options_.damping * a);
+  apply();
+}
+
+void ReweightedVariances::solve(double a, double lambda) {
+  // Without a ridge, two channels of weight one half each would divide by zero.
+  const double smallest = std::max(1e-12, lambda);
+  const double fused = 1 / sum_;
+  int heaviest = 0;
+  for (int k = 0; k < m_; ++k) {
+    const int i = index_[k];
+    const double p = inverse_[i] * fused;
+    p_[k] = p;
+    b_[k] = r_[i] * r_[i] * inverse_[i] - (1 - p);
+    if (p > p_[heaviest]) heaviest = k;
+  }
+  heaviest_ = heaviest;
+  double s1 = 0, s2 = 0;
+  for (int k = 0; k < m_; ++k) {
+    const double e = 1 / std::max(1 - 2 * p_[k] + lambda, smallest);
+    e_[k] = e;
+    const double pe = k == heaviest ? 0 : p_[k] * e;
+    s1 += pe * b_[k];
+    s2 += pe * p_[k];
+  }
+  const double pm = p_[heaviest], scale = (1 + s2) / pm;
+  const double um = (b_[heaviest] * scale - s1) / (pm + (1 - 2 * pm + lambda) * scale);
+  const double t = (pm * um + s1) / (1 + s2);
+  for (int k = 0; k < m_; ++k) e_[k] = 1 + a * (b_[k] - p_[k] * t) * e_[k];
+  e_[heaviest] = 1 + a * um;
+}
+
+void ReweightedVariances::apply() {
+  double largest = 0, others = 0;
+  for (int k = 0; k < m_; ++k) {
+    const int i = index_[k];
+    // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
+    others += k == heaviest_ ? 0 : inverse_[i];
+    v_[i] *= e_[k];
+    largest = v_[i] > largest ? v_[i] : largest;
+  }
+  const double lowest = std::max({options_.floor / others,
+                                  largest * std::max(options_.floor_largest, kSmallestRatio),
+                                  rounding_});
+  for (int k = 0; k < m_; ++k) {
+    const int i = index_[k];
+    const double v = v_[i] > lowest ? v_[i] : lowest;
+    v_[i] = v;
+    inverse_[i] = 1 / v;
+  }
+}
+
+Eigen::MatrixXd ReweightedVariances::weights() const {
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(v_.size()), 1);
+  for (int k = 0; k < m_; ++k) weights(index_[k], 0) = inverse_[index_[k]];
+  return m_ > 0 ? Eigen::MatrixXd(weights / weights.sum()) : weights;
+}
+
+double ReweightedVariances::blindness(std::vector<double>& direction) const {
+  const auto n = static_cast<Eigen::Index>(v_.size());
+  const Eigen::Map<const Eigen::VectorXd> inverse(inverse_.data(), n);
+  const Eigen::VectorXd p = inverse / inverse.sum();
+  Eigen::MatrixXd information = p * p.transpose();
+  information.diagonal() += (1 - 2 * p.array()).matrix();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  direction.assign(eigen.eigenvectors().col(0).data(), eigen.eigenvectors().col(0).data() + n);
+  return std::sqrt((1 - options_.gamma) / std::max(eigen.eigenvalues()[0], 1e-300));
+}
+
+}  // namespace libchar::fusion

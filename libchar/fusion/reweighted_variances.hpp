@@ -1,0 +1,93 @@
+#pragma once
+// Recursive re-weighted MINQUE for one input seen by all channels alike: the noise variances of n
+// channels without a reference.
+//
+//   p_i = (1/v_i) / sum_j 1/v_j,  x = sum p_i y_i,  r_i = y_i - x,  q_i = r_i^2 / v_i
+//   (diag(1 - 2p) + p p' + lambda I) u = q - (1 - p),     v_i <- v_i (1 + a u_i),     a = 1 - gamma
+//
+// One scoring step of restricted maximum likelihood (Patterson & Thompson 1971; Rao 1971 for
+// MINQUE) an instant: with equal p and lambda = 0 it is MINQUE with identity weights, at the true v
+// it is as efficient as the full-record REML, in O(n). The matrix is the Fisher information of ln
+// v; it is diagonal plus rank one, so it is solved by elimination, the channel with the largest p
+// first.
+//
+// lambda: where two channels carry all the weight, only the sum of their variances shows in the
+// data and the matrix is nearly singular. The ridge leaves the fixed point where it is (E u = 0 at
+// the true v) and makes the poorly seen directions slow instead of noisy: their relative standard
+// deviation stays below sqrt(a / lambda).
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::fusion {
+
+struct ReweightingOptions {
+  double gamma = 0.999;  ///< memory: 1 / (1 - gamma) instants
+  double damping = 10;   ///< lambda = damping x a
+  double floor = 1e-4;   ///< of a variance, relative to the fused variance of the other channels
+  double floor_largest = 0;  ///< of a variance, relative to the largest one
+  double start_variance =
+      0;  ///< 0: from the first instant, with a gain that falls as 1/k to 1 - gamma
+};
+
+/// Variances, weights and residuals of n channels, some of which may sit out an instant.
+class ReweightedVariances {
+ public:
+  ReweightedVariances(std::size_t n, const ReweightingOptions& options);
+
+  /// Fused value of the m channels named in `index` (nullptr: 0 … m-1); residuals stand in
+  /// `residual()` until the next call. The samples must be finite.
+  double fuse(const double* y, const int* index, int m);
+  /// Improves the variances of the channels of the last `fuse` by its residuals.
+  void update();
+
+  /// Of the last `fuse`.
+  Estimate estimate() const {
+    return Estimate::scalar(x_, started_ ? 1 / sum_ : std::numeric_limits<double>::quiet_NaN());
+  }
+  double fused_variance() const { return 1 / sum_; }
+  /// Of a channel that was not in use: sample less fused value, and its variance.
+  double innovation(std::size_t, double sample) const { return sample - x_; }
+  double innovation_variance(std::size_t i) const { return v_[i] + 1 / sum_; }
+  std::size_t size() const { return v_.size(); }
+  double variance(std::size_t i) const { return v_[i]; }
+  /// Part of the variance of channel i in the last `fuse` that shows in its residual.
+  double residual_variance(std::size_t i) const { return v_[i] - 1 / sum_; }
+  double residual(std::size_t i) const { return r_[i]; }
+  /// A level below which a variance is rounding error.
+  double rounding() const { return rounding_; }
+  bool started() const { return started_; }
+  const std::vector<double>& variances() const { return v_; }
+  /// n x 1, zero for channels that are not in use.
+  Eigen::MatrixXd weights() const;
+
+  /// Relative standard deviation that the memory alone leaves in the worst-seen mixture of
+  /// variances, and that mixture: above one third or so, the data do not tell these channels apart.
+  /// All channels; for reports, not for every instant.
+  double blindness(std::vector<double>& direction) const;
+
+ private:
+  void start();
+  double gain();
+  void solve(double a, double lambda);
+  void apply();
+
+  ReweightingOptions options_;
+  std::vector<double> v_, inverse_, r_;
+  std::vector<double> p_, b_,
+      e_;  // of the channels in use, in their order: weight, right side, 1 / (1 - 2p + lambda)
+  std::vector<int> everybody_;
+  const int* index_ = nullptr;
+  int m_ = 0;
+  double sum_ = 1;  // of the inverse variances in use
+  double x_ = 0, rounding_ = 0;
+  double instants_ = 0;
+  int heaviest_ = 0;  // position of the largest p
+  bool started_ = false;
+};
+
+}  // namespace libchar::fusion

@@ -1,0 +1,121 @@
+#pragma once
+// The engine's side of the contract: the type of an algorithm is erased once a block, not once an
+// instant (inverse-variance on 4 channels: 5.5 ns an instant, 14.6 ns with a virtual call for
+// each).
+
+#include <cassert>
+#include <memory>
+#include <optional>
+
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::fusion {
+
+/// A block of consecutive instants: column k holds the n samples of instant k. Blocks of any size
+/// give the same bits.
+using Block = Eigen::Ref<const Eigen::MatrixXd>;
+/// r rows, one column an instant.
+using BlockOut = Eigen::Ref<Eigen::MatrixXd>;
+
+class Runner {
+ public:
+  virtual ~Runner() = default;
+  virtual const Card& card() const = 0;
+  /// Instants of the learning window with the true inputs (r rows). Instants whose truth is NaN are
+  /// passed over.
+  virtual void learn(const Block& samples, const Block& truth) = 0;
+  virtual void finish_learning() = 0;
+  /// Estimates and their variances, a column for each column of samples.
+  virtual void run(const Block& samples, BlockOut x, BlockOut variance) = 0;
+  virtual std::optional<Eigen::MatrixXd> weights() const = 0;
+  virtual std::optional<Eigen::VectorXd> variances() const = 0;
+  virtual const FaultLog* faults() const = 0;
+  virtual void remarks(Warnings& warnings) const = 0;
+};
+
+template <Algorithm A>
+A make_algorithm(const Given& given, const Settings& settings) {
+  if constexpr (HasOptions<A>)
+    return A(given, settings);
+  else
+    return A(given);
+}
+
+template <class A>
+Settings default_settings() {
+  if constexpr (HasOptions<A>)
+    return Settings(A::options);
+  else
+    return Settings();
+}
+
+template <Algorithm A>
+class RunnerOf final : public Runner {
+  static constexpr bool kLearns = A::card.needs.reference || A::card.needs.reference_throughout;
+  static_assert(kLearns == Learns<A>,
+                "card.needs.reference (or reference_throughout) and learn(y, truth) go together");
+  static_assert(HasOptions<A> || !std::constructible_from<A, const Given&, const Settings&>,
+                "a constructor with Settings goes with a table `options`");
+
+ public:
+  RunnerOf(const Given& given, const Settings& settings)
+      : inputs_(given.inputs()), algorithm_(make_algorithm<A>(given, settings)) {}
+
+  const Card& card() const override { return A::card; }
+
+  void learn([[maybe_unused]] const Block& samples, [[maybe_unused]] const Block& truth) override {
+    if constexpr (Learns<A>) {
+      assert(samples.cols() == truth.cols());
+      for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+        const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
+        const Sample x(truth.data() + k * truth.outerStride(), truth.rows());
+        if (x.allFinite() && (A::card.needs.accepts_missing || y.allFinite()))
+          algorithm_.learn(y, x);
+      }
+    }
+  }
+
+  void finish_learning() override {
+    if constexpr (FinishesLearning<A>) algorithm_.finish_learning();
+  }
+
+  void run(const Block& samples, BlockOut x, BlockOut variance) override {
+    assert(x.cols() == samples.cols() && x.rows() == inputs_);
+    for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+      const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
+      const Estimate estimate = step(y);
+      for (Eigen::Index i = 0; i < inputs_; ++i) {
+        x(i, k) = estimate.x[i];
+        variance(i, k) = estimate.variance[i];
+      }
+    }
+  }
+
+  std::optional<Eigen::MatrixXd> weights() const override {
+    if constexpr (HasWeights<A>) return algorithm_.weights();
+    return std::nullopt;
+  }
+  std::optional<Eigen::VectorXd> variances() const override {
+    if constexpr (HasVariances<A>) return algorithm_.variances();
+    return std::nullopt;
+  }
+  const FaultLog* faults() const override {
+    if constexpr (HasFaults<A>) return &algorithm_.faults();
+    return nullptr;
+  }
+  void remarks([[maybe_unused]] Warnings& warnings) const override {
+    if constexpr (HasRemarks<A>) algorithm_.remarks(warnings);
+  }
+
+ private:
+  Estimate step(const Sample& y) {
+    if constexpr (!A::card.needs.accepts_missing)
+      if (!y.allFinite()) return Estimate::none(inputs_);
+    return algorithm_.step(y);
+  }
+
+  Eigen::Index inputs_;
+  A algorithm_;
+};
+
+}  // namespace libchar::fusion

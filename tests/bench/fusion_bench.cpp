@@ -1,0 +1,128 @@
+// Fusion: cost of a step, and how near the estimates come to the optimum.
+//   fusion_bench            nanoseconds a step of every algorithm, n = 6 … 200
+//   fusion_bench regret     excess RMS of minque over the optimal weights, scenes 3.1 and 5.1 of [RV]
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "libchar/fusion/registry.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar::fusion;
+
+namespace {
+
+Eigen::MatrixXd noisy(const Eigen::VectorXd& variances, Eigen::Index instants, std::uint64_t seed, double signal) {
+  test::Gaussian gauss(seed);
+  Eigen::MatrixXd y(variances.size(), instants);
+  for (Eigen::Index k = 0; k < instants; ++k) {
+    const double x = signal * gauss();
+    for (Eigen::Index i = 0; i < y.rows(); ++i) y(i, k) = x + std::sqrt(variances[i]) * gauss();
+  }
+  return y;
+}
+
+Settings with(const Entry& entry, const std::vector<std::pair<std::string_view, double>>& values) {
+  Settings settings(entry.options);
+  for (const auto& [name, value] : values) settings.set(name, value);
+  return settings;
+}
+
+/// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the record.
+double excess(const Eigen::VectorXd& variances, const Settings& settings, const char* name, int seeds) {
+  constexpr Eigen::Index kInstants = 200000, kFrom = 10000;
+  const Eigen::VectorXd w = variances.cwiseInverse() / variances.cwiseInverse().sum();
+  double ours = 0, best = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Eigen::MatrixXd y = noisy(variances, kInstants, static_cast<std::uint64_t>(seed), 0);
+    Given given;
+    given.channels = variances.size();
+    auto runner = algorithm(name).make(given, settings);
+    Eigen::MatrixXd x(1, kInstants), v(1, kInstants);
+    runner->run(y, x, v);
+    ours += x.rightCols(kInstants - kFrom).squaredNorm();
+    best += (w.transpose() * y).rightCols(kInstants - kFrom).squaredNorm();
+  }
+  return std::sqrt(ours / best) - 1;
+}
+
+void regret(int argc, char** argv) {
+  const Eigen::VectorXd t31 = (Eigen::VectorXd(5) << 100, 20, 10, 2, 1).finished();
+  const Eigen::VectorXd t51 = (Eigen::VectorXd(6) << .00274, .00487, .00761, .01095, .01491, .01947).finished();
+  const Eigen::VectorXd two = (Eigen::VectorXd(5) << 1, 1, 1e4, 1e4, 1e4).finished();
+  const Eigen::VectorXd three = (Eigen::VectorXd(5) << 1, 1, 1, 1e4, 1e4).finished();
+  std::vector<std::pair<std::string_view, double>> values;
+  for (int i = 0; i + 1 < argc; i += 2) values.emplace_back(argv[i], std::stod(argv[i + 1]));
+  const Entry& minque = algorithm("minque");
+  fmt::print("excess RMS in %: {:>8} {:>8} {:>12} {:>12}\n", "T3.1", "T5.1", "two good", "three good");
+  for (const double gamma : {0.9, 0.98, 0.99, 0.995, 0.999, 0.9997}) {
+    values.emplace_back("gamma", gamma);
+    const Settings settings = with(minque, values);
+    fmt::print("gamma {:<10} ", gamma);
+    for (const auto* scene : {&t31, &t51, &two, &three}) fmt::print(" {:9.4f}", 100 * excess(*scene, settings, "minque", 4));
+    fmt::print("\n");
+  }
+}
+
+double nanoseconds(Runner& runner, const Eigen::MatrixXd& y, Eigen::Index inputs) {
+  Eigen::MatrixXd x(inputs, y.cols()), v(inputs, y.cols());
+  double best = 1e300;
+  const int rounds = static_cast<int>(std::max<Eigen::Index>(5, 400000 / y.cols()));
+  for (int round = 0; round < rounds; ++round) {
+    const auto from = std::chrono::steady_clock::now();
+    runner.run(y, x, v);
+    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - from;
+    best = std::min(best, took.count() / static_cast<double>(y.cols()));
+  }
+  return best;
+}
+
+/// What every algorithm can be fed: levels, a learnt window, a reference.
+void timing() {
+  const std::vector<Eigen::Index> sizes{2, 3, 6, 12, 50, 200};
+  fmt::print("{:<32}", "ns a step (x mean), n =");
+  for (const auto n : sizes) fmt::print("{:>18}", n);
+  fmt::print("\n");
+  std::vector<double> mean(sizes.size());
+  for (const Entry& entry : algorithms()) {
+    if (entry.card->needs.tilt) continue;
+    fmt::print("{:<32}", entry.card->name);
+    for (std::size_t s = 0; s < sizes.size(); ++s) {
+      const Eigen::Index n = sizes[s], instants = 4000;
+      const Eigen::VectorXd variances = Eigen::VectorXd::LinSpaced(n, 1, 7);
+      Given given;
+      given.channels = n;
+      given.noise_levels = variances;
+      given.learning_samples = instants;
+      given.reference_throughout = true;
+      given.rate_hz = 200;
+      if (!why_not(*entry.card, given).empty()) {
+        fmt::print("{:>18}", "-");
+        continue;
+      }
+      auto runner = entry.make(given, Settings(entry.options));
+      const Eigen::MatrixXd y = noisy(variances, instants, 3, 2);
+      const Eigen::MatrixXd truth = noisy(Eigen::VectorXd::Zero(1), instants, 3, 2);
+      // The truth of `noisy` at another n is another stream; learning only has to be well posed here.
+      runner->learn(y, truth);
+      runner->finish_learning();
+      const double ns = nanoseconds(*runner, y, 1);
+      if (entry.card->name == "mean") mean[s] = ns;
+      fmt::print("{:>18}", fmt::format("{:.1f} ({:.1f})", ns, ns / mean[s]));
+    }
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "regret") == 0)
+    regret(argc - 2, argv + 2);
+  else
+    timing();
+}

@@ -1,0 +1,86 @@
+// Mean, inverse-variance and median against oracle/fusion and by hand.
+
+#include <catch2/catch.hpp>
+
+#include "tests/fusion/vectors.hpp"
+
+using namespace libchar::fusion;
+
+TEST_CASE("mean: 50-digit vectors") {
+  NEEDS_SHARED("oracle/fusion/average.csv");
+  const test::Vectors inputs("fusion_inputs.csv"), expected("average.csv");
+  auto mean = test::make("mean", test::given(5));
+  CHECK(test::worst(test::run(*mean, inputs.block("c", 5)).x,
+                    expected["avg_calibrated"].transpose(),
+                    1.78e-15) <= 1);
+  CHECK(test::worst(test::run(*mean, inputs.block("u", 5)).x,
+                    expected["avg_uncalibrated"].transpose(),
+                    1.78e-15) <= 1);
+}
+
+TEST_CASE("inverse-variance: weights and error of the known answers") {
+  NEEDS_SHARED("oracle/fusion/kat.json");
+  const auto answer = test::answers()["weighted_average"];
+  const test::Vectors inputs("fusion_inputs.csv");
+  Given given = test::given(5);
+  given.noise_levels.resize(5);
+  Eigen::VectorXd weights(5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    given.noise_levels[i] = answer["variances"][static_cast<std::size_t>(i)];
+    weights[i] = answer["weights"][static_cast<std::size_t>(i)];
+  }
+  auto fusion = test::make("inverse-variance", given);
+  CHECK(test::worst(*fusion->weights(), weights, 1e-16) <= 1);
+  const Eigen::VectorXd error =
+      test::run(*fusion, inputs.block("c", 5)).x.transpose() - inputs["x"];
+  CHECK(std::sqrt(error.squaredNorm() / 2000) ==
+        Approx(answer["rms_1_2000"].get<double>()).epsilon(1e-13));
+}
+
+TEST_CASE("missing samples: the others take over") {
+  const double gap = std::nan("");
+  Eigen::MatrixXd y(3, 4);
+  y << 1, gap, gap, 7,  //
+      2, 4, gap, gap,   //
+      6, 8, gap, gap;
+  Given given = test::given(3);
+  given.noise_levels = Eigen::Vector3d(1, 1, 2);
+  struct Case {
+    std::string name;
+    std::array<double, 3> x, variance;
+  };
+  for (const Case& c : {Case{"mean", {3, 6, 7}, {4.0 / 9, 3.0 / 4, 1}},
+                        Case{"inverse-variance", {2.4, 16.0 / 3, 7}, {0.4, 2.0 / 3, 1}},
+                        Case{"median", {2, 6, 7}, {gap, gap, gap}}}) {
+    INFO(c.name);
+    auto runner = test::make(c.name, given);
+    const test::Run out = test::run(*runner, y);
+    CHECK(out.x(0, 0) == Approx(c.x[0]));
+    CHECK(out.x(0, 1) == Approx(c.x[1]));
+    CHECK(std::isnan(out.x(0, 2)));
+    CHECK(out.x(0, 3) == Approx(c.x[2]));
+    if (c.name == "median") continue;
+    CHECK(out.variance(0, 0) == Approx(c.variance[0]));
+    CHECK(out.variance(0, 1) == Approx(c.variance[1]));
+    CHECK(out.variance(0, 3) == Approx(c.variance[2]));
+  }
+}
+
+TEST_CASE("median: even and odd, few and many, against sorting") {
+  for (const Eigen::Index n : {1, 2, 3, 4, 5, 23, 24, 25, 26, 200}) {
+    Eigen::MatrixXd y(n, 5);
+    std::uint64_t state = 7;
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      y.data()[i] = static_cast<double>(state >> 40U);
+    }
+    auto median = test::make("median", test::given(n));
+    const test::Run out = test::run(*median, y);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      std::vector<double> sorted(y.col(k).data(), y.col(k).data() + n);
+      std::sort(sorted.begin(), sorted.end());
+      const std::size_t half = sorted.size() / 2;
+      CHECK(out.x(0, k) == (n % 2 == 1 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2));
+    }
+  }
+}

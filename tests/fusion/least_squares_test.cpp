@@ -1,0 +1,144 @@
+// Least squares: calibration and weights of the known answers; bounds.
+
+#include "libchar/fusion/least_squares.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/bounds.hpp"
+#include "tests/fusion/vectors.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar::fusion;
+
+namespace {
+
+Eigen::VectorXd vector(const nlohmann::json& list) {
+  const std::vector<double> values = list;
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+double rms_501_2000(const std::string& name,
+                    const test::Values& options,
+                    const Eigen::MatrixXd& y,
+                    const Eigen::VectorXd& x) {
+  Given given = test::given(y.rows());
+  given.learning_samples = 500;
+  auto fusion = test::make(name, given, options);
+  fusion->learn(y.leftCols(500), x.head(500).transpose());
+  fusion->finish_learning();
+  const Eigen::VectorXd error = test::run(*fusion, y.rightCols(1500)).x.transpose() - x.tail(1500);
+  return std::sqrt(error.squaredNorm() / 1500);
+}
+
+}  // namespace
+
+TEST_CASE("least squares: calibration and weights of the known answers") {
+  NEEDS_SHARED("oracle/fusion/kat.json");
+  const auto answer = test::answers()["lsq"];
+  const test::Vectors inputs("fusion_inputs.csv");
+  const Eigen::MatrixXd u = inputs.block("u", 5), c = inputs.block("c", 5);
+  const Eigen::VectorXd x = inputs["x"];
+  WeightLearner of_u(5), of_c(5);
+  for (Eigen::Index k = 0; k < 500; ++k) {
+    of_u.add(Sample(u.col(k).data(), 5), x[k]);
+    of_c.add(Sample(c.col(k).data(), 5), x[k]);
+  }
+  const LearntWeights corrected = of_u.weights({.calibrate = true, .sum_to_one = false});
+  CHECK(test::worst(corrected.gain, vector(answer["a"]), 1.11e-15, 1.19e-15) <= 1);
+  CHECK(test::worst(corrected.bias, vector(answer["b"]), 5.55e-17, 1.64e-16) <= 10);
+  CHECK(test::worst(corrected.weights, vector(answer["w_uncal_corrected"]), 6.84e-16, 1.44e-13) <=
+        1);
+  CHECK(test::worst(of_c.weights({.sum_to_one = false}).weights,
+                    vector(answer["w_cal"]),
+                    4.44e-16,
+                    1.04e-13) <= 1);
+  CHECK(test::worst(of_c.weights({.sum_to_one = true}).weights,
+                    vector(answer["w_cal_sum1"]),
+                    4.44e-16,
+                    1.69e-15) <= 1);
+  const LearntWeights affine = of_u.weights({.sum_to_one = false, .constant = true});
+  const Eigen::VectorXd expected = vector(answer["w_affine_uncal_then_const"]);
+  CHECK(test::worst(affine.weights, expected.head(5), 6.84e-16, 1.44e-13) <= 1);
+  CHECK(affine.constant == Approx(expected[5]).epsilon(1e-12));
+
+  const auto& rms = answer["rms_501_2000"];
+  CHECK(rms_501_2000("least-squares-published", {}, u, x) ==
+        Approx(rms["uncal"].get<double>()).epsilon(1e-12));
+  CHECK(rms_501_2000("least-squares-published", {{"calibrate", 0}}, c, x) ==
+        Approx(rms["cal"].get<double>()).epsilon(1e-12));
+  CHECK(rms_501_2000("least-squares", {{"calibrate", 0}}, c, x) ==
+        Approx(rms["cal_sum1"].get<double>()).epsilon(1e-12));
+  CHECK(rms_501_2000("least-squares-published", {{"calibrate", 0}, {"constant", 1}}, u, x) ==
+        Approx(rms["affine"].get<double>()).epsilon(1e-12));
+}
+
+TEST_CASE("least squares: weights survive an input 1e8 times the noise") {
+  test::Gaussian gauss(3);
+  const Eigen::Vector3d deviations(1, 2, 3);
+  WeightLearner small(3), large(3);
+  for (int k = 0; k < 4000; ++k) {
+    const double unit = gauss();
+    Eigen::Vector3d noise;
+    for (Eigen::Index i = 0; i < 3; ++i) noise[i] = deviations[i] * gauss();
+    const Eigen::Vector3d a = noise.array() + unit, b = noise.array() + 1e8 * unit;
+    small.add(Sample(a.data(), 3), unit);
+    large.add(Sample(b.data(), 3), 1e8 * unit);
+  }
+  const LeastSquaresForm form{.calibrate = false, .sum_to_one = true};
+  CHECK((small.weights(form).weights - large.weights(form).weights).cwiseAbs().maxCoeff() < 1e-7);
+}
+
+TEST_CASE("least squares: what cannot be learnt is said") {
+  Given given = test::given(2);
+  given.learning_samples = 100;
+  Eigen::MatrixXd y = Eigen::MatrixXd::Random(2, 100), x = Eigen::MatrixXd::Ones(1, 100);
+  {
+    auto still = test::make("least-squares", given);
+    still->learn(y, x);
+    CHECK_THROWS_AS(still->finish_learning(), libchar::Error);
+  }
+  {
+    auto few = test::make("least-squares", given);
+    few->learn(y.leftCols(3), Eigen::MatrixXd::Random(1, 3));
+    CHECK_THROWS_AS(few->finish_learning(), libchar::Error);
+  }
+  {  // a dead channel is left out
+    auto dead = test::make("least-squares", given);
+    x = Eigen::MatrixXd::Random(1, 100);
+    y.row(0) = x + 0.01 * y.row(0);
+    y.row(1).setConstant(3);
+    dead->learn(y, x);
+    dead->finish_learning();
+    CHECK((*dead->weights())(1, 0) == 0);
+    CHECK((*dead->weights())(0, 0) == 1);
+    libchar::Warnings warnings;
+    dead->remarks(warnings);
+    CHECK(warnings.find("channel_without_signal") != nullptr);
+  }
+}
+
+TEST_CASE("bounds: best channel, optimal weights, sections") {
+  test::Gaussian gauss(8);
+  Eigen::MatrixXd y(3, 6000), x(1, 6000);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    x(0, k) = 5 * gauss();
+    for (Eigen::Index i = 0; i < 3; ++i) y(i, k) = x(0, k) + (i == 1 ? 1 : 2) * gauss();
+    if (k >= 3000) y(1, k) = 0;  // the best one dies
+  }
+  Given given = test::given(3);
+  given.reference_throughout = true;
+  given.section_starts = {3000};
+  const auto rms = [&](const std::string& name, Eigen::Index from, Eigen::Index count) {
+    auto bound = test::make(name, given);
+    bound->learn(y, x);
+    bound->finish_learning();
+    return std::sqrt((test::run(*bound, y).x - x).middleCols(from, count).squaredNorm() /
+                     static_cast<double>(count));
+  };
+  CHECK(rms("sectioned-least-squares", 0, 3000) == Approx(1 / std::sqrt(1.5)).epsilon(0.03));
+  // Weights that sum to one may lean on a channel that is dead at zero, the mean of the input: variance 2 * 25 / 27.
+  CHECK(rms("sectioned-least-squares", 3000, 3000) == Approx(std::sqrt(50.0 / 27)).epsilon(0.03));
+  CHECK(rms("optimal-weights", 0, 6000) > rms("sectioned-least-squares", 0, 6000));
+  CHECK(rms("best-sensor", 0, 6000) == Approx(2).epsilon(0.03));
+}
