@@ -8,12 +8,17 @@
 #include "libchar/fusion/blind_calibration.hpp"
 #include "libchar/fusion/bounds.hpp"
 #include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/kalman_takens.hpp"
+#include "libchar/fusion/kalman_takens_published.hpp"
 #include "libchar/fusion/least_squares.hpp"
 #include "libchar/fusion/mean.hpp"
 #include "libchar/fusion/median.hpp"
 #include "libchar/fusion/minque.hpp"
 #include "libchar/fusion/minque_published.hpp"
+#include "libchar/fusion/perceptron.hpp"
 #include "libchar/fusion/random_weighting.hpp"
+#include "libchar/fusion/tilt_complementary.hpp"
+#include "libchar/fusion/tilt_kalman.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -33,7 +38,7 @@ constexpr Entry entry() {
     return {&A::card, {}, &make<A>};
 }
 
-// The order of reports: baselines, blind methods, taught methods, bounds.
+// The order of reports: baselines, blind methods, taught methods, tilt, bounds.
 constexpr std::array kAlgorithms{
     entry<Mean>(),
     entry<Median>(),
@@ -42,8 +47,18 @@ constexpr std::array kAlgorithms{
     entry<MinquePublished>(),
     entry<RandomWeighting>(),
     entry<RandomWeightingPublished>(),
-    entry<BlindCalibration>(), entry<BlindCalibrationPublished>(), entry<LeastSquares>(),
+    entry<BlindCalibration>(),
+    entry<BlindCalibrationPublished>(),
+    entry<KalmanTakens>(),
+    entry<LeastSquares>(),
     entry<LeastSquaresPublished>(),
+    entry<Perceptron>(),
+    entry<KalmanTakensTaught>(),
+    entry<KalmanTakensPublished>(),
+    entry<TiltGyroscope>(),
+    entry<TiltAccelerometer>(),
+    entry<TiltComplementary>(),
+    entry<TiltKalman>(),
     entry<BestSensor>(),
     entry<OptimalWeights>(),
     entry<SectionedLeastSquares>(),

@@ -1,0 +1,213 @@
+// Kalman-Takens against oracle/fusion/kalman_takens.csv; the search against sorting; its limits.
+
+#include "libchar/fusion/kalman_takens.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "libchar/core/error.hpp"
+#include "tests/fusion/vectors.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using namespace libchar::fusion;
+
+namespace {
+
+Given levels(const Eigen::VectorXd& variances) {
+  Given made = test::given(variances.size());
+  made.noise_levels = variances;
+  return made;
+}
+
+Eigen::MatrixXd noisy(const Eigen::VectorXd& x, const Eigen::VectorXd& variances) {
+  test::Gaussian gauss(5);
+  Eigen::MatrixXd y(variances.size(), x.size());
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    for (Eigen::Index i = 0; i < y.rows(); ++i) y(i, k) = x[k] + std::sqrt(variances[i]) * gauss();
+  return y;
+}
+
+Eigen::VectorXd sine(Eigen::Index instants, double period, double offset = 0) {
+  Eigen::VectorXd x(instants);
+  for (Eigen::Index k = 0; k < instants; ++k)
+    x[k] = offset + std::sin(2 * 3.14159265358979 * static_cast<double>(k) / period);
+  return x;
+}
+
+double rms(const Eigen::VectorXd& v) {
+  return std::sqrt(v.squaredNorm() / double(v.size()));
+}
+
+}  // namespace
+
+TEST_CASE("delay search: what sorting finds, ties to the earlier") {
+  test::Gaussian gauss(2);
+  constexpr std::size_t kDimension = 3, kStarts = 200;
+  std::vector<double> series(kStarts + kDimension);
+  for (double& z : series) z = std::round(2 * gauss());  // many ties
+  series[50] = std::nan("");
+  for (const std::size_t neighbours : {1UL, 7UL, 500UL}) {
+    DelaySearch search(kDimension, neighbours, kStarts);
+    const std::array query{0.0, 1.0, -1.0};
+    std::vector<std::pair<double, std::ptrdiff_t>> all;
+    for (std::size_t s = 0; s < kStarts; ++s) {
+      double distance = 0;
+      for (std::size_t j = 0; j < kDimension; ++j) distance += std::abs(series[s + j] - query[j]);
+      if (!std::isnan(distance + series[s + kDimension])) all.emplace_back(distance, s);
+    }
+    std::sort(all.begin(), all.end());
+    const auto found = search.nearest(series.data(), kStarts, query.data());
+    REQUIRE(found.size() == std::min(neighbours, all.size()));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      CHECK(found[i].distance == all[i].first);
+      CHECK(found[i].start == all[i].second);
+    }
+  }
+}
+
+TEST_CASE("kalman-takens-published: 50-digit vectors") {
+  NEEDS_SHARED("oracle/fusion/kalman_takens.csv");
+  const test::Vectors inputs("fusion_inputs.csv"), file("kalman_takens.csv");
+  const auto answer = test::answers()["kalman_takens"];
+  Eigen::VectorXd variances(5);
+  for (Eigen::Index i = 0; i < 5; ++i) variances[i] = answer["R"][static_cast<std::size_t>(i)];
+  auto runner = test::make("kalman-takens-published",
+                           levels(variances),
+                           {{"dimension", answer["d"]},
+                            {"neighbours", answer["M"]},
+                            {"training", answer["train"]},
+                            {"process_variance", answer["Q"]},
+                            {"start_variance", answer["P0"]}});
+  const test::Run run = test::run(*runner, inputs.block("c", 5).leftCols(800));
+  CHECK(test::worst(run.x.rightCols(500), file["xhat"].transpose(), 1.78e-15) <= 1);
+  CHECK(test::worst(run.variance.rightCols(500), file["P"].transpose(), 0, 1e-15) <= 1);
+  // Neighbours and prediction, from the same search.
+  const Eigen::VectorXd average = inputs.block("c", 5).colwise().mean();
+  DelaySearch search(3, 4, 297);
+  Eigen::MatrixXd predicted(1, 500), starts(4, 500);
+  for (Eigen::Index k = 300; k < 800; ++k) {
+    const auto found = search.nearest(average.data(), 297, average.data() + k - 3);
+    predicted(0, k - 300) = prediction(found, average.data(), 3);
+    for (Eigen::Index i = 0; i < 4; ++i)
+      starts(i, k - 300) = static_cast<double>(found[static_cast<std::size_t>(i)].start + 1);
+  }
+  CHECK(test::worst(predicted, file["x_pred"].transpose(), 3.33e-15) <= 1);
+  CHECK(starts == file.values.middleCols(file.column("nn1_start_1based"), 4).transpose());
+}
+
+TEST_CASE("kalman-takens: a periodic signal without noise is returned") {
+  const Eigen::VectorXd x = sine(3000, 50, 10);
+  const Eigen::MatrixXd y = x.transpose().replicate(2, 1);
+  auto runner = test::make("kalman-takens", levels(Eigen::Vector2d(1e-2, 1e-2)));
+  const test::Run run = test::run(*runner, y);
+  CHECK((run.x.row(0).transpose() - x).tail(2000).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(run.variance.rightCols(2000).minCoeff() > 0);
+}
+
+TEST_CASE("kalman-takens: beats the weighted mean where the past tells, does not lose where not") {
+  const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
+  test::Gaussian gauss(9);
+  Eigen::VectorXd white(12000);
+  for (double& v : white) v = 3 * gauss();
+  struct Scene {
+    Eigen::VectorXd x;
+    double at_most;
+  };
+  for (const Scene& scene : {Scene{sine(12000, 40), 0.75}, Scene{white, 1.003}}) {
+    const Eigen::MatrixXd y = noisy(scene.x, variances);
+    const Given given = levels(variances);
+    const auto error = [&](Runner& runner) {
+      const test::Run run = test::run(runner, y);
+      return Eigen::VectorXd((run.x.row(0).transpose() - scene.x).tail(10000));
+    };
+    auto takens = test::make("kalman-takens", given), mean = test::make("inverse-variance", given);
+    const double takens_rms = rms(error(*takens)), mean_rms = rms(error(*mean));
+    CHECK(takens_rms / mean_rms < scene.at_most);
+    // The variance that it states is the one it has.
+    auto again = test::make("kalman-takens", given);
+    const test::Run run = test::run(*again, y);
+    CHECK(run.variance.rightCols(10000).mean() == Approx(takens_rms * takens_rms).epsilon(0.1));
+  }
+}
+
+TEST_CASE("kalman-takens: limits of Q are the prediction and the channels") {
+  const Eigen::VectorXd variances = Eigen::Vector2d(1, 4);
+  const Eigen::MatrixXd y = noisy(sine(2000, 40), variances);
+  const Given given = levels(variances);
+  const auto run = [&](double q) {
+    return test::run(*test::make("kalman-takens", given, {{"process_variance", q}}), y).x;
+  };
+  const Eigen::MatrixXd mean = test::run(*test::make("inverse-variance", given), y).x;
+  CHECK((run(1e30) - mean).cwiseAbs().maxCoeff() < 1e-12);
+  // A tiny Q: the channels of this very instant no longer count.
+  Eigen::MatrixXd moved = y;
+  moved.col(1999).array() += 100;
+  const auto last = [&](const Eigen::MatrixXd& samples) {
+    return test::run(*test::make("kalman-takens", given, {{"process_variance", 1e-30}}), samples)
+        .x(0, 1999);
+  };
+  CHECK(std::abs(last(moved) - last(y)) < 1e-3);
+}
+
+TEST_CASE("kalman-takens: an offset of 1e9 and a scale do no harm") {
+  const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
+  const Eigen::MatrixXd y = noisy(sine(3000, 40), variances);
+  const auto run = [&](const Eigen::VectorXd& v, const Eigen::MatrixXd& samples) {
+    return test::run(*test::make("kalman-takens", levels(v)), samples).x;
+  };
+  const Eigen::MatrixXd x = run(variances, y);
+  // Rounding of the samples to 1e-7 may exchange two neighbours that are equally far.
+  CHECK(((run(variances, (y.array() + 1e9).matrix()).array() - 1e9).matrix() - x)
+            .cwiseAbs()
+            .maxCoeff() < 1e-3);
+  CHECK((run(variances * 16, y * 4) / 4 - x).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("kalman-takens: gaps are predicted, dead instants do not enter the dictionary") {
+  const Eigen::VectorXd variances = Eigen::Vector2d(0.01, 0.01);
+  const Eigen::VectorXd x = sine(4000, 40);
+  Eigen::MatrixXd y = noisy(x, variances);
+  y.block(0, 3000, 2, 20).setConstant(std::nan(""));
+  y.block(1, 3500, 1, 100).setConstant(std::nan(""));
+  const test::Run run = test::run(*test::make("kalman-takens", levels(variances)), y);
+  CHECK(run.x.allFinite());
+  CHECK((run.x.row(0).transpose() - x).segment(3000, 20).cwiseAbs().maxCoeff() < 0.3);
+  CHECK(run.variance(0, 3019) > 10 * run.variance(0, 2999));
+  CHECK(run.variance(0, 3550) > run.variance(0, 2999));
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Constant(2, 100, std::nan(""));
+  CHECK(test::run(*test::make("kalman-takens", levels(variances)), none).x.array().isNaN().all());
+  const Eigen::MatrixXd constant = Eigen::MatrixXd::Constant(2, 3000, 7);
+  CHECK(test::run(*test::make("kalman-takens", levels(variances)), constant).x ==
+        constant.topRows(1));
+}
+
+TEST_CASE("kalman-takens-taught: the dictionary is the reference; too short is said") {
+  const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
+  const Eigen::VectorXd x = sine(6000, 40);
+  const Eigen::MatrixXd y = noisy(x, variances);
+  Given given = levels(variances);
+  given.learning_samples = 2000;
+  auto taught = test::make("kalman-takens-taught", given);
+  taught->learn(y.leftCols(2000), x.head(2000).transpose());
+  taught->finish_learning();
+  auto mean = test::make("inverse-variance", given);
+  const auto error = [&](Runner& runner) {
+    return rms((test::run(runner, y.rightCols(4000)).x.row(0).transpose() - x.tail(4000)));
+  };
+  CHECK(error(*taught) < 0.65 * error(*mean));
+  auto starved = test::make("kalman-takens-taught", given);
+  starved->learn(y.leftCols(10), x.head(10).transpose());
+  CHECK_THROWS_AS(starved->finish_learning(), Error);
+}
+
+TEST_CASE("kalman-takens: blocks of any size give the same bits") {
+  const Eigen::VectorXd variances = Eigen::Vector2d(1, 4);
+  const Eigen::MatrixXd y = noisy(sine(3500, 40), variances);
+  for (const char* name : {"kalman-takens", "kalman-takens-published"}) {
+    const Eigen::MatrixXd whole = test::run(*test::make(name, levels(variances)), y).x;
+    for (const Eigen::Index block : {1, 13, 1000})
+      CHECK(test::run(*test::make(name, levels(variances)), y, 1, block).x == whole);
+  }
+}

@@ -1,0 +1,197 @@
+// The tanh network against oracle/fusion/mlp.csv; its training: what it reaches and what it
+// refuses.
+
+#include "libchar/fusion/perceptron.hpp"
+
+#include <Eigen/QR>
+#include <catch2/catch.hpp>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/network_training.hpp"
+#include "tests/fusion/vectors.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using namespace libchar::fusion;
+
+namespace {
+
+struct Scene {
+  Eigen::MatrixXd y;
+  Eigen::VectorXd x;
+  Given given;
+};
+
+/// Three channels of unlike gain, bias and noise; the first `learning` instants are taught.
+Scene scene(Eigen::Index instants, Eigen::Index learning) {
+  test::Gaussian gauss(11);
+  const Eigen::Array3d gain(1.01, 0.9, 1.1), bias(-0.1, 0.4, 0), deviation(0.5, 0.2, 1);
+  Scene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::given(3)};
+  for (Eigen::Index k = 0; k < instants; ++k) {
+    made.x[k] = 2.4 * gauss();
+    for (Eigen::Index i = 0; i < 3; ++i)
+      made.y(i, k) = gain[i] * made.x[k] + bias[i] + deviation[i] * gauss();
+  }
+  made.given.learning_samples = learning;
+  return made;
+}
+
+std::unique_ptr<Runner> taught(const Scene& s, const test::Values& values = {}) {
+  auto runner = test::make("perceptron", s.given, values);
+  const Eigen::Index n = s.given.learning_samples;
+  runner->learn(s.y.leftCols(n), s.x.head(n).transpose());
+  runner->finish_learning();
+  return runner;
+}
+
+double rms(const Eigen::VectorXd& v) {
+  return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+}
+
+std::string code_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.fault().code;
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("tanh network: 50-digit outputs and Jacobian") {
+  NEEDS_SHARED("oracle/fusion/mlp.csv");
+  const test::Vectors file("mlp.csv");
+  const std::vector<double> p = test::answers()["mlp"]["params"];
+  const TanhNetwork network{5, 3};
+  REQUIRE(network.size() == 22);
+  Eigen::MatrixXd out(10, 1), rows(22, 10);
+  const Eigen::MatrixXd x = file.block("x", 5);
+  for (Eigen::Index k = 0; k < 10; ++k) {
+    out(k, 0) = network.output(p.data(), x.col(k).data(), rows.col(k).data());
+    CHECK(network.output(p.data(), x.col(k).data()) == out(k, 0));
+  }
+  CHECK(test::worst(out, file["out"], 2.22e-16) <= 1);
+  CHECK(test::worst(rows, file.block("J", 22), 1.11e-16) <= 1);
+}
+
+TEST_CASE("tanh network: derivatives against differences; neurons in any order") {
+  const TanhNetwork network{4, 6};
+  test::Gaussian gauss(1);
+  std::vector<double> p(network.size()), z(4), row(network.size());
+  for (double& v : p) v = gauss();
+  for (double& v : z) v = gauss();
+  const double out = network.output(p.data(), z.data(), row.data());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    constexpr double kStep = 1e-5;
+    std::vector<double> up = p, down = p;
+    up[i] += kStep;
+    down[i] -= kStep;
+    const double slope =
+        (network.output(up.data(), z.data()) - network.output(down.data(), z.data())) / (2 * kStep);
+    CHECK(row[i] == Approx(slope).epsilon(1e-6).margin(1e-8));
+  }
+  std::vector<double> other = p;  // neurons 0 and 5 exchanged
+  for (std::size_t i = 0; i < 4; ++i) std::swap(other[i], other[5 * 4 + i]);
+  std::swap(other[network.b()], other[network.b() + 5]);
+  std::swap(other[network.v()], other[network.v() + 5]);
+  CHECK(network.output(other.data(), z.data()) == Approx(out).epsilon(1e-13));
+}
+
+TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
+  const Scene s = scene(22000, 4000);
+  // The best there can be: least squares with a constant, from the same window.
+  Eigen::MatrixXd design(4000, 4);
+  design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
+  const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
+  const Eigen::MatrixXd rest = s.y.rightCols(18000);
+  const double best =
+      rms((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
+  for (const double neurons : {3, 10}) {
+    auto runner = taught(s, {{"neurons", neurons}});
+    const test::Run run = test::run(*runner, rest);
+    const double ours = rms(run.x.row(0).transpose() - s.x.tail(18000));
+    INFO(neurons);
+    CHECK(ours < 1.01 * best);
+    CHECK(std::sqrt(run.variance(0, 0)) == Approx(ours).epsilon(0.08));
+  }
+}
+
+TEST_CASE("perceptron: learns a bent sensor") {
+  Scene s = scene(8000, 4000);
+  s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
+  auto runner = taught(s);
+  const double ours =
+      rms(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
+  Eigen::MatrixXd design(4000, 4);
+  design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
+  const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
+  const double straight = rms((s.y.rightCols(4000).transpose() * affine.head(3)).array() +
+                              affine[3] - s.x.tail(4000).array());
+  CHECK(ours < 0.8 * straight);
+}
+
+TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not matter") {
+  const Scene s = scene(3000, 2000);
+  const Eigen::MatrixXd rest = s.y.rightCols(1000);
+  const Eigen::MatrixXd x = test::run(*taught(s), rest).x;
+  CHECK(test::run(*taught(s), rest).x == x);
+  CHECK(test::run(*taught(s, {{"seed", 2}}), rest).x != x);
+  for (const Eigen::Index block : {1, 17}) CHECK(test::run(*taught(s), rest, 1, block).x == x);
+  auto in_parts = test::make("perceptron", s.given);
+  for (Eigen::Index k = 0; k < 2000; k += 250)
+    in_parts->learn(s.y.middleCols(k, 250), s.x.segment(k, 250).transpose());
+  in_parts->finish_learning();
+  CHECK(test::run(*in_parts, rest).x == x);
+}
+
+TEST_CASE("perceptron: offset and scale cost nothing; a constant channel drops out") {
+  const Scene s = scene(3000, 2000);
+  const Eigen::MatrixXd rest = s.y.rightCols(1000);
+  const Eigen::MatrixXd x = test::run(*taught(s, {{"neurons", 3}}), rest).x;
+  for (const double offset : {1e9, -1e6}) {
+    Scene moved = s;
+    moved.y.array() += offset;
+    moved.x.array() += offset;
+    const Eigen::MatrixXd got =
+        test::run(*taught(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
+    CHECK(((got.array() - offset).matrix() - x).cwiseAbs().maxCoeff() < 1e-3);
+  }
+  Scene scaled = s;
+  scaled.y *= 0x1p-300;
+  scaled.x *= 0x1p-300;
+  CHECK((test::run(*taught(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x)
+            .cwiseAbs()
+            .maxCoeff() < 1e-9);
+  Scene dead = s;
+  dead.y.row(2).setConstant(0.1);
+  auto runner = taught(dead);
+  Eigen::MatrixXd alive = dead.y.rightCols(1000);
+  const Eigen::MatrixXd before = test::run(*runner, alive).x;
+  alive.row(2).setConstant(55);
+  CHECK(test::run(*runner, alive).x == before);
+  Scene still = s;
+  still.x.setConstant(4);
+  CHECK((test::run(*taught(still), rest).x.array() - 4).abs().maxCoeff() < 1e-6);
+}
+
+TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no estimate") {
+  const Scene s = scene(9000, 8000);
+  auto runner = taught(s, {{"most_samples", 2000}, {"neurons", 3}});
+  Eigen::MatrixXd rest = s.y.rightCols(1000);
+  rest(1, 5) = std::nan("");
+  const test::Run run = test::run(*runner, rest);
+  CHECK(std::isnan(run.x(0, 5)));
+  CHECK(std::isfinite(run.x(0, 6)));
+  CHECK(rms(run.x.rightCols(990).transpose() - s.x.tail(990)) < 0.25);
+}
+
+TEST_CASE("perceptron: too few instants and useless numbers are refused") {
+  Scene s = scene(3000, 120);
+  CHECK(code_of([&] { taught(s); }) == "E0730");
+  CHECK(code_of([&] { taught(s, {{"neurons", 1}}); }) == "");
+  s.given.learning_samples = 2000;
+  s.y.row(0).head(10).setConstant(1e308);
+  s.y.row(0).segment(10, 10).setConstant(-1e308);
+  CHECK(code_of([&] { taught(s); }) == "E0731");
+}
