@@ -19,8 +19,10 @@
 // and is known to the engine by one line in registry.cpp.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -37,6 +39,18 @@ inline constexpr int kMaxStates = 8;  ///< inputs r that an algorithm can estima
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
 /// One instant, one value a channel, NaN = missing; or the true inputs of that instant.
 using Sample = Eigen::Map<const Eigen::VectorXd>;
+
+/// Beyond it a sample is no measurement (and its square would overflow).
+inline constexpr double kLargestSample = 1e100;
+/// A sample that carries a value: NaN marks a missing one.
+inline bool usable(double sample) {
+  return std::abs(sample) <= kLargestSample;
+}
+inline bool complete(const Sample& y) {
+  for (Eigen::Index i = 0; i < y.size(); ++i)
+    if (!usable(y[i])) return false;
+  return true;
+}
 
 struct Estimate {
   State x;         ///< r values; NaN: no estimate at this instant

@@ -6,7 +6,7 @@
 namespace libchar::fusion {
 
 KalmanTakensPublished::KalmanTakensPublished(const Given& given, const Settings& settings)
-    : levels_(given.noise_levels),
+    : levels_(given.noise_levels * settings["noise_scale"]),
       information_(levels_.cwiseInverse().sum()),
       dimension_(static_cast<std::size_t>(settings["dimension"])),
       training_(std::max(static_cast<std::size_t>(settings["training"]), dimension_ + 1)),

@@ -4,7 +4,8 @@
 //   F = p / x_{k-1},  P- = F P F + Q,  P = 1/(1/P- + sum 1/v_i),  x = P (p/P- + sum y_i/v_i)
 // F is no derivative and explodes where the last estimate is near zero; then P- is large and the
 // channels alone decide, which does no harm. Two mends only: v is the noise variance (the listing
-// takes the density, 623 times too small) and a distance of zero does not divide.
+// takes the density, 623 times too small: option noise_scale) and a distance of zero does not
+// divide.
 
 #include <array>
 #include <vector>
@@ -31,7 +32,13 @@ struct KalmanTakensPublished {
              "instants at the start whose averages are the dictionary",
              true},
       Option{"process_variance", "U^2", 0.01, 0, 1e300, "Q of the prediction"},
-      Option{"start_variance", "U^2", 0.001, 0, 1e300, "P after the training"}};
+      Option{"start_variance", "U^2", 0.001, 0, 1e300, "P after the training"},
+      Option{"noise_scale",
+             "",
+             1,
+             1e-12,
+             1e12,
+             "R over the noise variance; 1/623 is the spectral density that the listing takes"}};
 
   KalmanTakensPublished(const Given& given, const Settings& settings);
   Estimate step(const Sample& y);

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSignificant = 4;
 
 [[noreturn]] void cannot(const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::numeric, "E0726", "", what, "", hint});
+  throw Error({ErrorKind::numeric, "E0766", "", what, "", hint});
 }
 
 }  // namespace
@@ -98,6 +98,14 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
                          : (error.col(used[static_cast<std::size_t>(k)]) + truth).eval();
   if (form.constant) problem.col(weights) = upper.col(0);
   problem.col(unknowns) = form.sum_to_one ? (-last).eval() : truth;
+  // What is left of channels that cancel is rounding, not a column to be scaled up.
+  const auto size = [&](Eigen::Index i) {
+    return upper.col(1 + i).norm() + upper.col(n_ + 1).norm();
+  };
+  for (Eigen::Index k = 0; k < weights; ++k)
+    if (problem.col(k).norm() <=
+        1e-14 * (size(used[static_cast<std::size_t>(k)]) + size(used.back())))
+      problem.col(k).setZero();
   Eigen::VectorXd solution(unknowns);
   if (unknowns > 0) solution = solve_scaled(problem, unknowns, learnt.dependent);
   for (Eigen::Index k = 0; k < weights; ++k)

@@ -10,9 +10,20 @@
 
 namespace libchar::fusion {
 
+namespace {
+
+/// The neurons that are asked for, or as many as the limit on weights allows.
+std::size_t neurons_of(std::size_t inputs, const Settings& settings) {
+  const auto most = (static_cast<std::size_t>(settings["most_weights"]) - 1) / (inputs + 2);
+  return std::min(static_cast<std::size_t>(settings["neurons"]), std::max<std::size_t>(most, 1));
+}
+
+}  // namespace
+
 Perceptron::Perceptron(const Given& given, const Settings& settings)
     : network_{static_cast<std::size_t>(given.channels),
-               static_cast<std::size_t>(settings["neurons"])},
+               neurons_of(static_cast<std::size_t>(given.channels), settings)},
+      asked_(static_cast<std::size_t>(settings["neurons"])),
       scales_(network_.inputs),
       z_(network_.inputs),
       most_(static_cast<std::size_t>(settings["most_samples"])),
@@ -69,7 +80,7 @@ void Perceptron::finish_learning() {
   const std::size_t taught = kept_ - held_out;
   if (taught < 2 * network_.size() || held_out == 0)
     throw Error({ErrorKind::numeric,
-                 "E0730",
+                 "E0767",
                  "",
                  "the learning window holds fewer than two instants for each weight of the "
                  "perceptron (" +
@@ -84,7 +95,7 @@ void Perceptron::finish_learning() {
       network_, taught_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
   if (best.parameters.empty())
     throw Error({ErrorKind::numeric,
-                 "E0731",
+                 "E0768",
                  "",
                  "no training of the perceptron gave finite numbers",
                  "",
@@ -100,6 +111,14 @@ Estimate Perceptron::step(const Sample& y) {
     z_[i] = (y[static_cast<Eigen::Index>(i)] - scales_[i].mean) / scales_[i].deviation;
   const double out = network_.output(parameters_.data(), z_.data());
   return Estimate::scalar(target_.mean + target_.deviation * out, variance_);
+}
+
+void Perceptron::remarks(Warnings& warnings) const {
+  if (network_.hidden < asked_)
+    warnings.add("perceptron_fewer_neurons",
+                 "the perceptron has " + std::to_string(network_.hidden) + " neurons instead of " +
+                     std::to_string(asked_) + ": most_weights allows no more for " +
+                     std::to_string(network_.inputs) + " channels");
 }
 
 }  // namespace libchar::fusion

@@ -34,10 +34,17 @@ struct Perceptron {
       Option{"iterations", "", 100, 1, 10000, "at most, a start", true},
       Option{"most_samples",
              "samples",
-             20000,
+             10000,
              100,
              1e7,
              "kept for training; beyond, every second one is dropped",
+             true},
+      Option{"most_weights",
+             "",
+             300,
+             10,
+             1e5,
+             "of the network; wide arrays get fewer neurons, as time grows with the square",
              true}};
 
   Perceptron(const Given& given, const Settings& settings);
@@ -46,6 +53,7 @@ struct Perceptron {
   /// numbers.
   void finish_learning();
   Estimate step(const Sample& y);
+  void remarks(Warnings& warnings) const;
 
   /// For tests: same learning, same parameters, bit for bit.
   const std::vector<double>& parameters() const { return parameters_; }
@@ -60,6 +68,7 @@ struct Perceptron {
   void standardise();
 
   TanhNetwork network_;
+  std::size_t asked_;  // neurons
   std::vector<double> parameters_;
   std::vector<Scale> scales_;  // of the channels
   Scale target_;

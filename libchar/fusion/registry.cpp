@@ -19,6 +19,7 @@
 #include "libchar/fusion/random_weighting.hpp"
 #include "libchar/fusion/tilt_complementary.hpp"
 #include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/fusion/tilt_tuned.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Given& given, const Settings& settings) {
   if (std::string sentence = why_not(A::card, given); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0722", "", std::move(sentence), "", ""});
+    throw Error({ErrorKind::usage, "E0762", "", std::move(sentence), "", ""});
   return std::make_unique<RunnerOf<A>>(given, settings);
 }
 
@@ -38,7 +39,7 @@ constexpr Entry entry() {
     return {&A::card, {}, &make<A>};
 }
 
-// The order of reports: baselines, blind methods, taught methods, tilt, bounds.
+// The order of reports: baselines, blind methods, taught methods, bounds.
 constexpr std::array kAlgorithms{
     entry<Mean>(),
     entry<Median>(),
@@ -47,18 +48,20 @@ constexpr std::array kAlgorithms{
     entry<MinquePublished>(),
     entry<RandomWeighting>(),
     entry<RandomWeightingPublished>(),
+    entry<KalmanTakens>(),
+    entry<KalmanTakensPublished>(),
     entry<BlindCalibration>(),
     entry<BlindCalibrationPublished>(),
-    entry<KalmanTakens>(),
     entry<LeastSquares>(),
     entry<LeastSquaresPublished>(),
     entry<Perceptron>(),
     entry<KalmanTakensTaught>(),
-    entry<KalmanTakensPublished>(),
     entry<TiltGyroscope>(),
     entry<TiltAccelerometer>(),
     entry<TiltComplementary>(),
     entry<TiltKalman>(),
+    entry<TiltComplementaryTuned>(),
+    entry<TiltKalmanTuned>(),
     entry<BestSensor>(),
     entry<OptimalWeights>(),
     entry<SectionedLeastSquares>(),
@@ -82,7 +85,7 @@ const Entry& algorithm(std::string_view name) {
   for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.card->name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
-               "E0723",
+               "E0763",
                "",
                "no fusion algorithm has this name",
                std::string(name),

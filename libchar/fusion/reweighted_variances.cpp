@@ -14,6 +14,8 @@ constexpr double kTiny = 1e-280;
 constexpr double kSmallestRatio = 1e-26;
 /// The falling gain of the start: a = 1 / (k + kStart).
 constexpr double kStart = 10;
+/// Instants that the start is made from.
+constexpr int kFirstInstants = 16;
 
 }  // namespace
 
@@ -26,6 +28,7 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
       b_(n),
       e_(n),
       everybody_(n),
+      first_(options.start_variance > 0 ? 0 : n * kFirstInstants),
       started_(options.start_variance > 0) {
   std::iota(everybody_.begin(), everybody_.end(), 0);
 }
@@ -33,6 +36,7 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
 double ReweightedVariances::fuse(const double* y, const int* index, int m) {
   index_ = index != nullptr ? index : everybody_.data();
   m_ = m;
+  y_ = y;
   const double base = y[index_[0]];
   double sum = 0, weighted = 0;
   for (int k = 0; k < m; ++k) {
@@ -50,14 +54,46 @@ double ReweightedVariances::fuse(const double* y, const int* index, int m) {
   return x;
 }
 
-void ReweightedVariances::start() {
+void ReweightedVariances::start(const double* y) {
   double squares = 0;
   for (int k = 0; k < m_; ++k) squares += r_[index_[k]] * r_[index_[k]];
-  if (!(squares > 0) || m_ < 2) return;
-  const double level = std::max(squares / (m_ - 1), kTiny);
-  std::fill(v_.begin(), v_.end(), level);
-  std::fill(inverse_.begin(), inverse_.end(), 1 / level);
-  sum_ = m_ / level;
+  if (!(squares > 0)) return;  // channels that say the same tell nothing about their noise
+  double* const row = &first_[static_cast<std::size_t>(first_instants_) * v_.size()];
+  std::fill(row, row + v_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (int k = 0; k < m_; ++k) row[index_[k]] = y[index_[k]];
+  if (++first_instants_ == kFirstInstants) start_from_pairs();
+}
+
+/// v_i = half the smallest mean square of y_i - y_j over the other channels: a noisy channel is far
+/// from all others, a good one is near to the other good ones, whatever the ratios. The recursion
+/// alone would need 1/gamma instants for each factor e.
+void ReweightedVariances::start_from_pairs() {
+  const std::size_t n = v_.size();
+  const double nobody = std::numeric_limits<double>::infinity();
+  std::fill(v_.begin(), v_.end(), nobody);
+  for (std::size_t i = 1; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      double sum = 0, count = 0;
+      for (int k = 0; k < kFirstInstants; ++k) {
+        const double d = first_[static_cast<std::size_t>(k) * n + i] -
+                         first_[static_cast<std::size_t>(k) * n + j];
+        if (!(std::abs(d) >= 0)) continue;
+        sum += d * d;
+        count += 1;
+      }
+      if (count == 0) continue;
+      const double half = sum / (2 * count);
+      v_[i] = std::min(v_[i], half);
+      v_[j] = std::min(v_[j], half);
+    }
+  double largest = 0;
+  for (const double v : v_) largest = v < nobody ? std::max(largest, v) : largest;
+  const double lowest = std::max(largest * kSmallestRatio, rounding_);
+  for (std::size_t i = 0; i < n; ++i) {
+    v_[i] = v_[i] < nobody ? std::max(v_[i], lowest) : std::max(largest, lowest);
+    inverse_[i] = 1 / v_[i];
+  }
+  instants_ = kFirstInstants;
   started_ = true;
 }
 
@@ -71,7 +107,7 @@ double ReweightedVariances::gain() {
 void ReweightedVariances::update() {
   if (m_ < 3) return;  // two channels tell the sum of their variances only
   if (!started_) {
-    start();
+    start(y_);
     return;
   }
   const double a = gain();

@@ -71,7 +71,8 @@ class ReweightedVariances {
   double blindness(std::vector<double>& direction) const;
 
  private:
-  void start();
+  void start(const double* y);
+  void start_from_pairs();
   double gain();
   void solve(double a, double lambda);
   void apply();
@@ -81,12 +82,15 @@ class ReweightedVariances {
   std::vector<double> p_, b_,
       e_;  // of the channels in use, in their order: weight, right side, 1 / (1 - 2p + lambda)
   std::vector<int> everybody_;
+  std::vector<double> first_;  // samples of the first instants, NaN where a channel was not in use
   const int* index_ = nullptr;
   int m_ = 0;
   double sum_ = 1;  // of the inverse variances in use
   double x_ = 0, rounding_ = 0;
   double instants_ = 0;
-  int heaviest_ = 0;  // position of the largest p
+  int first_instants_ = 0;
+  const double* y_ = nullptr;  // of the last `fuse`
+  int heaviest_ = 0;           // position of the largest p
   bool started_ = false;
 };
 

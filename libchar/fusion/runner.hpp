@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/weighted_mean.hpp"
 
 namespace libchar::fusion {
 
@@ -70,7 +69,7 @@ class RunnerOf final : public Runner {
       for (Eigen::Index k = 0; k < samples.cols(); ++k) {
         const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
         const Sample x(truth.data() + k * truth.outerStride(), truth.rows());
-        if (x.allFinite() && (A::card.needs.accepts_missing || complete(y))) algorithm_.learn(y, x);
+        if (complete(x) && (A::card.needs.accepts_missing || complete(y))) algorithm_.learn(y, x);
       }
     }
   }
@@ -108,9 +107,6 @@ class RunnerOf final : public Runner {
   }
 
  private:
-  /// A sample of 1e300 is as little a measurement as NaN: its square would stay in every moment.
-  static bool complete(const Sample& y) { return (y.array().abs() <= kLargestSample).all(); }
-
   Estimate step(const Sample& y) {
     if constexpr (!A::card.needs.accepts_missing)
       if (!complete(y)) return Estimate::none(inputs_);

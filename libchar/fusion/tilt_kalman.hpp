@@ -14,8 +14,8 @@
 namespace libchar::fusion {
 
 struct TiltNoise {
-  double angle = 1e-7;    ///< white noise of the rate, rad^2/s
-  double bias = 1e-8;     ///< growth of the bias variance, (rad/s)^2/s
+  double angle = 1e-6;    ///< white noise of the rate, rad^2/s
+  double bias = 1e-7;     ///< growth of the bias variance, (rad/s)^2/s
   double gravity = 0.01;  ///< variance of the angle of gravity, rad^2
 };
 

@@ -10,13 +10,6 @@
 
 namespace libchar::fusion {
 
-/// Beyond it a sample is no measurement (and its square would overflow).
-inline constexpr double kLargestSample = 1e100;
-/// A sample that carries a value: NaN marks a missing one.
-inline bool usable(double sample) {
-  return std::abs(sample) <= kLargestSample;
-}
-
 struct WeightedMean {
   double x = std::numeric_limits<double>::quiet_NaN();
   double used = 0;  ///< share of the weights whose samples were there (1: all)

@@ -1,4 +1,5 @@
-// Blind calibration: known answers for both gauges, the published recursion, and what taking off the noise is worth.
+// Blind calibration: known answers for both gauges, the published recursion, and what taking off
+// the noise is worth.
 
 #include "libchar/fusion/blind_calibration.hpp"
 
@@ -26,29 +27,41 @@ TEST_CASE("blind calibration on the Gram matrix: two gauges") {
     std::string name;
     double gauge, absolute, relative, offset_absolute, offset_relative;
   };
-  for (const Case& c : {Case{"reference sensor 1", 1, 1.44e-15, 1.55e-15, 1.21e-16, 4.08e-15},
-                        Case{"mean of inverse gains = 1", 0, 6.66e-16, 5.97e-16, 6.16e-17, 9.01e-15}}) {
+  for (const Case& c :
+       {Case{"reference sensor 1", 1, 1.44e-15, 1.55e-15, 1.21e-16, 4.08e-15},
+        Case{"mean of inverse gains = 1", 0, 6.66e-16, 5.97e-16, 6.16e-17, 9.01e-15}}) {
     INFO(c.name);
     const auto answer = test::answers()["blind_batch"][c.name];
-    BlindCalibration blind(test::given(5), test::settings("blind-calibration", {{"gauge", c.gauge}, {"noise_removal", 0}}));
+    BlindCalibration blind(
+        test::given(5),
+        test::settings("blind-calibration", {{"gauge", c.gauge}, {"noise_removal", 0}}));
     for (Eigen::Index k = 0; k < u.cols(); ++k) blind.step(Sample(u.col(k).data(), 5));
     blind.solve();
-    CHECK(test::worst(blind.inverse_gain(), vector(answer["inverse_gain"]), c.absolute, c.relative) <= 1);
-    CHECK(test::worst(blind.offset(), vector(answer["beta"]), c.offset_absolute, c.offset_relative) <= 1);
+    CHECK(test::worst(
+              blind.inverse_gain(), vector(answer["inverse_gain"]), c.absolute, c.relative) <= 1);
+    CHECK(test::worst(
+              blind.offset(), vector(answer["beta"]), c.offset_absolute, c.offset_relative) <= 1);
   }
 }
 
 TEST_CASE("blind-calibration-published: 50-digit vectors") {
   NEEDS_SHARED("oracle/fusion/blind_thesis_ref1.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("blind_thesis_ref1.csv");
-  BlindCalibrationPublished blind(test::given(5), test::settings("blind-calibration-published", {}));
-  const Eigen::MatrixXd u = inputs.block("u", 5), gain = expected.block("invgain", 5), beta = expected.block("beta", 5);
+  BlindCalibrationPublished blind(test::given(5),
+                                  test::settings("blind-calibration-published", {}));
+  const Eigen::MatrixXd u = inputs.block("u", 5), gain = expected.block("invgain", 5),
+                        beta = expected.block("beta", 5);
   double worst_gain = 0, worst_x = 0, worst_offset = 0;
   for (Eigen::Index k = 0; k < u.cols(); ++k) {
     const Estimate estimate = blind.step(Sample(u.col(k).data(), 5));
-    worst_gain = std::max(worst_gain, test::worst(blind.inverse_gain(), gain.col(k), 5.86e-14, 5.85e-14));
+    worst_gain =
+        std::max(worst_gain, test::worst(blind.inverse_gain(), gain.col(k), 5.86e-14, 5.85e-14));
     worst_offset = std::max(worst_offset, test::worst(blind.offset(), beta.col(k), 1e-15, 1e-14));
-    worst_x = std::max(worst_x, test::worst(Eigen::MatrixXd(estimate.x), Eigen::MatrixXd::Constant(1, 1, expected["xhat"][k]), 1.14e-13, 1.94e-12));
+    worst_x = std::max(worst_x,
+                       test::worst(Eigen::MatrixXd(estimate.x),
+                                   Eigen::MatrixXd::Constant(1, 1, expected["xhat"][k]),
+                                   1.14e-13,
+                                   1.94e-12));
   }
   CHECK(worst_gain <= 1);
   CHECK(worst_offset <= 1);
@@ -57,23 +70,26 @@ TEST_CASE("blind-calibration-published: 50-digit vectors") {
 
 TEST_CASE("blind calibration: taking off the noise removes the bias of the gains") {
   const Eigen::VectorXd gain = (Eigen::VectorXd(5) << 1.005, 1.01, .96, .93, .9).finished();
-  const Eigen::VectorXd variance = 623 * (Eigen::VectorXd(5) << 5e-3, 1e-3, 5e-4, 1e-4, 5e-5).finished();
+  const Eigen::VectorXd variance =
+      623 * (Eigen::VectorXd(5) << 5e-3, 1e-3, 5e-4, 1e-4, 5e-5).finished();
   test::Gaussian gauss(4);
   Eigen::MatrixXd u(5, 100000);
   for (Eigen::Index k = 0; k < u.cols(); ++k) {
     const double x = std::sqrt(5.78) * gauss();
-    for (Eigen::Index i = 0; i < 5; ++i) u(i, k) = gain[i] * x + 0.1 * static_cast<double>(i) + std::sqrt(variance[i]) * gauss();
+    for (Eigen::Index i = 0; i < 5; ++i)
+      u(i, k) = gain[i] * x + 0.1 * static_cast<double>(i) + std::sqrt(variance[i]) * gauss();
   }
   const auto error = [&](bool levels, double removal) {
     Given given = test::given(5);
     if (levels) given.noise_levels = variance;
-    BlindCalibration blind(given, test::settings("blind-calibration", {{"gauge", 5}, {"noise_removal", removal}}));
+    BlindCalibration blind(
+        given, test::settings("blind-calibration", {{"gauge", 5}, {"noise_removal", removal}}));
     for (Eigen::Index k = 0; k < u.cols(); ++k) blind.step(Sample(u.col(k).data(), 5));
     blind.solve();
     const Eigen::VectorXd estimated = blind.inverse_gain().cwiseInverse() * gain[4];
     return (estimated - gain).cwiseAbs().sum();
   };
-  CHECK(error(false, 0) > 0.3);   // thesis.md B 25: 0.677 with another gauge
+  CHECK(error(false, 0) > 0.3);  // thesis.md B 25: 0.677 with another gauge
   CHECK(error(false, 1) < 0.03);
   CHECK(error(true, 1) < 0.03);
 }

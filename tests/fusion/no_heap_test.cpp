@@ -1,69 +1,15 @@
-// `step` makes no trip to the heap, in any algorithm, on sound samples and on bad ones. Counted at
-// malloc itself (linker option --wrap) and at operator new, so it sees Eigen's memory and everybody
-// else's.
+// `step` makes no trip to the heap with any switch of any algorithm thrown, on sound samples and on
+// bad ones (properties_test.cpp has the defaults).
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "libchar/core/error.hpp"
+#include "tests/fusion/heap_counter.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"
 
-namespace {
-bool watching = false;
-long trips = 0;
-void count() {
-  if (watching) ++trips;
-}
-}  // namespace
-
-extern "C" {
-void* __real_malloc(std::size_t);
-void* __real_calloc(std::size_t, std::size_t);
-void* __real_realloc(void*, std::size_t);
-void* __wrap_malloc(std::size_t size);
-void* __wrap_calloc(std::size_t number, std::size_t size);
-void* __wrap_realloc(void* old, std::size_t size);
-void* __wrap_malloc(std::size_t size) {
-  count();
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t number, std::size_t size) {
-  count();
-  return __real_calloc(number, size);
-}
-void* __wrap_realloc(void* old, std::size_t size) {
-  count();
-  return __real_realloc(old, size);
-}
-}
-
-void* operator new(std::size_t size) {
-  if (void* const memory = std::malloc(size != 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-
 using namespace libchar;
 using namespace libchar::fusion;
-
-TEST_CASE("the heap is watched") {
-  trips = 0;
-  watching = true;
-  {
-    const Eigen::VectorXd volatile_size = Eigen::VectorXd::Zero(100 + trips);
-    std::vector<double> plain(static_cast<std::size_t>(volatile_size.size()));
-    plain.back() = volatile_size[0];
-  }
-  watching = false;
-  CHECK(trips >= 2);
-}
 
 namespace {
 
@@ -89,11 +35,9 @@ long trips_of(const Entry& entry, const Settings& settings, const test::FusionSc
     return -1;
   }
   Eigen::MatrixXd x(scene.given.inputs(), scene.y.cols()), variance = x;
-  trips = 0;
-  watching = true;
+  const std::size_t before = test::heap_trips();
   runner->run(scene.y, x, variance);
-  watching = false;
-  return trips;
+  return static_cast<long>(test::heap_trips() - before);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
 TEST_CASE("perceptron: learns a bent sensor") {
   Scene s = scene(8000, 4000);
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
-  auto runner = taught(s);
+  auto runner = taught(s, {{"starts", 1}, {"neurons", 6}});
   const double ours =
       rms(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
@@ -186,12 +186,24 @@ TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no 
   CHECK(rms(run.x.rightCols(990).transpose() - s.x.tail(990)) < 0.25);
 }
 
+TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
+  const auto remarks = [](Eigen::Index channels) {
+    Given given = test::given(channels);
+    given.learning_samples = 1000;
+    libchar::Warnings warnings;
+    test::make("perceptron", given)->remarks(warnings);
+    return warnings;
+  };
+  CHECK(remarks(5).empty());
+  CHECK_FALSE(remarks(200).empty());
+}
+
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
   Scene s = scene(3000, 120);
-  CHECK(code_of([&] { taught(s); }) == "E0730");
+  CHECK(code_of([&] { taught(s); }) == "E0767");
   CHECK(code_of([&] { taught(s, {{"neurons", 1}}); }) == "");
   s.given.learning_samples = 2000;
   s.y.row(0).head(10).setConstant(1e308);
   s.y.row(0).segment(10, 10).setConstant(-1e308);
-  CHECK(code_of([&] { taught(s); }) == "E0731");
+  CHECK(code_of([&] { taught(s); }) == "E0768");
 }

@@ -4,8 +4,9 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/fusion/tilt_complementary.hpp"
+#include "libchar/fusion/tilt_kalman.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 
@@ -145,7 +146,7 @@ TEST_CASE("tilt: a missing angle is prediction only, a missing rate holds the la
   const double before = filter.step({1, 0.12}), bias = filter.bias(), p11 = filter.p11();
   CHECK(filter.step({2, gap}) == before + (2 - bias) * 0.01);
   CHECK(filter.bias() == bias);
-  CHECK(filter.p11() == p11 + 1e-8 * 0.01);
+  CHECK(filter.p11() == p11 + TiltNoise{}.bias * 0.01);
   CHECK(std::isnan(filter.normalised_square()));
   CHECK(filter.step({gap, gap}) == before + (2 - bias) * 0.01 + (2 - bias) * 0.01);
   const double blended = blend.step({1, gap});
@@ -213,4 +214,42 @@ TEST_CASE("tilt: blocks of any size give the same bits") {
                 .all());
     }
   }
+}
+
+TEST_CASE("tilt tuned: near the best constants there are; unlike noise, unlike constants") {
+  const Eigen::MatrixXd y = turning(20000);
+  Given given = tilt_given();
+  given.learning_samples = 10000;
+  const auto rms = [&](const std::string& name, const test::Values& values = {}) {
+    auto runner = test::make(name, given, values);
+    runner->learn(y.topLeftCorner(3, 10000), y.block(3, 0, 1, 10000));
+    runner->finish_learning();
+    const Eigen::MatrixXd x = test::run(*runner, y.topRightCorner(3, 10000)).x;
+    const Eigen::ArrayXd off =
+        (x.row(0) - y.block(3, 10000, 1, 10000)).array().unaryExpr([](double a) {
+          return wrapped(a);
+        });
+    return std::sqrt(off.tail(9000).square().mean());
+  };
+  double best_blend = 1, best_kalman = 1;
+  for (double decades = -2; decades <= 2; decades += 0.25)
+    best_blend =
+        std::min(best_blend, rms("tilt-complementary", {{"time_constant", std::pow(10, decades)}}));
+  for (double angle = -9; angle <= -3; angle += 1)
+    for (double bias = -12; bias <= -4; bias += 1)
+      best_kalman = std::min(best_kalman,
+                             rms("tilt-kalman",
+                                 {{"angle_noise", std::pow(10, angle)},
+                                  {"bias_noise", std::pow(10, bias)},
+                                  {"gravity_variance", 0.0025}}));
+  const double blend = rms("tilt-complementary-tuned"), kalman = rms("tilt-kalman-tuned");
+  CHECK(blend < 1.1 * best_blend);
+  CHECK(kalman < 1.25 * best_kalman);
+  CHECK(kalman < blend);
+
+  auto deaf = test::make("tilt-kalman-tuned", given);
+  Eigen::MatrixXd silent = y.topLeftCorner(3, 1000);
+  silent.row(1).setConstant(std::nan(""));
+  deaf->learn(silent, y.block(3, 0, 1, 1000));
+  CHECK_THROWS_AS(deaf->finish_learning(), libchar::Error);
 }

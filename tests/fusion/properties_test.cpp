@@ -1,0 +1,316 @@
+// What must hold for every registered algorithm, whatever it does.
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/fusion/heap_counter.hpp"
+#include "tests/fusion/vectors.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar::fusion;
+
+namespace {
+
+struct Scene {
+  Given given;
+  Eigen::MatrixXd lesson, lesson_truth;  // learning window
+  Eigen::MatrixXd y, truth;              // run
+};
+
+constexpr Eigen::Index kInstants = 1500;
+
+/// Channels of these noise deviations on one moving input.
+Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64_t seed = 5) {
+  test::Gaussian gauss(seed);
+  const Eigen::Index n = deviations.size();
+  const auto record = [&](Eigen::MatrixXd& y, Eigen::MatrixXd& truth, Eigen::Index instants) {
+    y.resize(n, instants);
+    truth.resize(1, instants);
+    for (Eigen::Index k = 0; k < instants; ++k) {
+      truth(0, k) = offset + 2 * std::sin(0.05 * static_cast<double>(k)) + 0.5 * gauss();
+      for (Eigen::Index i = 0; i < n; ++i) y(i, k) = truth(0, k) + deviations[i] * gauss();
+    }
+  };
+  Scene scene;
+  record(scene.lesson, scene.lesson_truth, 600);
+  record(scene.y, scene.truth, kInstants);
+  scene.given.channels = n;
+  scene.given.noise_levels = deviations.cwiseAbs2();
+  scene.given.rate_hz = 100;
+  scene.given.learning_samples = 600;
+  scene.given.fault_free_samples = 500;
+  scene.given.reference_throughout = true;
+  scene.given.section_starts = {700};
+  return scene;
+}
+
+Scene scene_of(Eigen::Index n) {
+  return scene_of(Eigen::VectorXd::LinSpaced(n, 0.1, 0.3));
+}
+
+std::unique_ptr<Runner> taught(const Entry& entry, const Scene& scene) {
+  auto runner = entry.make(scene.given, Settings(entry.options));
+  if (entry.card->needs.reference) runner->learn(scene.lesson, scene.lesson_truth);
+  if (entry.card->needs.reference_throughout) runner->learn(scene.y, scene.truth);
+  runner->finish_learning();
+  return runner;
+}
+
+test::Run run_of(const Entry& entry, const Scene& scene, Eigen::Index block = kInstants) {
+  return test::run(*taught(entry, scene), scene.y, scene.given.inputs(), block);
+}
+
+/// Every algorithm that these scenes can feed.
+template <class Check>
+void for_each(const Scene& scene, Check check) {
+  int ran = 0;
+  for (const Entry& entry : algorithms()) {
+    if (!why_not(*entry.card, scene.given).empty()) continue;
+    INFO(entry.card->name);
+    check(entry);
+    ++ran;
+  }
+  CHECK(ran > 0);
+}
+
+bool named(const Entry& entry, const std::set<std::string_view>& names) {
+  return names.contains(entry.card->name);
+}
+
+/// Their equations are not those of a mean: free or calibrated weights do not sum to one. Reasons:
+/// docs/theory/fusion.md.
+const std::set<std::string_view> kFreeWeights{
+    "least-squares-published", "blind-calibration", "blind-calibration-published"};
+/// Their estimates may move by something else than the input does.
+const std::set<std::string_view> kNotShifted{"least-squares-published",
+                                             "blind-calibration",
+                                             "blind-calibration-published",
+                                             "random-weighting-published"};
+
+bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    if (!(a.data()[i] == b.data()[i] || (std::isnan(a.data()[i]) && std::isnan(b.data()[i]))))
+      return false;
+  return a.size() == b.size();
+}
+
+double apart(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+bool sane_variance(const Eigen::MatrixXd& variance) {
+  for (const double v : variance.reshaped())
+    if (v < 0 || std::isinf(v)) return false;
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("blocks of any size give the same bits") {
+  Scene scene = scene_of(6);
+  scene.y.row(2).segment(900, 200).array() += 3;  // a fault, so that the sets change on the way
+  for_each(scene, [&](const Entry& entry) {
+    const test::Run whole = run_of(entry, scene);
+    for (const Eigen::Index block : {1, 7, 64, 1499})
+      CHECK(same_bits(run_of(entry, scene, block).x, whole.x));
+  });
+}
+
+TEST_CASE("an input moved by 10, 1e4 or 1e8 moves the estimate alike") {
+  const Scene plain = scene_of(6);
+  for (const double offset : {10.0, 1e4, 1e8}) {
+    const Scene moved = scene_of(Eigen::VectorXd::LinSpaced(6, 0.1, 0.3), offset);
+    for_each(plain, [&](const Entry& entry) {
+      if (named(entry, kNotShifted)) return;
+      INFO(offset);
+      // The samples themselves are rounded at the offset, 1.5e-8 at 1e8.
+      const double tolerance = 1e-9 + 30 * offset * 2.2e-16;
+      CHECK(apart(run_of(entry, moved).x.array() - offset, run_of(entry, plain).x) < tolerance);
+    });
+  }
+}
+
+TEST_CASE("units: everything scaled, the estimate scales") {
+  const Scene plain = scene_of(6);
+  for (const double factor : {0x1p-60, 0x1p40}) {
+    Scene scaled = plain;
+    scaled.y *= factor;
+    scaled.truth *= factor;
+    scaled.lesson *= factor;
+    scaled.lesson_truth *= factor;
+    scaled.given.noise_levels *= factor * factor;
+    for_each(plain, [&](const Entry& entry) {
+      CHECK(apart(run_of(entry, scaled).x / factor, run_of(entry, plain).x) < 1e-11);
+    });
+  }
+}
+
+TEST_CASE("the order of the channels does not matter") {
+  const Scene plain = scene_of(6);
+  // Channels 1 and 2 stay: the published forms take them for reference.
+  Eigen::PermutationMatrix<Eigen::Dynamic> order(6);
+  order.indices() << 0, 1, 5, 3, 2, 4;
+  Scene mixed = plain;
+  mixed.y = order * plain.y;
+  mixed.lesson = order * plain.lesson;
+  mixed.given.noise_levels = order * plain.given.noise_levels;
+  for_each(plain, [&](const Entry& entry) {
+    // The published weights divide by sums that may be near zero.
+    const double tolerance = named(entry, {"random-weighting-published"}) ? 1e-3 : 1e-9;
+    CHECK(apart(run_of(entry, mixed).x, run_of(entry, plain).x) < tolerance);
+  });
+}
+
+TEST_CASE("weights sum to one; variances are never negative") {
+  for (const Eigen::Index n : {2, 3, 6, 200}) {
+    const Scene scene = scene_of(n);
+    for_each(scene, [&](const Entry& entry) {
+      INFO(n);
+      auto runner = taught(entry, scene);
+      const test::Run out = test::run(*runner, scene.y);
+      CHECK(out.x.allFinite());
+      CHECK(sane_variance(out.variance));
+      if (const auto weights = runner->weights(); weights && !named(entry, kFreeWeights))
+        CHECK(weights->sum() == Approx(1).margin(1e-12));
+      if (entry.card->name.find("published") == std::string_view::npos) {
+        if (const auto variances = runner->variances()) CHECK(variances->minCoeff() > 0);
+        // No worse than the worst channel by far: nothing is amplified.
+        CHECK(apart(out.x, scene.truth) < 1.5);
+      }
+    });
+  }
+}
+
+TEST_CASE("identical, constant and dead channels") {
+  const Scene plain = scene_of(6);
+  for (const std::string what :
+       {"identical", "two identical", "constant", "one dead", "half dead", "all zero"}) {
+    INFO(what);
+    Scene scene = plain;
+    const auto spoil = [&](Eigen::MatrixXd& y) {
+      if (what == "identical") y = y.row(0).replicate(6, 1).eval();
+      if (what == "two identical") y.row(1) = y.row(0);
+      if (what == "constant") y.setConstant(3.25);
+      if (what == "one dead") y.row(4).setZero();
+      if (what == "half dead") y.bottomRows(3).setZero();
+      if (what == "all zero") y.setZero();
+    };
+    spoil(scene.y);
+    for_each(scene, [&](const Entry& entry) {
+      auto runner = taught(entry, scene);
+      const test::Run out = test::run(*runner, scene.y);
+      CHECK(out.x.allFinite());
+      CHECK(sane_variance(out.variance));
+      if (!named(entry, kFreeWeights) && !named(entry, kNotShifted)) {
+        // Channels that agree are believed, unless what was learnt says otherwise.
+        if ((what == "identical" || what == "constant" || what == "all zero") &&
+            !entry.card->needs.reference)
+          CHECK(apart(out.x, scene.y.row(0)) < 1e-12);
+      }
+    });
+  }
+}
+
+TEST_CASE("minque finds three dead channels of six only as far as the others can say so") {
+  Scene scene = scene_of(6);
+  scene.y.row(4).tail(700).setZero();
+  auto minque = test::make("minque", scene.given);
+  test::run(*minque, scene.y);
+  REQUIRE(minque->faults()->events().size() >= 1);
+  CHECK(minque->faults()->events()[0].channel == 4);
+}
+
+TEST_CASE("noise of very different size") {
+  for (const double ratio : {1e3, 1e6, 1e12}) {
+    Eigen::VectorXd deviations(6);
+    deviations << 1, 1.5, 2, 0.1 * ratio, 0.3 * ratio, ratio;
+    const Scene scene = scene_of(deviations);
+    for_each(scene, [&](const Entry& entry) {
+      INFO(ratio);
+      auto runner = taught(entry, scene);
+      const test::Run out = test::run(*runner, scene.y);
+      CHECK(out.x.allFinite());
+      CHECK(sane_variance(out.variance));
+      if (named(entry, {"inverse-variance", "optimal-weights"}))
+        CHECK(apart(out.x, scene.truth) < 8);
+      // Without a word on the noise: the three good channels carry the weight after the first
+      // hundred instants.
+      if (named(entry, {"minque"}))
+        CHECK(apart(out.x.rightCols(1000), scene.truth.rightCols(1000)) < 10);
+    });
+  }
+}
+
+TEST_CASE("missing samples") {
+  const double gap = std::nan("");
+  Scene scene = scene_of(6);
+  const Scene whole = scene;
+  scene.y(2, 100) = gap;
+  scene.y.block(0, 300, 3, 40).setConstant(gap);
+  scene.y.col(500).setConstant(gap);
+  scene.y.row(5).segment(800, 300).setConstant(gap);
+  scene.y(1, 1200) = std::numeric_limits<double>::infinity();
+  scene.y(1, 1300) = -1e200;
+  scene.y.block(0, 1400, 5, 1).setConstant(gap);
+  for_each(scene, [&](const Entry& entry) {
+    const test::Run out = run_of(entry, scene);
+    const auto has = [&](Eigen::Index k) { return std::isfinite(out.x(0, k)); };
+    CHECK_FALSE(has(500));
+    int lost = 0;
+    for (Eigen::Index k = 0; k < kInstants; ++k) {
+      const bool all = scene.y.col(k).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < 1e100;
+      if (all && !has(k) && ++lost == 1) FAIL_CHECK("no estimate at " << k);
+      if (!all && k != 500 && entry.card->needs.accepts_missing && !has(k))
+        FAIL_CHECK("no estimate at gap " << k);
+      if (!all && !entry.card->needs.accepts_missing && has(k))
+        FAIL_CHECK("an estimate without samples at " << k);
+    }
+    if (entry.card->name.find("published") == std::string_view::npos)
+      for (const Eigen::Index k : {310, 900, 1499})
+        if (has(k)) CHECK(std::abs(out.x(0, k) - whole.truth(0, k)) < 1.5);
+  });
+}
+
+TEST_CASE("minque: no negative variance and no NaN for any memory") {
+  for (const double gamma : {0.9, 0.95, 0.98, 0.99, 0.999, 0.9999})
+    for (const double damping : {0.0, 10.0})
+      for (const double offset : {0.0, 1e8}) {
+        Eigen::VectorXd unequal(5), two(5), three(3);
+        unequal << 10, 4.47, 3.16, 1.41, 1;
+        two << 1, 1, 100, 100, 100;
+        three << 1, 2, 3;
+        for (const Eigen::VectorXd& deviations : {unequal, two, three}) {
+          INFO(gamma << " " << damping << " " << offset << " " << deviations.transpose());
+          const Scene scene = scene_of(deviations, offset);
+          auto minque = test::make(
+              "minque", test::given(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
+          bool good = true;
+          for (Eigen::Index k = 0; k < kInstants; ++k) {
+            const test::Run out = test::run(*minque, scene.y.col(k));
+            good = good && out.x.allFinite() && sane_variance(out.variance) &&
+                   minque->variances()->minCoeff() > 0 && minque->variances()->allFinite();
+          }
+          CHECK(good);
+        }
+      }
+}
+
+TEST_CASE("step makes no trip to the heap") {
+  if (!test::kHeapCounted) return;
+  Scene scene = scene_of(6);
+  scene.y.row(2).segment(900, 200).array() += 3;
+  scene.y(3, 1000) = std::nan("");
+  Scene two = scene;
+  two.given.observation_matrix =
+      (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
+  for (const Scene* fed : {&scene, &two})
+    for_each(*fed, [&](const Entry& entry) {
+      if (entry.card->needs.reference_throughout && fed == &two) return;
+      auto runner = taught(entry, *fed);
+      Eigen::MatrixXd x(fed->given.inputs(), kInstants), variance(fed->given.inputs(), kInstants);
+      const std::size_t before = test::heap_trips();
+      runner->run(fed->y, x, variance);
+      const std::size_t trips = test::heap_trips() - before;
+      CHECK(trips == 0);
+    });
+}
