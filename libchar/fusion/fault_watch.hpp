@@ -28,17 +28,17 @@ class FaultWatch {
   FaultWatch(std::size_t n, const FaultWatchOptions& options)
       : options_(options), gain_(1 - options.gamma), moment_(n, -1), out_(n, 0), calm_(n, 0) {}
 
-  double threshold() const { return options_.threshold; }
   bool out(std::size_t i) const { return out_[i] != 0; }
   int count_out() const { return count_out_; }
 
-  /// m / expectation of a channel that is in use.
-  double ratio(std::size_t i, double residual, double expectation) {
+  /// Takes in a residual; true when the moment is beyond the threshold.
+  bool beyond(std::size_t i, double residual, double expectation) {
     double& m = moment_[i];
-    if (m < 0) m = expectation;
+    m = m < 0 ? expectation : m;
     m += gain_ * (residual * residual - m);
-    return m / expectation;
+    return m > options_.threshold * expectation;
   }
+  double moment(std::size_t i) const { return moment_[i]; }
   void take_out(std::size_t i, std::int64_t sample) {
     out_[i] = 1;
     calm_[i] = 0;
@@ -49,7 +49,7 @@ class FaultWatch {
   void forget(std::size_t i) { moment_[i] = -1; }
   /// A channel that is out: true when it may come in again.
   bool calmed(std::size_t i, double residual, double expectation) {
-    const bool calm = ratio(i, residual, expectation) < options_.threshold;
+    const bool calm = !beyond(i, residual, expectation);
     // However bad it has been: what counts is how long ago.
     moment_[i] = std::min(moment_[i], 2 * options_.threshold * expectation);
     calm_[i] = calm ? calm_[i] + 1 : 0;

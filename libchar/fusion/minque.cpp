@@ -99,18 +99,25 @@ template <class Variances>
 bool Minque::found_fault(const Variances& variances) {
   if (!variances.started() || m_ < inputs_ + 2) return false;
   const double least = kRounding * variances.rounding();
-  double worst = 0;
-  int where = -1;
+  const auto expectation = [&](std::size_t i) {
+    return std::max(variances.residual_variance(i), least);
+  };
+  bool beyond = false;
   for (int k = 0; k < m_; ++k) {
     const auto i = static_cast<std::size_t>(in_use_[k]);
-    const double ratio =
-        watch_.ratio(i, variances.residual(i), std::max(variances.residual_variance(i), least));
+    beyond |= watch_.beyond(i, variances.residual(i), expectation(i));
+  }
+  if (!beyond || now_ < armed_from_) return false;
+  double worst = 0;
+  int where = in_use_[0];
+  for (int k = 0; k < m_; ++k) {
+    const auto i = static_cast<std::size_t>(in_use_[k]);
+    const double ratio = watch_.moment(i) / expectation(i);
     if (ratio > worst) {
       worst = ratio;
       where = in_use_[k];
     }
   }
-  if (now_ < armed_from_ || worst <= watch_.threshold()) return false;
   for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use_[k]));
   watch_.take_out(static_cast<std::size_t>(where), now_);
   return true;

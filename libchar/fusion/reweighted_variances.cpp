@@ -44,8 +44,8 @@ double ReweightedVariances::fuse(const double* y, const int* index, int m) {
     sum += inverse_[i];
     weighted += inverse_[i] * (y[i] - base);
   }
-  sum_ = sum;
-  const double shift = weighted / sum;
+  fused_ = 1 / sum;
+  const double shift = weighted * fused_;
   for (int k = 0; k < m; ++k) r_[index_[k]] = (y[index_[k]] - base) - shift;
   const double x = base + shift;
   x_ = x;
@@ -118,7 +118,7 @@ void ReweightedVariances::update() {
 void ReweightedVariances::solve(double a, double lambda) {
   // Without a ridge, two channels of weight one half each would divide by zero.
   const double smallest = std::max(1e-12, lambda);
-  const double fused = 1 / sum_;
+  const double fused = fused_;
   int heaviest = 0;
   for (int k = 0; k < m_; ++k) {
     const int i = index_[k];

@@ -47,16 +47,16 @@ class ReweightedVariances {
 
   /// Of the last `fuse`.
   Estimate estimate() const {
-    return Estimate::scalar(x_, started_ ? 1 / sum_ : std::numeric_limits<double>::quiet_NaN());
+    return Estimate::scalar(x_, started_ ? fused_ : std::numeric_limits<double>::quiet_NaN());
   }
-  double fused_variance() const { return 1 / sum_; }
+  double fused_variance() const { return fused_; }
   /// Of a channel that was not in use: sample less fused value, and its variance.
   double innovation(std::size_t, double sample) const { return sample - x_; }
-  double innovation_variance(std::size_t i) const { return v_[i] + 1 / sum_; }
+  double innovation_variance(std::size_t i) const { return v_[i] + fused_; }
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
   /// Part of the variance of channel i in the last `fuse` that shows in its residual.
-  double residual_variance(std::size_t i) const { return v_[i] - 1 / sum_; }
+  double residual_variance(std::size_t i) const { return v_[i] - fused_; }
   double residual(std::size_t i) const { return r_[i]; }
   /// A level below which a variance is rounding error.
   double rounding() const { return rounding_; }
@@ -85,7 +85,7 @@ class ReweightedVariances {
   std::vector<double> first_;  // samples of the first instants, NaN where a channel was not in use
   const int* index_ = nullptr;
   int m_ = 0;
-  double sum_ = 1;  // of the inverse variances in use
+  double fused_ = 1;  // 1 / sum of the inverse variances in use
   double x_ = 0, rounding_ = 0;
   double instants_ = 0;
   int first_instants_ = 0;

@@ -1,9 +1,11 @@
 // Fusion: cost of a step, and how near the estimates come to the optimum.
 //   fusion_bench            nanoseconds a step of every algorithm, n = 6 … 200
-//   fusion_bench regret     excess RMS of minque over the optimal weights, scenes 3.1 and 5.1 of [RV]
+//   fusion_bench regret     excess RMS of minque over the optimal weights, scenes 3.1 and 5.1 of
+//   [RV]
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -16,11 +18,16 @@ using namespace libchar::fusion;
 
 namespace {
 
-Eigen::MatrixXd noisy(const Eigen::VectorXd& variances, Eigen::Index instants, std::uint64_t seed, double signal) {
+Eigen::MatrixXd noisy(const Eigen::VectorXd& variances,
+                      Eigen::Index instants,
+                      std::uint64_t seed,
+                      double signal,
+                      double* truth = nullptr) {
   test::Gaussian gauss(seed);
   Eigen::MatrixXd y(variances.size(), instants);
   for (Eigen::Index k = 0; k < instants; ++k) {
     const double x = signal * gauss();
+    if (truth != nullptr) truth[k] = x;
     for (Eigen::Index i = 0; i < y.rows(); ++i) y(i, k) = x + std::sqrt(variances[i]) * gauss();
   }
   return y;
@@ -32,8 +39,12 @@ Settings with(const Entry& entry, const std::vector<std::pair<std::string_view, 
   return settings;
 }
 
-/// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the record.
-double excess(const Eigen::VectorXd& variances, const Settings& settings, const char* name, int seeds) {
+/// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the
+/// record.
+double excess(const Eigen::VectorXd& variances,
+              const Settings& settings,
+              const char* name,
+              int seeds) {
   constexpr Eigen::Index kInstants = 200000, kFrom = 10000;
   const Eigen::VectorXd w = variances.cwiseInverse() / variances.cwiseInverse().sum();
   double ours = 0, best = 0;
@@ -52,18 +63,21 @@ double excess(const Eigen::VectorXd& variances, const Settings& settings, const 
 
 void regret(int argc, char** argv) {
   const Eigen::VectorXd t31 = (Eigen::VectorXd(5) << 100, 20, 10, 2, 1).finished();
-  const Eigen::VectorXd t51 = (Eigen::VectorXd(6) << .00274, .00487, .00761, .01095, .01491, .01947).finished();
+  const Eigen::VectorXd t51 =
+      (Eigen::VectorXd(6) << .00274, .00487, .00761, .01095, .01491, .01947).finished();
   const Eigen::VectorXd two = (Eigen::VectorXd(5) << 1, 1, 1e4, 1e4, 1e4).finished();
   const Eigen::VectorXd three = (Eigen::VectorXd(5) << 1, 1, 1, 1e4, 1e4).finished();
   std::vector<std::pair<std::string_view, double>> values;
   for (int i = 0; i + 1 < argc; i += 2) values.emplace_back(argv[i], std::stod(argv[i + 1]));
   const Entry& minque = algorithm("minque");
-  fmt::print("excess RMS in %: {:>8} {:>8} {:>12} {:>12}\n", "T3.1", "T5.1", "two good", "three good");
+  fmt::print(
+      "excess RMS in %: {:>8} {:>8} {:>12} {:>12}\n", "T3.1", "T5.1", "two good", "three good");
   for (const double gamma : {0.9, 0.98, 0.99, 0.995, 0.999, 0.9997}) {
     values.emplace_back("gamma", gamma);
     const Settings settings = with(minque, values);
     fmt::print("gamma {:<10} ", gamma);
-    for (const auto* scene : {&t31, &t51, &two, &three}) fmt::print(" {:9.4f}", 100 * excess(*scene, settings, "minque", 4));
+    for (const auto* scene : {&t31, &t51, &two, &three})
+      fmt::print(" {:9.4f}", 100 * excess(*scene, settings, "minque", 4));
     fmt::print("\n");
   }
 }
@@ -105,9 +119,8 @@ void timing() {
         continue;
       }
       auto runner = entry.make(given, Settings(entry.options));
-      const Eigen::MatrixXd y = noisy(variances, instants, 3, 2);
-      const Eigen::MatrixXd truth = noisy(Eigen::VectorXd::Zero(1), instants, 3, 2);
-      // The truth of `noisy` at another n is another stream; learning only has to be well posed here.
+      Eigen::MatrixXd truth(1, instants);
+      const Eigen::MatrixXd y = noisy(variances, instants, 3, 2, truth.data());
       runner->learn(y, truth);
       runner->finish_learning();
       const double ns = nanoseconds(*runner, y, 1);
@@ -118,11 +131,59 @@ void timing() {
   }
 }
 
+/// MINQUE with identity weights as [RV] writes it, a matrix at every instant: P, P o P and its
+/// inverse, the residuals' moments, the variances, R^-1 and the weighted mean, each a matrix of its
+/// own.
+double plain_minque(const Eigen::MatrixXd& y) {
+  const Eigen::Index n = y.rows();
+  const double gamma = 0.999;
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, 1), moment = mean;
+  double sum = 0;
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    const Eigen::MatrixXd h = Eigen::MatrixXd::Ones(n, 1);
+    const Eigen::MatrixXd p =
+        Eigen::MatrixXd::Identity(n, n) - h * (h.transpose() * h).inverse() * h.transpose();
+    const Eigen::MatrixXd squared = p.cwiseProduct(p);
+    const Eigen::MatrixXd inverse = squared.inverse();
+    const Eigen::MatrixXd residual = p * y.col(k), delta = residual - mean;
+    moment = gamma * (moment + (1 - gamma) * delta.cwiseProduct(delta));
+    mean += (1 - gamma) * delta;
+    const Eigen::MatrixXd variances = (inverse * moment).cwiseAbs().cwiseMax(1e-12);
+    const Eigen::MatrixXd r = variances.col(0).asDiagonal(), r_inverse = r.inverse();
+    const Eigen::MatrixXd x =
+        (h.transpose() * r_inverse * h).inverse() * h.transpose() * r_inverse * y.col(k);
+    sum += x(0, 0);
+  }
+  return sum;
+}
+
+void against_matrices() {
+  fmt::print("\nMINQUE, ns a step {:>8} {:>14} {:>8}\n", "minque", "plain matrices", "ratio");
+  for (const Eigen::Index n : {6, 12, 50}) {
+    const Eigen::MatrixXd y = noisy(Eigen::VectorXd::LinSpaced(n, 1, 7), n > 12 ? 500 : 4000, 3, 2);
+    Given given;
+    given.channels = n;
+    auto runner = algorithm("minque").make(given, Settings(algorithm("minque").options));
+    const double ours = nanoseconds(*runner, y, 1);
+    double plain = 1e300, kept = 0;
+    for (int round = 0; round < 5; ++round) {
+      const auto from = std::chrono::steady_clock::now();
+      kept += plain_minque(y);
+      const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - from;
+      plain = std::min(plain, took.count() / static_cast<double>(y.cols()));
+    }
+    if (std::isnan(kept)) fmt::print("?");
+    fmt::print("n = {:<13} {:8.1f} {:14.1f} {:8.1f}\n", n, ours, plain, plain / ours);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "regret") == 0)
     regret(argc - 2, argv + 2);
-  else
+  else {
     timing();
+    against_matrices();
+  }
 }
