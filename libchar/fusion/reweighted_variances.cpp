@@ -104,6 +104,75 @@ double ReweightedVariances::gain() {
   return std::max(lasting, 1 / (instants_ + kStart));
 }
 
+// The two below are compiled twice: for all channels, where the positions are the channels and
+// loops over elements become vectors, and for some. Element for element both do the same, sums run
+// in the same order: the bits agree.
+
+template <bool kAll>
+void ReweightedVariances::solve(double a, double lambda) {
+  const int m = m_;
+  const int* const index = index_;
+  const auto at = [index](int k) { return kAll ? k : index[k]; };
+  double* __restrict const p = p_.data();
+  double* __restrict const b = b_.data();
+  double* __restrict const e = e_.data();
+  const double* const inverse = inverse_.data();
+  const double* const r = r_.data();
+  const double fused = fused_;
+  for (int k = 0; k < m; ++k) {
+    const int i = at(k);
+    p[k] = inverse[i] * fused;
+    b[k] = r[i] * r[i] * inverse[i] - (1 - p[k]);
+  }
+  // Without a ridge, two channels of weight one half each would divide by zero.
+  const double smallest = std::max(1e-12, lambda);
+  for (int k = 0; k < m; ++k) {
+    const double information = 1 - 2 * p[k] + lambda;
+    e[k] = 1 / (information > smallest ? information : smallest);
+  }
+  int heaviest = 0;
+  for (int k = 1; k < m; ++k) heaviest = p[k] > p[heaviest] ? k : heaviest;
+  heaviest_ = heaviest;
+  double s1 = 0, s2 = 0;
+  for (int k = 0; k < m; ++k) {
+    const double pe = k == heaviest ? 0 : p[k] * e[k];
+    s1 += pe * b[k];
+    s2 += pe * p[k];
+  }
+  const double pm = p[heaviest], scale = (1 + s2) / pm;
+  const double um = (b[heaviest] * scale - s1) / (pm + (1 - 2 * pm + lambda) * scale);
+  const double t = (pm * um + s1) / (1 + s2);
+  for (int k = 0; k < m; ++k) e[k] = 1 + a * (b[k] - p[k] * t) * e[k];
+  e[heaviest] = 1 + a * um;
+}
+
+template <bool kAll>
+void ReweightedVariances::apply() {
+  const int m = m_;
+  const int* const index = index_;
+  const auto at = [index](int k) { return kAll ? k : index[k]; };
+  double* __restrict const v = v_.data();
+  double* __restrict const inverse = inverse_.data();
+  const double* __restrict const e = e_.data();
+  double largest = 0, others = 0;
+  for (int k = 0; k < m; ++k) v[at(k)] *= e[k];
+  for (int k = 0; k < m; ++k) {
+    const int i = at(k);
+    // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
+    others += k == heaviest_ ? 0 : inverse[i];
+    largest = v[i] > largest ? v[i] : largest;
+  }
+  const double lowest = std::max({options_.floor / others,
+                                  largest * std::max(options_.floor_largest, kSmallestRatio),
+                                  rounding_});
+  for (int k = 0; k < m; ++k) {
+    const int i = at(k);
+    const double kept = v[i] > lowest ? v[i] : lowest;
+    v[i] = kept;
+    inverse[i] = 1 / kept;
+  }
+}
+
 void ReweightedVariances::update() {
   if (m_ < 3) return;  // two channels tell the sum of their variances only
   if (!started_) {
@@ -111,55 +180,12 @@ void ReweightedVariances::update() {
     return;
   }
   const double a = gain();
-  solve(a, options_.damping * a);
-  apply();
-}
-
-void ReweightedVariances::solve(double a, double lambda) {
-  // Without a ridge, two channels of weight one half each would divide by zero.
-  const double smallest = std::max(1e-12, lambda);
-  const double fused = fused_;
-  int heaviest = 0;
-  for (int k = 0; k < m_; ++k) {
-    const int i = index_[k];
-    const double p = inverse_[i] * fused;
-    p_[k] = p;
-    b_[k] = r_[i] * r_[i] * inverse_[i] - (1 - p);
-    if (p > p_[heaviest]) heaviest = k;
-  }
-  heaviest_ = heaviest;
-  double s1 = 0, s2 = 0;
-  for (int k = 0; k < m_; ++k) {
-    const double e = 1 / std::max(1 - 2 * p_[k] + lambda, smallest);
-    e_[k] = e;
-    const double pe = k == heaviest ? 0 : p_[k] * e;
-    s1 += pe * b_[k];
-    s2 += pe * p_[k];
-  }
-  const double pm = p_[heaviest], scale = (1 + s2) / pm;
-  const double um = (b_[heaviest] * scale - s1) / (pm + (1 - 2 * pm + lambda) * scale);
-  const double t = (pm * um + s1) / (1 + s2);
-  for (int k = 0; k < m_; ++k) e_[k] = 1 + a * (b_[k] - p_[k] * t) * e_[k];
-  e_[heaviest] = 1 + a * um;
-}
-
-void ReweightedVariances::apply() {
-  double largest = 0, others = 0;
-  for (int k = 0; k < m_; ++k) {
-    const int i = index_[k];
-    // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
-    others += k == heaviest_ ? 0 : inverse_[i];
-    v_[i] *= e_[k];
-    largest = v_[i] > largest ? v_[i] : largest;
-  }
-  const double lowest = std::max({options_.floor / others,
-                                  largest * std::max(options_.floor_largest, kSmallestRatio),
-                                  rounding_});
-  for (int k = 0; k < m_; ++k) {
-    const int i = index_[k];
-    const double v = v_[i] > lowest ? v_[i] : lowest;
-    v_[i] = v;
-    inverse_[i] = 1 / v;
+  if (m_ == static_cast<int>(v_.size())) {  // index rises: nobody is left out
+    solve<true>(a, options_.damping * a);
+    apply<true>();
+  } else {
+    solve<false>(a, options_.damping * a);
+    apply<false>();
   }
 }
 

@@ -39,7 +39,7 @@ class ReweightedVariances {
  public:
   ReweightedVariances(std::size_t n, const ReweightingOptions& options);
 
-  /// Fused value of the m channels named in `index` (nullptr: 0 … m-1); residuals stand in
+  /// Fused value of the m channels named in `index`, rising (nullptr: all); residuals stand in
   /// `residual()` until the next call. The samples must be finite.
   double fuse(const double* y, const int* index, int m);
   /// Improves the variances of the channels of the last `fuse` by its residuals.
@@ -74,7 +74,9 @@ class ReweightedVariances {
   void start(const double* y);
   void start_from_pairs();
   double gain();
+  template <bool kAll>
   void solve(double a, double lambda);
+  template <bool kAll>
   void apply();
 
   ReweightingOptions options_;
