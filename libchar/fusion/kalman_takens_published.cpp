@@ -14,6 +14,7 @@ KalmanTakensPublished::KalmanTakensPublished(const Given& given, const Settings&
       p_(settings["start_variance"]),
       search_(dimension_, static_cast<std::size_t>(settings["neighbours"]), training_) {
   dictionary_.reserve(training_);
+  recent_.reserve(dimension_);
 }
 
 double KalmanTakensPublished::mean_of(const Sample& y) const {

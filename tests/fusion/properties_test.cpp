@@ -85,7 +85,8 @@ const std::set<std::string_view> kFreeWeights{
 const std::set<std::string_view> kNotShifted{"least-squares-published",
                                              "blind-calibration",
                                              "blind-calibration-published",
-                                             "random-weighting-published"};
+                                             "random-weighting-published",
+                                             "kalman-takens-published"};
 
 bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   for (Eigen::Index i = 0; i < a.size(); ++i)
@@ -124,7 +125,9 @@ TEST_CASE("an input moved by 10, 1e4 or 1e8 moves the estimate alike") {
       if (named(entry, kNotShifted)) return;
       INFO(offset);
       // The samples themselves are rounded at the offset, 1.5e-8 at 1e8.
-      const double tolerance = 1e-9 + 30 * offset * 2.2e-16;
+      // Training amplifies that a little.
+      const double amplified = named(entry, {"perceptron"}) ? 30 : 1;
+      const double tolerance = 1e-9 + amplified * 30 * offset * 2.2e-16;
       CHECK(apart(run_of(entry, moved).x.array() - offset, run_of(entry, plain).x) < tolerance);
     });
   }
@@ -140,6 +143,8 @@ TEST_CASE("units: everything scaled, the estimate scales") {
     scaled.lesson_truth *= factor;
     scaled.given.noise_levels *= factor * factor;
     for_each(plain, [&](const Entry& entry) {
+      // Its Q is a number in the units of the input, not an estimate.
+      if (named(entry, {"kalman-takens-published"})) return;
       CHECK(apart(run_of(entry, scaled).x / factor, run_of(entry, plain).x) < 1e-11);
     });
   }
@@ -155,6 +160,8 @@ TEST_CASE("the order of the channels does not matter") {
   mixed.lesson = order * plain.lesson;
   mixed.given.noise_levels = order * plain.given.noise_levels;
   for_each(plain, [&](const Entry& entry) {
+    // Its training starts from random weights, drawn channel by channel.
+    if (named(entry, {"perceptron"})) return;
     // The published weights divide by sums that may be near zero.
     const double tolerance = named(entry, {"random-weighting-published"}) ? 1e-3 : 1e-9;
     CHECK(apart(run_of(entry, mixed).x, run_of(entry, plain).x) < tolerance);
@@ -204,7 +211,7 @@ TEST_CASE("identical, constant and dead channels") {
       if (!named(entry, kFreeWeights) && !named(entry, kNotShifted)) {
         // Channels that agree are believed, unless what was learnt says otherwise.
         if ((what == "identical" || what == "constant" || what == "all zero") &&
-            !entry.card->needs.reference)
+            !entry.card->needs.reference && !named(entry, {"kalman-takens"}))
           CHECK(apart(out.x, scene.y.row(0)) < 1e-12);
       }
     });
@@ -255,7 +262,8 @@ TEST_CASE("missing samples") {
   for_each(scene, [&](const Entry& entry) {
     const test::Run out = run_of(entry, scene);
     const auto has = [&](Eigen::Index k) { return std::isfinite(out.x(0, k)); };
-    CHECK_FALSE(has(500));
+    // Kalman-Takens predicts an instant without any sample.
+    CHECK(has(500) == named(entry, {"kalman-takens", "kalman-takens-taught"}));
     int lost = 0;
     for (Eigen::Index k = 0; k < kInstants; ++k) {
       const bool all = scene.y.col(k).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < 1e100;
