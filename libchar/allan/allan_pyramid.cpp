@@ -75,9 +75,11 @@ bool safe(double sum) {
 struct AllanPyramid::State {
   struct Level {
     std::array<double, kTail> tail;  // end of the previous block
-    std::vector<double> block;       // samples of the block that is being filled
-    std::array<Tally, 3> tally;      // sums of 1 and 2 (level 0 only) and of 4
-    bool started = false;            // tail is filled
+    std::vector<double>
+        block;  // kBlock places for the block that is being filled, `held` of them taken
+    std::size_t held = 0;
+    std::array<Tally, 3> tally;  // sums of 1 and 2 (level 0 only) and of 4
+    bool started = false;        // tail is filled
   };
   std::vector<Level> levels;
   std::uint64_t samples = 0, missing = 0;
@@ -85,7 +87,8 @@ struct AllanPyramid::State {
 
   void push(const double* x, std::size_t n);
   void finish_block(std::size_t level, const double* z, std::size_t n);
-  void within(Level& level, bool base, const double* z, std::size_t n, bool clean);
+  void finish_held(std::size_t level);
+  void within(Level& level, bool base, const double* z, std::size_t n, const double* sums);
   void across(Level& level, bool base, const double* z, std::size_t n);
   void sanitized(std::size_t level, const double* z, std::size_t n);
   void hand_up(std::size_t level, const double* z, std::size_t n, double origin_of_level);
@@ -95,7 +98,7 @@ struct AllanPyramid::State {
 AllanPyramid::State::Level& AllanPyramid::State::at(std::size_t level) {
   while (levels.size() <= level) {
     levels.emplace_back();
-    levels.back().block.reserve(kBlock);
+    levels.back().block.resize(kBlock);
   }
   return levels[level];
 }
@@ -104,37 +107,36 @@ void AllanPyramid::State::push(const double* x, std::size_t n) {
   samples += n;
   at(0);
   while (n > 0) {
-    std::vector<double>& block = levels[0].block;
-    if (block.empty() && n >= kBlock) {  // straight from the caller's memory
+    if (levels[0].held == 0 && n >= kBlock) {  // straight from the caller's memory
       finish_block(0, x, kBlock);
       x += kBlock;
       n -= kBlock;
       continue;
     }
-    const std::size_t take = std::min(n, kBlock - block.size());
-    block.insert(block.end(), x, x + take);
+    const std::size_t take = std::min(n, kBlock - levels[0].held);
+    std::copy_n(x, take, levels[0].block.data() + levels[0].held);
+    levels[0].held += take;
     x += take;
     n -= take;
-    if (block.size() == kBlock) {
-      std::vector<double> full;
-      full.swap(block);
-      finish_block(0, full.data(), kBlock);
-      full.clear();
-      levels[0].block.swap(full);
-    }
+    if (levels[0].held == kBlock) finish_held(0);
   }
 }
 
-/// Terms inside one block.
+/// The block of a level is full. It is taken out while it is looked at: levels may be added above.
+void AllanPyramid::State::finish_held(std::size_t level) {
+  std::vector<double> full = std::move(levels[level].block);
+  levels[level].held = 0;
+  finish_block(level, full.data(), kBlock);
+  levels[level].block = std::move(full);
+}
+
+/// Terms inside one block; `sums` of a block without missing values, else null.
 void AllanPyramid::State::within(
-    Level& level, bool base, const double* z, std::size_t n, bool clean) {
-  double sums[3] = {};
-  if (clean && base) squares_of_one_two_four(z, n, sums);
-  if (clean && !base) sums[2] = squares_of_four(z, n);
+    Level& level, bool base, const double* z, std::size_t n, const double* sums) {
   for (std::size_t k = base ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k;
     if (n < 2 * width) continue;
-    if (clean && safe(sums[k])) {
+    if (sums != nullptr && safe(sums[k])) {
       level.tally[k].sum += static_cast<long double>(sums[k]);
       level.tally[k].terms += n - 2 * width + 1;
     } else {
@@ -163,21 +165,23 @@ void AllanPyramid::State::hand_up(std::size_t level, const double* z, std::size_
   const std::size_t pairs = n / 2;
   if (pairs == 0) return;
   Level& above = at(level + 1);
-  const std::size_t held = above.block.size();
-  above.block.resize(held + pairs);
-  sum_pairs(z, pairs, shift, above.block.data() + held);
-  if (above.block.size() < kBlock) return;
-  std::vector<double> full;
-  full.swap(above.block);
-  finish_block(level + 1, full.data(), kBlock);
-  full.clear();
-  levels[level + 1].block.swap(full);
+  sum_pairs(z, pairs, shift, above.block.data() + above.held);
+  above.held += pairs;
+  if (above.held == kBlock) finish_held(level + 1);
 }
 
 /// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have
 /// kBlock values.
 void AllanPyramid::State::finish_block(std::size_t index, const double* z, std::size_t n) {
-  const bool base = index == 0, clean = all_finite(z, n);
+  const bool base = index == 0;
+  double sums[3] = {};
+  if (base)
+    squares_of_one_two_four(z, n, sums);
+  else
+    sums[2] = squares_of_four(z, n);
+  // Every value is in some difference, and what is missing or infinite is in the sum then; only
+  // huge values are there too.
+  const bool clean = n >= 8 && std::isfinite(sums[base ? 0 : 2]) ? true : all_finite(z, n);
   if (base && !clean) {
     for (std::size_t i = 0; i < n; ++i)
       if (std::isinf(z[i])) return sanitized(index, z, n);
@@ -188,7 +192,7 @@ void AllanPyramid::State::finish_block(std::size_t index, const double* z, std::
     for (std::size_t i = 0; i < n && std::isnan(origin); ++i) origin = z[i];
   Level& level = at(index);
   across(level, base, z, n);
-  within(level, base, z, n, clean);
+  within(level, base, z, n, clean ? sums : nullptr);
   if (n == kBlock) {
     std::copy_n(z + n - kTail, kTail, level.tail.begin());
     level.started = true;
@@ -220,8 +224,10 @@ void AllanPyramid::push(std::span<const double> samples) {
 AllanCurve AllanPyramid::finish(double dt_s) const {
   State state = *state_;  // the open blocks are closed in a copy: more samples may still come
   for (std::size_t l = 0; l < state.levels.size(); ++l) {
-    const std::vector<double> rest = std::move(state.levels[l].block);
-    state.levels[l].block.clear();
+    const std::vector<double> rest(
+        state.levels[l].block.begin(),
+        state.levels[l].block.begin() + static_cast<std::ptrdiff_t>(state.levels[l].held));
+    state.levels[l].held = 0;
     if (!rest.empty()) state.finish_block(l, rest.data(), rest.size());
   }
   AllanCurve curve;

@@ -121,6 +121,11 @@ class PowerBinner {
   PowerBinner(PowerBinner&&) noexcept;
   PowerBinner& operator=(PowerBinner&&) noexcept;
   void push(std::span<const double> samples);
+  /// A whole block, without missing samples, whose squared coefficients somebody else sums up: true. False, and nothing taken, when
+  /// another block is under way: then push it.
+  bool take_block(std::span<const double> samples);
+  /// The sums of c_k^2 over those blocks, k = 0 … block-1, before `finish`.
+  void set_taken_power(std::vector<double> power);
   std::vector<PowerBin> finish(double rate_hz) const;
   /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out; counts them.
   std::vector<PowerBin> finish_clipped(double rate_hz, std::uint64_t& clipped) const;

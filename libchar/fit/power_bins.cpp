@@ -162,12 +162,13 @@ struct PowerBinner::State {
   std::uint64_t block, per_mean;
   std::optional<Dct> plan;
   std::vector<double> pending;       ///< samples of the block being filled
-  std::vector<double> block_power;   ///< sums of c_k^2 over the whole blocks of all segments
+  std::vector<double> block_power;   ///< sums of c_k^2 over the blocks transformed here
+  std::vector<double> taken_power;   ///< the same over those transformed elsewhere
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
   std::vector<double>
-      means;  ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  double shift = 0;                 ///< first sample of the segment
+      means;         ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
+  double shift = 0;  ///< first sample of the segment
   std::array<double, 4> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<Power> done;  ///< of finished segments (their tails and series of means)
@@ -184,13 +185,32 @@ struct PowerBinner::State {
         values = values.subspan(1);
         continue;
       }
-      if (gap > std::max(kLongGap, samples / 100)) end_segment();
-      gap = 0;
-      if (segment_samples == 0) shift = values[0];
-      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
+      begin_run(values[0]);
+      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(
+          values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
       push_run(values.first(run));
       values = values.subspan(run);
     }
+  }
+
+  /// What a present sample after missing ones, or the first of all, begins.
+  void begin_run(double first) {
+    if (gap > std::max(kLongGap, samples / 100)) end_segment();
+    gap = 0;
+    if (segment_samples == 0) shift = first;
+  }
+
+  bool take_block(std::span<const double> values) {
+    if (values.size() != block || !pending.empty()) return false;
+    begin_run(values[0]);
+    while (!values.empty()) {
+      const std::size_t run = std::min<std::size_t>(values.size(), per_mean - partial_count);
+      add_to_mean(values.first(run));
+      values = values.subspan(run);
+    }
+    ++blocks;
+    ++segment_blocks;
+    return true;
   }
 
   static std::size_t length_of_run(std::span<const double> samples) {
@@ -199,12 +219,22 @@ struct PowerBinner::State {
     return n;
   }
 
-  // Samples without a missing one, at most up to the end of the mean and one beyond the end of the block.
+  // Samples without a missing one, at most up to the end of the mean and one beyond the end of the
+  // block.
   void push_run(std::span<const double> run) {
     pending.insert(pending.end(), run.begin(), run.end());
+    add_to_mean(run);
+    // The block is transformed only when a further sample shows that the record is longer than a
+    // block.
+    if (pending.size() > block) flush_block();
+  }
+
+  // At most up to the end of the mean.
+  void add_to_mean(std::span<const double> run) {
     // Four sums, by position in the mean: the bits do not depend on how the samples came.
     std::size_t i = 0;
-    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i) partial[(partial_count + i) % 4] += run[i] - shift;
+    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i)
+      partial[(partial_count + i) % 4] += run[i] - shift;
     for (; i + 4 <= run.size(); i += 4)
       for (std::size_t lane = 0; lane < 4; ++lane) partial[lane] += run[i + lane] - shift;
     for (std::size_t lane = 0; i < run.size(); ++i, ++lane) partial[lane] += run[i] - shift;
@@ -212,13 +242,11 @@ struct PowerBinner::State {
     segment_samples += run.size();
     samples += run.size();
     if (partial_count == per_mean) {
-      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) / std::sqrt(static_cast<double>(per_mean)));
+      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) /
+                      std::sqrt(static_cast<double>(per_mean)));
       partial.fill(0);
       partial_count = 0;
     }
-    // The block is transformed only when a further sample shows that the record is longer than a
-    // block.
-    if (pending.size() > block) flush_block();
   }
 
   void flush_block() {
@@ -267,7 +295,9 @@ struct PowerBinner::State {
     if (blocks > 0) {
       Power pooled{block, 1, kLeftToMeans, blocks, {}};
       for (std::uint64_t k = kLeftToMeans; k < block; ++k) {
-        pooled.mean.push_back(block_power[k] / static_cast<double>(blocks));
+        const double sum =
+            (block_power.empty() ? 0 : block_power[k]) + (taken_power.empty() ? 0 : taken_power[k]);
+        pooled.mean.push_back(sum / static_cast<double>(blocks));
       }
       all.push_back(std::move(pooled));
     }
@@ -293,6 +323,13 @@ PowerBinner& PowerBinner::operator=(PowerBinner&&) noexcept = default;
 
 void PowerBinner::push(std::span<const double> samples) {
   state_->push(samples);
+}
+
+bool PowerBinner::take_block(std::span<const double> samples) {
+  return state_->take_block(samples);
+}
+void PowerBinner::set_taken_power(std::vector<double> power) {
+  state_->taken_power = std::move(power);
 }
 
 std::vector<PowerBin> PowerBinner::finish(double rate_hz) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libchar/core/moments.hpp"
@@ -18,13 +19,12 @@ double spike_alarm(std::uint64_t samples) {
 
 double kurtosis_of_differences(std::span<const double> record) {
   Moments moments;
-  std::vector<double> piece;
-  for (std::size_t t = 1; t < record.size(); ++t) {
-    piece.push_back(record[t] - record[t - 1]);
-    if (piece.size() == 4096 || t + 1 == record.size()) {
-      moments.push(piece);
-      piece.clear();
-    }
+  std::array<double, 4096> piece;
+  for (std::size_t t = 1; t < record.size();) {
+    const std::size_t n = std::min(piece.size(), record.size() - t);
+    for (std::size_t i = 0; i < n; ++i) piece[i] = record[t + i] - record[t + i - 1];
+    moments.push(std::span<const double>(piece).first(n));
+    t += n;
   }
   return moments.kurtosis();
 }

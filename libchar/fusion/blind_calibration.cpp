@@ -18,7 +18,7 @@ void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* opt
   if (wanted > channels)
     throw Error(
         {ErrorKind::usage,
-         "E0765",
+         "E0855",
          "",
          std::string(option) + " must be one of the " + std::to_string(channels) + " channels",
          std::to_string(wanted),

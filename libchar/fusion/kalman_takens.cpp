@@ -127,7 +127,7 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
 void KalmanTakensTaught::finish_learning() {
   if (filter_.taught_stretches() >= 2 * filter_.neighbours()) return;
   throw Error({ErrorKind::numeric,
-               "E0769",
+               "E0862",
                "",
                "the learning window holds fewer than two stretches of the past for each neighbour",
                std::to_string(filter_.taught_stretches()),

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSignificant = 4;
 
 [[noreturn]] void cannot(const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::numeric, "E0766", "", what, "", hint});
+  throw Error({ErrorKind::numeric, "E0856", "", what, "", hint});
 }
 
 }  // namespace

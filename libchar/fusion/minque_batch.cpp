@@ -28,7 +28,7 @@ Eigen::MatrixXd residual_projector(const Eigen::MatrixXd& h) {
 void require_identifiable(const Eigen::MatrixXd& h) {
   if (std::string sentence = not_identifiable(h); !sentence.empty())
     throw Error({ErrorKind::numeric,
-                 "E0764",
+                 "E0854",
                  "",
                  std::move(sentence),
                  "",
@@ -105,7 +105,7 @@ Eigen::VectorXd reml(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& h
   Eigen::VectorXd v = Eigen::VectorXd::Constant(n, c.trace() / p.trace());
   if (!(v[0] > 0))
     throw Error({ErrorKind::numeric,
-                 "E0764",
+                 "E0854",
                  "",
                  "the channels do not differ: no noise to measure",
                  "",

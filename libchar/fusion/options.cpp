@@ -29,7 +29,7 @@ std::string range_of(const Option& option) {
     hint = "its options are " + names[0];
     for (std::size_t i = 1; i < names.size(); ++i) hint += ", " + names[i];
   }
-  throw Error({ErrorKind::usage, "E0760", "", "no such option", std::string(name), hint});
+  throw Error({ErrorKind::usage, "E0850", "", "no such option", std::string(name), hint});
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void Settings::set(std::string_view name, double value) {
                       (!option.whole || value == std::floor(value));
     if (!fits)
       throw Error({ErrorKind::usage,
-                   "E0761",
+                   "E0851",
                    "",
                    std::string(name) + " takes " + range_of(option),
                    shortest(value),

@@ -80,7 +80,7 @@ void Perceptron::finish_learning() {
   const std::size_t taught = kept_ - held_out;
   if (taught < 2 * network_.size() || held_out == 0)
     throw Error({ErrorKind::numeric,
-                 "E0767",
+                 "E0860",
                  "",
                  "the learning window holds fewer than two instants for each weight of the "
                  "perceptron (" +
@@ -95,7 +95,7 @@ void Perceptron::finish_learning() {
       network_, taught_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
   if (best.parameters.empty())
     throw Error({ErrorKind::numeric,
-                 "E0768",
+                 "E0861",
                  "",
                  "no training of the perceptron gave finite numbers",
                  "",

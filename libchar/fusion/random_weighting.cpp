@@ -64,7 +64,7 @@ RandomWeightingPublished::RandomWeightingPublished(const Given& given, const Set
       weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))) {
   if (reference_ >= given.channels || second_ >= given.channels || reference_ == second_)
     throw Error({ErrorKind::usage,
-                 "E0765",
+                 "E0855",
                  "",
                  "random-weighting-published compares with two different channels of the " +
                      std::to_string(given.channels) + " of the scene",

@@ -27,7 +27,7 @@ namespace {
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Given& given, const Settings& settings) {
   if (std::string sentence = why_not(A::card, given); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0762", "", std::move(sentence), "", ""});
+    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
   return std::make_unique<RunnerOf<A>>(given, settings);
 }
 
@@ -85,7 +85,7 @@ const Entry& algorithm(std::string_view name) {
   for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.card->name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
-               "E0763",
+               "E0853",
                "",
                "no fusion algorithm has this name",
                std::string(name),

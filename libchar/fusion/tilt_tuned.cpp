@@ -72,7 +72,7 @@ double TiltWindow::gravity_variance() const {
   const double variance = mean_square(Gravity{});
   if (std::isnan(variance))
     throw Error({ErrorKind::numeric,
-                 "E0770",
+                 "E0863",
                  "",
                  "the learning window holds no angle of gravity to tune a tilt filter with",
                  "",

@@ -261,8 +261,10 @@ class CsvSource final : public RowSource {
       std::uint64_t sequence = 0;
       {
         std::unique_lock lock(mutex_);
-        room_changed_.wait(
-            lock, [&] { return stop_ || exhausted_ || (!reading_ && read_ < delivered_ + room_); });
+        // Neither the parsed chunks nor those that wait for their hash may pile up.
+        room_changed_.wait(lock, [&] {
+          return stop_ || exhausted_ || (!reading_ && read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_);
+        });
         if (stop_ || exhausted_) return;
         reading_ = true;  // one reader at a time, in file order
         sequence = read_++;
@@ -321,6 +323,7 @@ class CsvSource final : public RowSource {
       spare_raws_.push_back(std::move(raw));
       ++hashed_;
       hashing_ = false;
+      room_changed_.notify_one();
     }
   }
 

@@ -8,12 +8,13 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/lanes.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kBlock = 2048;  // stays in the first-level cache while it is looked at twice
 constexpr std::size_t kDistinct = 4096;
 constexpr std::uint64_t kSaturatedRun = 3;
 
@@ -67,11 +68,76 @@ struct Extreme {
   }
 };
 
-constexpr std::size_t kLanes = 8;  // independent partial sums: any vector width gives the same bits
-using Lanes = double[kLanes];
+double fold(Four lane) { return (lane[0] + lane[2]) + (lane[1] + lane[3]); }
 
-double fold(const Lanes& lane) {
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+/// What one look at a block gives.
+struct BlockSums {
+  double sum = 0;                       // of x - shift
+  double low = 0, high = 0;             // extremes
+  double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
+  bool repeats = false;                 // some difference is zero
+};
+
+/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width.
+LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x, const double* before, std::size_t n, double shift) {
+  Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {};
+  Four low = {x[0], x[0], x[0], x[0]}, high = low;
+  auto repeats = low != low;  // none yet
+  const std::size_t whole = n - n % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i), d = v - LIBCHAR_FOUR(before + i), q = d * d;
+    sum += v - shift;
+    low = v < low ? v : low;
+    high = v > high ? v : high;
+    repeats |= d == 0.0;
+    a1 += d;
+    a2 += q;
+    a3 += q * d;
+    a4 += q * q;
+  }
+  for (std::size_t i = whole; i < n; ++i) {
+    const double v = x[i], d = v - before[i], q = d * d;
+    const std::size_t k = i % 4;
+    sum[k] += v - shift;
+    low[k] = v < low[k] ? v : low[k];
+    high[k] = v > high[k] ? v : high[k];
+    repeats[k] |= d == 0 ? -1 : 0;
+    a1[k] += d;
+    a2[k] += q;
+    a3[k] += q * d;
+    a4[k] += q * q;
+  }
+  return {fold(sum), std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]}),
+          fold(a1), fold(a2), fold(a3), fold(a4), (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0};
+}
+
+/// Sum of squares of (x - shift) - offset.
+LIBCHAR_WIDE_LANES double squares_about(const double* x, std::size_t n, double shift, double offset) {
+  Four sum[2] = {};
+  const std::size_t whole = n - n % 8;
+  for (std::size_t i = 0; i < whole; i += 8)
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Four d = (LIBCHAR_FOUR(x + i + 4 * h) - shift) - offset;
+      sum[h] += d * d;
+    }
+  for (std::size_t i = whole; i < n; ++i) {
+    const double d = (x[i] - shift) - offset;
+    sum[0][i % 4] += d * d;
+  }
+  return fold(sum[0] + sum[1]);
+}
+
+LIBCHAR_WIDE_LANES bool any_missing(const double* x, std::size_t n) {
+  Four sum = {};
+  auto missing = sum != sum;
+  const std::size_t whole = n - n % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i);
+    missing |= v != v;
+  }
+  bool any = (missing[0] | missing[1] | missing[2] | missing[3]) != 0;
+  for (std::size_t i = whole; i < n; ++i) any |= x[i] != x[i];
+  return any;
 }
 
 // Mean and variance only: sums about the block's first value, blocks merged by Chan's formula
@@ -81,26 +147,12 @@ struct MeanAndSpread {
   double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
 
-  void block(const double* x, std::size_t count) {
-    Lanes sum{}, square{};
+  void block(const double* x, std::size_t count, double sum_about_first) {
     const double shift = x[0];
     if (n == 0) origin = shift;
-    const std::size_t whole = count - count % kLanes;
-    for (std::size_t i = 0; i < whole; i += kLanes)
-      for (std::size_t k = 0; k < kLanes; ++k) sum[k] += x[i + k] - shift;
-    for (std::size_t i = whole; i < count; ++i) sum[i % kLanes] += x[i] - shift;
-    const double offset = fold(sum) / static_cast<double>(count);
-    for (std::size_t i = 0; i < whole; i += kLanes)
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        const double d = (x[i + k] - shift) - offset;
-        square[k] += d * d;
-      }
-    for (std::size_t i = whole; i < count; ++i) {
-      const double d = (x[i] - shift) - offset;
-      square[i % kLanes] += d * d;
-    }
+    const double offset = sum_about_first / static_cast<double>(count);
     const double other = static_cast<double>(count), total = n + other, d = (shift - origin) + offset - mean;
-    m2 += fold(square) + d * d * n * other / total;
+    m2 += squares_about(x, count, shift, offset) + d * d * n * other / total;
     mean += d * other / total;
     n = total;
   }
@@ -111,28 +163,11 @@ struct MeanAndSpread {
 struct DifferenceMoments {
   double n = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
 
-  void block(const double* d, std::size_t count) {
-    Lanes a1{}, a2{}, a3{}, a4{};
-    const std::size_t whole = count - count % kLanes;
-    for (std::size_t i = 0; i < whole; i += kLanes)
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        const double v = d[i + k], q = v * v;
-        a1[k] += v;
-        a2[k] += q;
-        a3[k] += q * v;
-        a4[k] += q * q;
-      }
-    for (std::size_t i = whole; i < count; ++i) {
-      const double v = d[i], q = v * v;
-      a1[i % kLanes] += v;
-      a2[i % kLanes] += q;
-      a3[i % kLanes] += q * v;
-      a4[i % kLanes] += q * q;
-    }
-    s1 += fold(a1);
-    s2 += fold(a2);
-    s3 += fold(a3);
-    s4 += fold(a4);
+  void add(const BlockSums& block) {
+    s1 += block.s1;
+    s2 += block.s2;
+    s3 += block.s3;
+    s4 += block.s4;
   }
   double kurtosis() const {
     if (n < 4 || !(s2 > 0)) return 3;
@@ -144,23 +179,6 @@ struct DifferenceMoments {
     return fourth / (v * v);
   }
 };
-
-void extremes(const double* x, std::size_t count, double& low, double& high) {
-  Lanes l, h;
-  for (std::size_t k = 0; k < kLanes; ++k) l[k] = h[k] = x[0];
-  const std::size_t whole = count - count % kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      l[k] = x[i + k] < l[k] ? x[i + k] : l[k];
-      h[k] = x[i + k] > h[k] ? x[i + k] : h[k];
-    }
-  for (std::size_t i = whole; i < count; ++i) {
-    l[0] = std::min(l[0], x[i]);
-    h[0] = std::max(h[0], x[i]);
-  }
-  low = *std::min_element(l, l + kLanes);
-  high = *std::max_element(h, h + kLanes);
-}
 
 // The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing
 // when there is none.
@@ -228,92 +246,109 @@ struct QualityMeter::State {
   bool joined = false;  // previous is the sample right before
   bool float32 = true;
   bool any_fraction = false;
-  double block[kBlock];
-  bool starts[kBlock];  // sample i does not follow sample i-1 directly (missing samples between)
+  double held[1 + kBlock];  // the sample before the block, then samples until the block is full
+  bool starts[kBlock];      // sample i does not follow sample i-1 directly (missing samples between)
   std::size_t used = 0;
   bool any_start = false;
 
   void push(std::span<const double> samples);
-  void process();
-  void runs(const double* x, std::size_t n);
+  void hold(const double* x, std::size_t n);
+  void process_held();
+  void process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks);
+  void runs(const double* x, const double* before, std::size_t n, bool repeats);
 };
 
 void QualityMeter::State::push(std::span<const double> samples) {
-  for (std::size_t done = 0; done < samples.size();) {
-    const std::size_t n = std::min(kBlock - used, samples.size() - done);
-    const double* const x = samples.data() + done;
-    int absent = 0;
-    for (std::size_t i = 0; i < n; ++i) absent |= x[i] != x[i];
-    if (absent == 0) {
-      std::memcpy(block + used, x, n * sizeof(double));
+  const double* x = samples.data();
+  const double* const end = x + samples.size();
+  while (x != end) {
+    const std::size_t n = std::min<std::size_t>(kBlock - used, static_cast<std::size_t>(end - x));
+    const bool missing_here = any_missing(x, n);
+    // A whole block is looked at where it lies, but for its first sample, whose neighbour may be elsewhere.
+    if (n == kBlock && joined && !missing_here && x != samples.data()) {
+      const BlockSums sums = sums_of(x, x - 1, n, x[0]);
+      runs(x, x - 1, n, sums.repeats);
+      process(x, sums, n, 0);
+    } else if (!missing_here) {
+      std::memcpy(held + 1 + used, x, n * sizeof(double));
       std::memset(starts + used, 0, n);
       starts[used] = !joined;
       any_start |= !joined;
       joined = true;
       used += n;
     } else {
-      for (std::size_t i = 0; i < n; ++i) {
-        if (std::isnan(x[i])) {
-          ++missing;
-          joined = false;
-          continue;
-        }
-        starts[used] = !joined;
-        any_start |= !joined;
-        block[used++] = x[i];
-        joined = true;
-      }
+      hold(x, n);
     }
-    done += n;
-    if (used == kBlock) process();
+    x += n;
+    if (used == kBlock) process_held();
   }
 }
 
-void QualityMeter::State::process() {
+void QualityMeter::State::hold(const double* x, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (std::isnan(x[i])) {
+      ++missing;
+      joined = false;
+      continue;
+    }
+    starts[used] = !joined;
+    any_start |= !joined;
+    held[1 + used++] = x[i];
+    joined = true;
+  }
+}
+
+void QualityMeter::State::process_held() {
   if (used == 0) return;
   const std::size_t n = used;
-  values.block(block, n);
-  double low = 0, high = 0;
-  extremes(block, n, low, high);
-  minimum = std::min(minimum, low);
-  maximum = std::max(maximum, high);
-  double difference[kBlock];
-  difference[0] = block[0] - previous;
-  for (std::size_t i = 1; i < n; ++i) difference[i] = block[i] - block[i - 1];
-  runs(difference, n);
+  const double* const x = held + 1;
+  held[0] = previous;
+  const double* before = held;
   std::size_t breaks = 0;
-  for (std::size_t i = 0; any_start && i < n; ++i)
-    if (starts[i]) {
-      difference[i] = 0;
-      ++breaks;
-    }
-  differences.block(difference, n);
-  differences.n += static_cast<double>(n - breaks);
-  top.block(block, n, high);
-  bottom.block(block, n, low);
-  if (float32) {
-    int wide = 0;
+  double without_breaks[kBlock];
+  if (any_start) {  // a difference across missing samples counts as zero
+    std::copy_n(held, n, without_breaks);
     for (std::size_t i = 0; i < n; ++i)
-      wide |= static_cast<double>(static_cast<float>(block[i])) != block[i];
-    float32 = wide == 0;
+      if (starts[i]) {
+        without_breaks[i] = x[i];
+        ++breaks;
+      }
+    before = without_breaks;
   }
-  for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(block[i]);
-  previous = block[n - 1];
+  const BlockSums sums = sums_of(x, before, n, x[0]);
+  runs(x, held, n, sums.repeats);
+  process(x, sums, n, breaks);
   used = 0;
   any_start = false;
 }
 
+void QualityMeter::State::process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks) {
+  values.block(x, n, sums.sum);
+  minimum = std::min(minimum, sums.low);
+  maximum = std::max(maximum, sums.high);
+  differences.add(sums);
+  differences.n += static_cast<double>(n - breaks);
+  top.block(x, n, sums.high);
+  bottom.block(x, n, sums.low);
+  if (float32) {
+    int wide = 0;
+    for (std::size_t i = 0; i < n; ++i) wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
+    float32 = wide == 0;
+  }
+  for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(x[i]);
+  previous = x[n - 1];
+}
+
 // Runs of one value: differences of exactly zero in a row, plus one; a missing sample ends a run.
-void QualityMeter::State::runs(const double* difference, std::size_t n) {
-  int zeros = 0;
-  for (std::size_t i = 0; i < n; ++i) zeros += difference[i] == 0;
-  if (zeros == 0) {
+void QualityMeter::State::runs(const double* x, const double* before, std::size_t n, bool repeats) {
+  if (!repeats) {
     run = 1;
     longest_run = std::max<std::uint64_t>(longest_run, 1);
     return;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    run = difference[i] == 0 && !starts[i] ? run + 1 : 1;
+    const bool start = any_start && starts[i];
+    run = x[i] - before[i] == 0 && !start ? run + 1 : 1;
     longest_run = std::max(longest_run, run);
   }
 }
@@ -377,7 +412,7 @@ void suggest(ChannelQuality& q) {
 
 ChannelQuality QualityMeter::finish() const {
   State state = *state_;
-  state.process();
+  state.process_held();
   ChannelQuality q;
   q.samples = static_cast<std::uint64_t>(state.values.n);
   q.missing = state.missing;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/error.hpp"
@@ -26,6 +27,21 @@ WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
   options.segment = segment;
   return options;
 }
+
+// Half segments that may serve as blocks of the fit: long enough for their sixteen coefficients left to the series of means to be
+// few, short enough for many of them in a record.
+bool serves_as_block(std::uint64_t half) { return half >= 4096 && half <= (std::uint64_t{1} << 16U); }
+
+// Whole halves go to the fit with the transform that the spectrum makes of them.
+struct HalvesToBins final : HalfListener {
+  explicit HalvesToBins(PowerBinner& into) : bins(into) {}
+  bool half(std::span<const double> samples, bool whole) override {
+    if (whole && bins.take_block(samples)) return true;
+    bins.push(samples);
+    return false;
+  }
+  PowerBinner& bins;
+};
 
 // A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
 template <class Step>
@@ -75,9 +91,23 @@ void ChannelStage::stream(std::span<const double> samples) {
     kept_.insert(kept_.end(), samples.begin(), samples.end());
     return;
   }
+  const bool fit = options_->wanted.fit || options_->wanted.allan;
   if (options_->wanted.allan) streams_->allan.push(samples);
+  if (streams_->shared_blocks) {
+    HalvesToBins listener(streams_->bins);
+    streams_->spectrum->push(samples, &listener);
+    return;
+  }
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
-  if (options_->wanted.fit || options_->wanted.allan) streams_->bins.push(samples);
+  if (fit) streams_->bins.push(samples);
+}
+
+void ChannelStage::reserve(std::size_t samples) {
+  try {
+    kept_.reserve(samples);
+  } catch (const std::bad_alloc&) {
+    // Where address space is short the record grows as it comes.
+  }
 }
 
 void ChannelStage::stop_keeping() {
@@ -88,6 +118,9 @@ void ChannelStage::stop_keeping() {
   streams_.emplace();
   const std::uint64_t segment = options_->spectrum.segment;
   streams_->spectrum.emplace(with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
+  const std::uint64_t half = streams_->spectrum->half();
+  streams_->shared_blocks = options_->wanted.spectrum && (options_->wanted.fit || options_->wanted.allan) && serves_as_block(half);
+  if (streams_->shared_blocks) streams_->bins = PowerBinner(half);
   const std::vector<double> kept = std::move(kept_);
   kept_ = {};
   samples_ = 0;
@@ -101,7 +134,8 @@ bool ChannelStage::needs_second_pass() const {
 }
 
 void ChannelStage::begin_second_pass() {
-  streams_->bins = ChannelStreams().bins;
+  streams_->bins = PowerBinner(kStreamedBlock);
+  streams_->shared_blocks = false;
   streams_->cleaner.emplace();
 }
 
@@ -145,6 +179,10 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
     attempt(result, "noise fit", [&] {
       const ChannelQuality quality = quality_.finish();
       if (streams_->cleaner) streams_->bins.push(streams_->cleaner->finish());
+      if (streams_->shared_blocks) {
+        streams_->bins.push(streams_->spectrum->rest());
+        streams_->bins.set_taken_power(streams_->spectrum->block_power());
+      }
       result.fit = fit_binned(streams_->bins, rate_hz, quality.samples, result.allan.points.empty() ? nullptr : &result.allan, options_->fit);
       if (streams_->cleaner && streams_->cleaner->count() > 0)
         result.fit->remedies.insert(result.fit->remedies.begin(), spikes_remedy(quality.difference_kurtosis, spike_alarm(quality.samples), streams_->cleaner->count()));

@@ -10,12 +10,16 @@
 
 namespace libchar {
 
+inline constexpr std::uint64_t kStreamedBlock = std::uint64_t{1} << 13U;
+
 /// The fixed-size stages of a channel whose samples are not kept.
 struct ChannelStreams {
   AllanPyramid allan;
   std::optional<WelchStream> spectrum;
-  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
-  PowerBinner bins{std::uint64_t{1} << 13U};
+  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway. Where the
+  // spectrum goes by halves the blocks are these halves, and their transforms come from there.
+  PowerBinner bins{kStreamedBlock};
+  bool shared_blocks = false;
   std::optional<SpikeCleaner> cleaner;  // in the second pass
 };
 
@@ -28,8 +32,8 @@ class ChannelStage {
   /// Moves what is kept into the streaming stages and keeps nothing from now on.
   void stop_keeping();
   std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
-  /// Room for a record of this length, so that growing does not take twice the memory.
-  void reserve(std::size_t samples) { kept_.reserve(samples); }
+  /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
+  void reserve(std::size_t samples);
 
   /// After the last push: do spikes ask for a second pass over the log, which cleans them on the way into the fit? Never for
   /// samples that were kept.

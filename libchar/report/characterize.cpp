@@ -21,7 +21,13 @@ class Stages : public BlockSink {
     budget_ = whole_record_needed || options.full_overlap ? options.memory_bytes : std::min(options.memory_bytes, kSmallLogBytes);
   }
 
-  void begin(const LogInfo& so_far) override { for (std::size_t c = 0; c < so_far.channels.size(); ++c) stages_.emplace_back(options_); }
+  void begin(const LogInfo& so_far) override {
+    const std::size_t channels = so_far.channels.size();
+    for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_);
+    // No value takes less than a byte of the file, and no more than the budget is kept.
+    const std::uint64_t most = std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
+    for (ChannelStage& stage : stages_) stage.reserve(most);
+  }
 
   void block(const SampleBlock& samples) override {
     kept_bytes_ += samples.rows * samples.channels.size() * sizeof(double);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -112,6 +113,34 @@ std::span<const double> RealFft::inverse() {
 
 std::size_t RealFft::size() const {
   return state_->n;
+}
+
+struct ComplexFft::State {
+  Plan plan;
+};
+
+ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance)
+    : state_(std::make_unique<State>()) {
+  const auto signed_of = [](std::size_t value) { return static_cast<std::ptrdiff_t>(value); };
+  const fftw_iodim64 dimension{signed_of(n), signed_of(step), signed_of(step)};
+  const fftw_iodim64 batch{signed_of(count), signed_of(distance), signed_of(distance)};
+  // Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the
+  // address.
+  const auto memory = aligned<std::complex<double>>(n * step + count * distance + 4);
+  const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
+  auto* const values =
+      reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
+  const std::lock_guard lock(planner());
+  state_->plan.reset(
+      fftw_plan_guru64_dft(1, &dimension, 1, &batch, values, values, FFTW_FORWARD, FFTW_ESTIMATE));
+}
+ComplexFft::~ComplexFft() = default;
+ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;
+ComplexFft& ComplexFft::operator=(ComplexFft&&) noexcept = default;
+
+void ComplexFft::transform(double* interleaved) const {
+  auto* const values = reinterpret_cast<fftw_complex*>(interleaved);
+  fftw_execute_dft(state_->plan.get(), values, values);
 }
 
 namespace {

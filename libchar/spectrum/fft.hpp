@@ -29,6 +29,22 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
+/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
+/// stands at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
+/// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes.
+class ComplexFft {
+ public:
+  ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);
+  ~ComplexFft();
+  ComplexFft(ComplexFft&&) noexcept;
+  ComplexFft& operator=(ComplexFft&&) noexcept;
+  void transform(double* interleaved) const;  ///< real and imaginary parts in turn
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 /// Orthonormal DCT-II: c_0 = sum y / sqrt(n); c_k = sqrt(2/n) sum_t y_t cos(pi k (t + 1/2) / n), by
 /// one real FFT of permuted data.
 class Dct {

@@ -11,11 +11,13 @@
 // any frequency between bins.
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
 
+#include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -51,6 +53,8 @@ Density density_of(const Spectrum& s) {
   Density out;
   const auto zero = static_cast<std::size_t>(
       std::lower_bound(s.frequency_hz.begin(), s.frequency_hz.end(), 0.0) - s.frequency_hz.begin());
+  out.frequency_hz.reserve(s.value.size() - zero);
+  out.power.reserve(s.value.size() - zero);
   for (std::size_t i = zero; i < s.value.size(); ++i) {
     if (2 * (i - zero) == s.segment) break;
     out.frequency_hz.push_back(s.frequency_hz[i]);
@@ -82,16 +86,19 @@ Density averaged(const Density& d, std::size_t count) {
   return out;
 }
 
-// median[i] of values (i - kFlank, i], fewer at the start; a sorted window moves along.
-std::vector<double> trailing_medians(const std::vector<double>& values, std::size_t begin) {
-  std::vector<double> medians(values.size(), 0.0), sorted;
-  for (std::size_t i = begin; i < values.size(); ++i) {
-    if (i >= begin + kFlank)
-      sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), values[i - kFlank]));
-    sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), values[i]), values[i]);
-    medians[i] = (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]) / 2;
-  }
-  return medians;
+// Median of at most kFlank values.
+double median_of(const double* values, std::size_t count) {
+  std::array<double, kFlank> sorted;
+  std::partial_sort_copy(
+      values, values + count, sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
+}
+
+// Are more than half of kFlank values at least `level`? Then so is their median.
+LIBCHAR_WIDE_LANES bool mostly_at_least(const double* values, double level) {
+  auto below = LIBCHAR_FOUR(values) < level;
+  for (std::size_t i = 4; i < kFlank; i += 4) below += LIBCHAR_FOUR(values + i) < level;
+  return -(below[0] + below[1] + below[2] + below[3]) < static_cast<std::ptrdiff_t>(kFlank / 2);
 }
 
 struct Floor {
@@ -102,31 +109,37 @@ struct Floor {
 class LocalFloor {
  public:
   LocalFloor(const Density& density, std::size_t begin, std::size_t guard)
-      : begin_(begin),
-        guard_(guard),
-        size_(density.power.size()),
-        medians_(trailing_medians(density.power, begin)) {
+      : begin_(begin), guard_(guard), power_(density.power) {
     const boost::math::chi_squared distribution(density.dof);
     typical_ = quantile(distribution, 0.5) / density.dof;
   }
-  // Of the flanks that have enough bins the higher; none: count 0.
+  // Of the flanks that have enough bins the higher; none: count 0. Slopes fall to the right:
+  // without a left flank nothing tells a slope from a line.
   Floor at(std::size_t k) const {
     Floor floor;
-    if (k >= begin_ + guard_ + kLeast)
-      raise(floor, medians_[k - guard_ - 1], std::min(kFlank, k - guard_ - begin_));
-    if (k + guard_ + kFlank < size_) raise(floor, medians_[k + guard_ + kFlank], kFlank);
-    // Slopes fall to the right: without a left flank nothing tells a slope from a line.
-    if (k < begin_ + guard_ + kLeast) floor.count = 0;
+    if (k < begin_ + guard_ + kLeast) return floor;
+    const std::size_t left = std::min(kFlank, k - guard_ - begin_);
+    raise(floor, median_of(power_.data() + (k - guard_ - left), left), left);
+    if (right_of(k)) raise(floor, median_of(power_.data() + k + guard_ + 1, kFlank), kFlank);
     return floor;
+  }
+  // The answer for nearly every bin, without a median: is the floor of whole flanks at least
+  // `level`?
+  bool surely_at_least(std::size_t k, double level) const {
+    if (k < begin_ + guard_ + kFlank) return false;
+    const double value = level * typical_ * (1 + 1e-12);
+    return mostly_at_least(power_.data() + (k - guard_ - kFlank), value) ||
+           (right_of(k) && mostly_at_least(power_.data() + k + guard_ + 1, value));
   }
 
  private:
+  bool right_of(std::size_t k) const { return k + guard_ + kFlank < power_.size(); }
   void raise(Floor& floor, double median, std::size_t count) const {
     if (floor.count != 0 && median / typical_ <= floor.level) return;
     floor = {median / typical_, count};
   }
-  std::size_t begin_, guard_, size_;
-  std::vector<double> medians_;
+  std::size_t begin_, guard_;
+  const std::vector<double>& power_;
   double typical_ = 1;  // median of chi-square / nu
 };
 
@@ -210,6 +223,7 @@ std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
   for (const double c : d.correlation) correlation += c;
   Threshold threshold(d.dof, correlation, alarm / static_cast<double>(d.power.size()));
 
+  const double whole_flank = threshold(kFlank);
   std::vector<Found> found;
   std::size_t first = 0, last = 0;
   double floor = 0;
@@ -223,6 +237,7 @@ std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
   };
   for (std::size_t k = lobe; k < d.power.size(); ++k) {
     if (open && k > last + guard) close();
+    if (floors.surely_at_least(k, d.power[k] / whole_flank)) continue;
     const Floor here = floors.at(k);
     if (here.count == 0 || !(here.level > 0) || !(d.power[k] > here.level * threshold(here.count)))
       continue;

@@ -28,20 +28,33 @@ double power_of(const Spectrum& s, std::size_t i) {
 }
 
 double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
+  const double count = static_cast<double>(end - begin);
   double variance = 0;
+  // All bins but the first and last of a spectrum have the same degrees of freedom.
+  const bool same = std::all_of(s.dof.begin() + static_cast<std::ptrdiff_t>(begin),
+                                s.dof.begin() + static_cast<std::ptrdiff_t>(end),
+                                [&](double dof) { return dof == s.dof[begin]; });
+  if (same) {
+    double terms = count;
+    for (std::size_t m = 1; m <= s.neighbour_correlation.size() && begin + m < end; ++m)
+      terms += 2 * (count - static_cast<double>(m)) * s.neighbour_correlation[m - 1];
+    return s.dof[begin] * count * (count / terms);
+  }
   for (std::size_t k = begin; k < end; ++k) {
     variance += 2 / s.dof[k];
     for (std::size_t m = 1; m <= s.neighbour_correlation.size() && k + m < end; ++m)
       variance += 2 * s.neighbour_correlation[m - 1] * 2 / std::sqrt(s.dof[k] * s.dof[k + m]);
   }
-  const double count = static_cast<double>(end - begin);
   return 2 * count * count / variance;
 }
 
 // Logarithmic bins numbered from `low`, `per_e` of them for each factor e.
 struct LogAxis {
   double low = 1, per_e = 1;
-  long bin(double f) const { return std::lround(std::floor(std::log(f / low) * per_e + 1e-9)); }
+  double log_low = std::log(low);
+  long bin(double log_f) const {
+    return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9));
+  }
 };
 
 LogAxis axis_of(double low, double high, std::size_t bins) {
@@ -62,13 +75,15 @@ void append_averages(const Spectrum& s,
   while (begin < s.value.size() && (s.frequency_hz[begin] <= 0 || s.frequency_hz[begin] < from))
     ++begin;
   while (begin < s.value.size() && s.frequency_hz[begin] < to) {
-    const long bin = axis.bin(s.frequency_hz[begin]);
-    double power = 0, log_f = 0;
-    std::size_t end = begin;
-    for (; end < s.value.size() && s.frequency_hz[end] < to && axis.bin(s.frequency_hz[end]) == bin;
-         ++end) {
+    const double first_log = std::log(s.frequency_hz[begin]);
+    const long bin = axis.bin(first_log);
+    double power = power_of(s, begin) / response(s.frequency_hz[begin]), log_f = first_log;
+    std::size_t end = begin + 1;
+    for (; end < s.value.size() && s.frequency_hz[end] < to; ++end) {
+      const double here = std::log(s.frequency_hz[end]);
+      if (axis.bin(here) != bin) break;
       power += power_of(s, end) / response(s.frequency_hz[end]);
-      log_f += std::log(s.frequency_hz[end]);
+      log_f += here;
     }
     const double count = static_cast<double>(end - begin);
     out.frequency_hz.push_back(end == begin + 1 ? s.frequency_hz[begin] : std::exp(log_f / count));

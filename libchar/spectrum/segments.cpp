@@ -257,6 +257,10 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
     amplitude += w;
     energy += w * w;
   }
+  if (window.empty()) {  // sums over the periodic Hann window
+    amplitude = static_cast<double>(n) / 2;
+    energy = 3 * static_cast<double>(n) / 8;
+  }
   Spectrum out;
   out.sides = options_.sides;
   out.scaling = options_.scaling;
@@ -268,7 +272,9 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   out.enbw_hz = rate_hz * energy / (amplitude * amplitude);
   out.neighbour_correlation = neighbour_correlation(options_.window, layout_, used_, pairs_);
 
-  const auto r = window_correlation(window, layout_.hop, recent_.size());
+  // Of the Hann window with itself half its length away: 1/6.
+  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6}
+                                : window_correlation(window, layout_.hop, recent_.size());
   double correlated = count;
   for (std::size_t lag = 1; lag < r.size(); ++lag)
     correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];
@@ -286,6 +292,10 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
     out.value.push_back(root ? std::sqrt(power) : power);
     out.dof.push_back(edge ? dof / 2 : dof);
   };
+  const std::size_t bins = options_.sides == Sides::two ? n + 1 : n / 2 + 1;
+  out.frequency_hz.reserve(bins);
+  out.value.reserve(bins);
+  out.dof.reserve(bins);
   if (options_.sides == Sides::two)
     for (std::size_t k = (n - 1) / 2; k > 0; --k) put(k, -1);
   for (std::size_t k = 0; k <= n / 2; ++k) put(k, 1);

@@ -50,6 +50,7 @@ class Average {
   void note_segment(bool used);  ///< in the order of the segments
   std::uint64_t used() const { return used_; }
   std::uint64_t dropped() const { return dropped_; }
+  /// No window: the periodic Hann window, half overlapping.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
 
  private:

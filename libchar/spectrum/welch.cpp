@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "libchar/core/error.hpp"
+#include "libchar/spectrum/half_segments.hpp"
 #include "libchar/spectrum/segments.hpp"
 
 namespace libchar {
@@ -97,16 +99,42 @@ struct Group {
   std::vector<char> used;
 };
 
+// What one thread works with: halves, each transformed once, where the options allow it; else whole
+// segments.
+struct Worker {
+  std::optional<HalfSegments> halves;
+  std::optional<Periodogram> periodogram;
+  /// No window: by halves.
+  Worker(const WelchOptions& options, const Layout& layout, const std::vector<double>& window) {
+    if (window.empty())
+      halves.emplace(layout.segment);
+    else
+      periodogram.emplace(options, window);
+  }
+};
+
 // The segments [index * group, (index + 1) * group) of the record.
 Group sum_of_group(std::uint64_t index,
                    std::span<const double> record,
                    const Layout& layout,
-                   Periodogram& periodogram) {
+                   Worker& worker) {
   Group out{index, std::vector<double>(layout.segment / 2 + 1, 0.0), {}};
+  const std::uint64_t first = index * layout.group;
   const std::uint64_t last =
-      std::min<std::uint64_t>((index + 1) * layout.group, layout.count(record.size()));
-  for (std::uint64_t i = index * layout.group; i < last; ++i)
-    out.used.push_back(periodogram.add(record.data() + i * layout.hop, out.power.data()));
+      std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
+  if (!worker.halves) {
+    for (std::uint64_t i = first; i < last; ++i)
+      out.used.push_back(worker.periodogram->add(record.data() + i * layout.hop, out.power.data()));
+    return out;
+  }
+  HalfSegments& halves = *worker.halves;
+  halves.forget();
+  for (std::uint64_t i = first; i <= last; ++i) {
+    const double* const half = record.data() + i * layout.hop;
+    const bool used = halves.push(half, halves.mean_of(half), false);
+    if (i > first) out.used.push_back(used);
+  }
+  halves.take_power(out.power);
   return out;
 }
 
@@ -128,18 +156,22 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
   check_rate(rate_hz);
   std::vector<std::string> notes;
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
-  const std::vector<double> window = window_values(options.window, layout.segment);
+  WelchOptions chosen = options;
+  chosen.segment = layout.segment;
+  const std::vector<double> window = HalfSegments::suits(chosen)
+                                         ? std::vector<double>()
+                                         : window_values(options.window, layout.segment);
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   Average average(options, layout);
 
   const int threads = static_cast<int>(std::min(groups, threads_of(options)));
   if (threads <= 1) {
-    Periodogram periodogram(options, window);
+    Worker worker(options, layout, window);
     for (std::uint64_t g = 0; g < groups; ++g)
-      take(sum_of_group(g, record, layout, periodogram), average);
+      take(sum_of_group(g, record, layout, worker), average);
   } else {
-    tbb::enumerable_thread_specific<Periodogram> workers(
-        [&] { return Periodogram(options, window); });
+    tbb::enumerable_thread_specific<Worker> workers(
+        [&] { return Worker(options, layout, window); });
     tbb::task_arena arena(threads);
     arena.execute([&] {
       std::uint64_t next = 0;

@@ -1,11 +1,16 @@
-// Welch's method on samples as they come: one segment is kept, its tail is the head of the next.
+// Welch's method on samples as they come. By halves, where that is possible: each is transformed
+// once. Else one segment is kept, its tail is the head of the next.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/spectrum/half_segments.hpp"
 #include "libchar/spectrum/segments.hpp"
 
 namespace libchar {
@@ -15,32 +20,96 @@ using namespace welch_detail;
 struct WelchStream::State {
   WelchOptions options;
   Layout layout;
-  std::vector<double> window;
-  Periodogram periodogram;
+  std::vector<double> window;              // none: by halves
+  std::optional<Periodogram> periodogram;  // one of the two
+  std::optional<HalfSegments> halves;
   Average average;
-  std::vector<double> segment;  // its first `filled` samples are there
+  std::vector<double> segment;  // its first `filled` samples are there (or those of the half)
   std::size_t filled = 0;
   std::vector<double> group;  // power of the group under way, `in_group` segments of it
   std::size_t in_group = 0;
   std::uint64_t samples = 0;
+  bool first_half = true;
 
   explicit State(const WelchOptions& chosen)
       : options(chosen),
         layout(layout_of(chosen.segment, chosen.overlap)),
-        window(window_values(chosen.window, layout.segment)),
-        periodogram(options, window),
+        window(HalfSegments::suits(chosen) ? std::vector<double>()
+                                           : window_values(chosen.window, layout.segment)),
         average(options, layout),
-        segment(layout.segment),
-        group(layout.segment / 2 + 1, 0.0) {}
+        group(layout.segment / 2 + 1, 0.0) {
+    if (window.empty())
+      halves.emplace(layout.segment);
+    else
+      periodogram.emplace(options, window);
+    segment.resize(halves ? layout.hop : layout.segment);
+  }
   void take(const double* x);
+  void take_half(const double* x, HalfListener* listener);
+  void end_of_segment();
+  void push_by_segments(std::span<const double> pushed);
+  void push_by_halves(std::span<const double> pushed, HalfListener* listener);
 };
 
-void WelchStream::State::take(const double* x) {
-  average.note_segment(periodogram.add(x, group.data()));
+void WelchStream::State::end_of_segment() {
   if (++in_group < layout.group) return;
+  if (halves) halves->take_power(group);
   average.add_group(group);
   std::fill(group.begin(), group.end(), 0.0);
   in_group = 0;
+}
+
+void WelchStream::State::take(const double* x) {
+  average.note_segment(periodogram->add(x, group.data()));
+  end_of_segment();
+}
+
+void WelchStream::State::take_half(const double* x, HalfListener* listener) {
+  const double mean = halves->mean_of(x);
+  const bool block = listener != nullptr && listener->half({x, layout.hop}, std::isfinite(mean));
+  const bool used = halves->push(x, mean, block);
+  if (!std::exchange(first_half, false)) {
+    average.note_segment(used);
+    end_of_segment();
+  }
+}
+
+void WelchStream::State::push_by_segments(std::span<const double> pushed) {
+  const std::size_t n = layout.segment, hop = layout.hop;
+  while (!pushed.empty()) {
+    // Whole segments inside the pushed block need no copy.
+    if (filled == 0)
+      while (pushed.size() >= n) {
+        take(pushed.data());
+        pushed = pushed.subspan(hop);
+      }
+    const std::size_t more = std::min(n - filled, pushed.size());
+    if (more > 0) std::memcpy(segment.data() + filled, pushed.data(), more * sizeof(double));
+    filled += more;
+    pushed = pushed.subspan(more);
+    if (filled < n) return;
+    take(segment.data());
+    std::memmove(segment.data(), segment.data() + hop, (n - hop) * sizeof(double));
+    filled = n - hop;
+  }
+}
+
+void WelchStream::State::push_by_halves(std::span<const double> pushed, HalfListener* listener) {
+  const std::size_t h = layout.hop;
+  while (!pushed.empty()) {
+    if (filled == 0 && pushed.size() >= h) {  // where it lies
+      take_half(pushed.data(), listener);
+      pushed = pushed.subspan(h);
+      continue;
+    }
+    const std::size_t more = std::min(h - filled, pushed.size());
+    std::memcpy(segment.data() + filled, pushed.data(), more * sizeof(double));
+    filled += more;
+    pushed = pushed.subspan(more);
+    if (filled < h) return;
+    take_half(segment.data(), listener);
+    filled = 0;
+  }
 }
 
 WelchStream::WelchStream(const WelchOptions& options) {
@@ -58,26 +127,22 @@ WelchStream::~WelchStream() = default;
 WelchStream::WelchStream(WelchStream&&) noexcept = default;
 WelchStream& WelchStream::operator=(WelchStream&&) noexcept = default;
 
-void WelchStream::push(std::span<const double> samples) {
-  State& s = *state_;
-  s.samples += samples.size();
-  const std::size_t n = s.layout.segment, hop = s.layout.hop;
-  while (!samples.empty()) {
-    // Whole segments inside the pushed block need no copy.
-    if (s.filled == 0)
-      while (samples.size() >= n) {
-        s.take(samples.data());
-        samples = samples.subspan(hop);
-      }
-    const std::size_t more = std::min(n - s.filled, samples.size());
-    if (more > 0) std::memcpy(s.segment.data() + s.filled, samples.data(), more * sizeof(double));
-    s.filled += more;
-    samples = samples.subspan(more);
-    if (s.filled < n) return;
-    s.take(s.segment.data());
-    std::memmove(s.segment.data(), s.segment.data() + hop, (n - hop) * sizeof(double));
-    s.filled = n - hop;
-  }
+void WelchStream::push(std::span<const double> samples, HalfListener* listener) {
+  state_->samples += samples.size();
+  state_->halves ? state_->push_by_halves(samples, listener) : state_->push_by_segments(samples);
+}
+
+std::uint64_t WelchStream::half() const {
+  return state_->halves ? state_->layout.hop : 0;
+}
+
+std::vector<double> WelchStream::block_power() const {
+  return state_->halves ? state_->halves->block_power() : std::vector<double>();
+}
+
+std::span<const double> WelchStream::rest() const {
+  return state_->halves ? std::span<const double>(state_->segment).first(state_->filled)
+                        : std::span<const double>();
 }
 
 Spectrum WelchStream::finish(double rate_hz) const {
@@ -94,7 +159,7 @@ Spectrum WelchStream::finish(double rate_hz) const {
                  "",
                  "choose a shorter segment"});
   Average whole = s.average;
-  if (s.in_group > 0) whole.add_group(s.group);
+  if (s.in_group > 0) whole.add_group(s.halves ? s.halves->power() : s.group);
   Spectrum spectrum = whole.spectrum(s.window, rate_hz);
   if (spectrum.dropped > 0)
     spectrum.notes.push_back(

@@ -50,8 +50,12 @@ std::vector<double> window_values(Window window, std::size_t n) {
   const std::size_t period = symmetric ? n + 1 : n, first = symmetric ? 1 : 0;
   std::vector<double> w(n);
   for (std::size_t j = 0; j < n; ++j) {
-    // Folded to the first half of the period, so that the window is symmetric to the last bit.
-    const std::size_t position = std::min(j + first, period - (j + first));
+    // Folded to the first half of the period: symmetric to the last bit, and half the cosines.
+    const std::size_t position = j + first, mirror = period - position;
+    if (mirror < position) {
+      w[j] = w[mirror - first];
+      continue;
+    }
     const double x =
         2 * std::numbers::pi * static_cast<double>(position) / static_cast<double>(period);
     double value = terms[0], sign = -1;

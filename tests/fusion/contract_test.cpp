@@ -30,12 +30,12 @@ TEST_CASE("options: set by name, within their range") {
   CHECK(settings["forgetting"] == 0.99);
   settings.set("length", 7);
   CHECK(settings["length"] == 7);
-  CHECK(code_of([&] { settings.set("forgeting", 0.5); }) == "E0760 did you mean forgetting?");
+  CHECK(code_of([&] { settings.set("forgeting", 0.5); }) == "E0850 did you mean forgetting?");
   CHECK(code_of([&] { settings.set("colour", 0.5); }) ==
-        "E0760 its options are forgetting, length");
+        "E0850 its options are forgetting, length");
   for (const double bad : {-0.1, 1.1, std::nan(""), std::numeric_limits<double>::infinity()})
-    CHECK(code_of([&] { settings.set("forgetting", bad); }) == "E0761 ");
-  CHECK(code_of([&] { settings.set("length", 2.5); }) == "E0761 ");
+    CHECK(code_of([&] { settings.set("forgetting", bad); }) == "E0851 ");
+  CHECK(code_of([&] { settings.set("length", 2.5); }) == "E0851 ");
   CHECK(settings["forgetting"] == 0.99);
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("every card is complete, every option's default is in its range") {
       CHECK_NOTHROW(settings.set(option.name, option.standard));
     }
   }
-  CHECK(code_of([] { algorithm("maen"); }) == "E0763 did you mean mean?");
+  CHECK(code_of([] { algorithm("maen"); }) == "E0853 did you mean mean?");
 }
 
 TEST_CASE("why_not: a sentence for each thing that is missing") {

@@ -92,3 +92,54 @@ TEST_CASE("plain rows: the same bits as std::from_chars on random numbers of eve
       if (!same_bits(p.values[i], expected[i])) FAIL("row " << i << ": " << p.values[i] << " against " << expected[i]);
   }
 }
+
+TEST_CASE("plain rows: one unusual field among plain ones is found in whatever row it stands") {
+  if (parse("0,1\n").result.rows == 0) return;
+  std::mt19937_64 random(8);
+  for (const char* unusual : {"", "nan", "1.2.3", ".", "-", "-.", "1 ", "+1", "1_0", "--1", "\"1\"", "1/2", "1:2", ",", "1,2", "12345678901234567x", "x"}) {
+    for (int at = 0; at < 23; ++at) {
+      std::string text;
+      std::vector<double> expected;
+      for (int row = 0; row < 23; ++row) {
+        char number[64];
+        std::snprintf(number, sizeof number, "%.9g", static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
+        text += "5," + std::string(row == at ? unusual : number) + "\n";
+        expected.push_back(std::strtod(number, nullptr));
+      }
+      CAPTURE(unusual, at);
+      const Parsed p = parse(text);
+      REQUIRE(p.result.rows == static_cast<std::size_t>(at));
+      for (std::size_t i = 0; i < p.result.rows; ++i) REQUIRE(same_bits(p.values[i], expected[i]));
+    }
+  }
+}
+
+TEST_CASE("plain rows: fields that fours cannot take, among those they can") {
+  if (parse("0,1\n").result.rows == 0) return;
+  const auto rows_of = [](const std::string& special) {
+    std::string text;
+    for (int row = 0; row < 12; ++row) text += "5," + (row == 6 ? special : "-1.5") + "\n";
+    return text;
+  };
+  for (const std::string special : {"1.", "-7.", "1e-3", "9007199254740991", "9007199254740990.5", "0.1234567890123456", "-0.12345678901234567", "0000000000000.25",
+                                    "-0", "-0.0", "999999999999999.9", "123456789.12345678"}) {
+    CAPTURE(special);
+    const Parsed p = parse(rows_of(special));
+    REQUIRE(p.result.rows == 12);
+    REQUIRE(same_bits(p.values[6], std::strtod(special.c_str(), nullptr)));
+    for (const std::size_t i : {4U, 5U, 7U, 8U, 11U}) REQUIRE(p.values[i] == -1.5);
+  }
+  const auto fractional = [](const char* number) {
+    std::string text;
+    for (int row = 0; row < 9; ++row) text += "5," + std::string(row == 6 ? number : "12") + "\r\n";
+    const Parsed p = parse(text, true);
+    REQUIRE(p.result.rows == 9);
+    return p.fractional != 0;
+  };
+  CHECK_FALSE(fractional("12"));
+  CHECK_FALSE(fractional("-7"));
+  CHECK(fractional("1.5"));
+  CHECK(fractional("1.0"));
+  CHECK(fractional("1."));
+  CHECK(fractional("1e0"));
+}

@@ -1,0 +1,242 @@
+#include "libchar/spectrum/half_segments.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "libchar/spectrum/fft.hpp"
+#include "libchar/spectrum/segments.hpp"
+
+using namespace libchar;
+
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Noise with everything that a transform of halves might stumble over: an offset, a drift (so that
+// the means of the halves differ), a random walk, a sine between two bins.
+std::vector<double> noise(std::size_t n, double offset, double drift) {
+  std::mt19937_64 generator(11);
+  std::normal_distribution<double> normal;
+  std::vector<double> x(n);
+  double walk = 0;
+  for (std::size_t t = 0; t < n; ++t) {
+    const double at = static_cast<double>(t);
+    walk += 0.01 * normal(generator);
+    x[t] = normal(generator) + walk + offset + drift * at / static_cast<double>(n) +
+           std::sin(0.7391 * at);
+  }
+  return x;
+}
+
+WelchOptions segments_of(std::uint64_t n) {
+  WelchOptions options;
+  options.segment = n;
+  return options;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values) most = std::max(most, v);
+  return most;
+}
+
+// Amplitudes, against the largest of them: rounding of a transform is relative to its energy.
+void same_power(const std::vector<double>& got,
+                const std::vector<double>& wanted,
+                double tolerance) {
+  REQUIRE(got.size() == wanted.size());
+  const double scale = std::sqrt(largest(wanted));
+  double worst = 0;
+  for (std::size_t k = 0; k < got.size(); ++k)
+    worst = std::max(worst, std::abs(std::sqrt(got[k]) - std::sqrt(wanted[k])) / scale);
+  CHECK(worst < tolerance);
+}
+
+std::vector<double> power_by_segments(const std::vector<double>& x, std::size_t n) {
+  const auto options = segments_of(n);
+  const auto window = window_values(Window::hann, n);
+  welch_detail::Periodogram periodogram(options, window);
+  std::vector<double> power(n / 2 + 1, 0.0);
+  for (std::size_t t = 0; t + n <= x.size(); t += n / 2)
+    periodogram.add(x.data() + t, power.data());
+  return power;
+}
+
+// Remembers what it heard, and asks for every second half.
+struct Listener final : HalfListener {
+  std::vector<std::vector<double>> heard;
+  std::vector<bool> whole;
+  bool half(std::span<const double> samples, bool is_whole) override {
+    heard.emplace_back(samples.begin(), samples.end());
+    whole.push_back(is_whole);
+    return heard.size() % 2 == 1;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("halves: the powers of whole segments, for lengths that split in every way") {
+  for (const std::size_t n : {4096U, 4800U, 7680U, 8000U, 10000U, 20160U, 65536U}) {
+    REQUIRE(HalfSegments::suits(segments_of(n)));
+    for (const auto& [offset, drift] :
+         {std::pair{0.0, 0.0}, std::pair{9.81, 3.0}, std::pair{-2e4, 500.0}}) {
+      CAPTURE(n, offset, drift);
+      const auto x = noise(2 * n + n / 2, offset, drift);
+      HalfSegments halves(n);
+      std::size_t used = 0;
+      for (std::size_t t = 0; t < x.size(); t += n / 2)
+        used += halves.push(x.data() + t, halves.mean_of(x.data() + t), false);
+      CHECK(used == 4);
+      same_power(halves.power(), power_by_segments(x, n), 1e-12);
+    }
+  }
+}
+
+TEST_CASE("halves: their cosine transforms") {
+  for (const std::size_t n : {4096U, 8000U, 65536U}) {
+    CAPTURE(n);
+    const std::size_t h = n / 2;
+    const auto x = noise(3 * h, 9.81, 3);
+    HalfSegments halves(n);
+    Dct dct(h);
+    std::vector<double> wanted(h, 0.0);
+    for (std::size_t t = 0; t < x.size(); t += h) {
+      halves.push(x.data() + t, halves.mean_of(x.data() + t), true);
+      const auto c = dct.transform({x.data() + t, h});
+      for (std::size_t k = 1; k < h; ++k) wanted[k] += c[k] * c[k];
+    }
+    std::vector<double> got = halves.block_power();
+    got[0] = 0;
+    same_power(got, wanted, 1e-12);
+  }
+}
+
+TEST_CASE("halves: a segment depends on its own halves only") {
+  constexpr std::size_t n = 4096, h = n / 2;
+  const auto x = noise(5 * h, 1, 1);
+  HalfSegments all(n), alone(n);
+  for (std::size_t i = 0; i < 4; ++i)
+    all.push(x.data() + i * h, all.mean_of(x.data() + i * h), false);
+  std::vector<double> before, last, single;
+  all.take_power(before);
+  CHECK(largest(all.power()) == 0);
+  CHECK(all.push(x.data() + 4 * h, all.mean_of(x.data() + 4 * h), false));
+  all.take_power(last);
+  alone.push(x.data(), alone.mean_of(x.data()), true);
+  alone.forget();
+  CHECK_FALSE(alone.push(x.data() + 3 * h, alone.mean_of(x.data() + 3 * h), true));
+  CHECK(alone.push(x.data() + 4 * h, alone.mean_of(x.data() + 4 * h), false));
+  alone.take_power(single);
+  CHECK(single == last);
+}
+
+TEST_CASE("halves: with a missing sample neither segment of a half is used") {
+  constexpr std::size_t n = 4096, h = n / 2;
+  auto x = noise(6 * h, 1, 0);
+  for (const double missing : {kMissing, std::numeric_limits<double>::infinity()}) {
+    x[2 * h + 17] = missing;
+    HalfSegments halves(n);
+    std::vector<bool> used;
+    for (std::size_t t = 0; t < x.size(); t += h)
+      used.push_back(halves.push(x.data() + t, halves.mean_of(x.data() + t), true));
+    CHECK(used == std::vector<bool>{false, true, false, false, true, true});
+    for (const double p : halves.power()) REQUIRE(std::isfinite(p));
+    for (const double c : halves.block_power()) REQUIRE(std::isfinite(c));
+  }
+}
+
+TEST_CASE("halves: other windows, overlaps, trends and lengths go another way") {
+  CHECK(HalfSegments::suits(segments_of(65536)));
+  CHECK(HalfSegments::suits(segments_of(2500000)));
+  for (const std::uint64_t n : {0U, 8U, 2048U, 65537U, 65538U, 4U * 10007U, 20000006U})
+    CHECK_FALSE(HalfSegments::suits(segments_of(n)));
+  WelchOptions options = segments_of(65536);
+  options.window = Window::hann_nonzero;
+  CHECK_FALSE(HalfSegments::suits(options));
+  options = segments_of(65536);
+  options.overlap = 0.4;
+  CHECK_FALSE(HalfSegments::suits(options));
+  options = segments_of(65536);
+  options.detrend = Detrend::linear;
+  CHECK_FALSE(HalfSegments::suits(options));
+}
+
+TEST_CASE(
+    "a stream by halves gives the bits of the whole, however it is pushed, with missing samples "
+    "too") {
+  auto x = noise(50021, 3, 2);
+  for (const bool dirty : {false, true}) {
+    if (dirty) x[5] = x[17003] = x[17004] = x[50020] = kMissing;
+    for (const std::uint64_t n : {4096U, 8000U}) {
+      const Spectrum whole = welch(x, 50, segments_of(n));
+      WelchOptions single = segments_of(n);
+      single.threads = 1;
+      REQUIRE(welch(x, 50, single).value == whole.value);
+      for (const std::size_t block : {1U, 999U, 4096U, 50021U}) {
+        WelchStream stream(segments_of(n));
+        REQUIRE(stream.half() == n / 2);
+        Listener listener;
+        for (std::size_t i = 0; i < x.size(); i += block)
+          stream.push({x.data() + i, std::min(block, x.size() - i)}, &listener);
+        const Spectrum s = stream.finish(50);
+        CAPTURE(n, block, dirty);
+        REQUIRE(s.value == whole.value);
+        REQUIRE(s.dof == whole.dof);
+        REQUIRE(s.segments == whole.segments);
+        REQUIRE(s.dropped == whole.dropped);
+        REQUIRE(s.notes == whole.notes);
+        // Every sample was heard of once, or is left.
+        std::size_t heard = 0;
+        for (std::size_t i = 0; i < listener.heard.size(); ++i) {
+          for (const double v : listener.heard[i]) {
+            const double own = x[heard++];
+            REQUIRE((v == own || (std::isnan(v) && std::isnan(own))));
+          }
+          const bool finite = std::none_of(listener.heard[i].begin(),
+                                           listener.heard[i].end(),
+                                           [](double v) { return std::isnan(v); });
+          REQUIRE(listener.whole[i] == finite);
+        }
+        REQUIRE(heard + stream.rest().size() == x.size());
+        // Blocks were summed where they were asked for, and whole.
+        Dct dct(n / 2);
+        std::vector<double> wanted(n / 2, 0.0), got = stream.block_power();
+        for (std::size_t i = 0; i < listener.heard.size(); i += 2) {
+          if (!listener.whole[i]) continue;
+          const auto c = dct.transform(listener.heard[i]);
+          for (std::size_t k = 1; k < c.size(); ++k) wanted[k] += c[k] * c[k];
+        }
+        got[0] = 0;
+        same_power(got, wanted, 1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("a stream that goes by segments has no halves to hear of") {
+  const auto x = noise(5000, 0, 0);
+  WelchStream stream(segments_of(1000));
+  Listener listener;
+  stream.push(x, &listener);
+  CHECK(stream.half() == 0);
+  CHECK(listener.heard.empty());
+  CHECK(stream.rest().empty());
+  CHECK(stream.block_power().empty());
+}
+
+TEST_CASE("halves and whole segments agree on spectrum, degrees of freedom and bandwidth") {
+  const auto x = noise(100000, 1, 2);
+  WelchOptions options = segments_of(8192);
+  const Spectrum halves = welch(x, 100, options);
+  options.overlap = 0.5 + 1e-9;  // the same segments, but not told to be halves
+  const Spectrum whole = welch(x, 100, options);
+  REQUIRE(halves.value.size() == whole.value.size());
+  for (std::size_t k = 0; k < whole.value.size(); ++k)
+    REQUIRE(halves.value[k] == Approx(whole.value[k]).epsilon(1e-9).margin(1e-24));
+  CHECK(halves.dof[7] == Approx(whole.dof[7]).epsilon(1e-12));
+  CHECK(halves.enbw_hz == Approx(whole.enbw_hz).epsilon(1e-12));
+  CHECK(halves.neighbour_correlation == whole.neighbour_correlation);
+}
