@@ -33,10 +33,10 @@ struct TiltSample {
 
 inline TiltSample tilt_sample(const TiltChannels& channels, const Sample& y) {
   TiltSample sample;
-  if (const double rate = y[channels.gyroscope]; std::isfinite(rate)) sample.rate = rate;
+  if (const double rate = y[channels.gyroscope]; usable(rate)) sample.rate = rate;
   const double x = y[channels.accelerometer_x], z = y[channels.accelerometer_z];
   // Two zeros (free fall, a dead sensor) point nowhere.
-  if (std::isfinite(x) && std::isfinite(z) && (x != 0 || z != 0)) sample.angle = std::atan2(x, z);
+  if (usable(x) && usable(z) && (x != 0 || z != 0)) sample.angle = std::atan2(x, z);
   return sample;
 }
 
