@@ -100,6 +100,8 @@ TEST_CASE("every set of weights sums to one where the method promises it") {
       test::run(*runner, scene.y, scene.given.inputs());
       const auto weights = runner->weights();
       if (!weights) continue;
+      // No sample ever came: nobody has earned a weight (minque-published says zero).
+      if (!scene.y.array().isFinite().any()) continue;
       INFO(entry.card->name << " on " << scene.name);
       REQUIRE(weights->rows() == scene.y.rows());
       REQUIRE(weights->allFinite());
