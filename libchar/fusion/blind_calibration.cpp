@@ -1,6 +1,5 @@
 #include "libchar/fusion/blind_calibration.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,6 +38,9 @@ BlindCalibration::BlindCalibration(const Given& given, const Settings& settings)
       inverse_gain_(Eigen::VectorXd::Ones(given.channels)),
       offset_(mean_),
       squares_(Eigen::MatrixXd::Zero(given.channels, given.channels)),
+      conditions_(given.channels + 1, given.channels + 1),
+      solution_(given.channels + 1),
+      elimination_(given.channels + 1, given.channels + 1),
       next_(static_cast<double>(std::max<Eigen::Index>(20, 3 * given.channels))) {
   require_channel(gauge_, given.channels, "gauge");
   if (given.noise_levels.size() == given.channels) levels_ = given.noise_levels;
@@ -114,25 +116,31 @@ bool BlindCalibration::solve_factor() {
   return true;
 }
 
-/// argmin a'(P o C) a on the gauge, by its optimality conditions.
+/// argmin a'(P o C) a on the gauge, by its optimality conditions. In memory of its own: `step`
+/// calls it.
 bool BlindCalibration::solve_gram() {
   const Eigen::Index n = mean_.size();
-  Eigen::MatrixXd conditions = Eigen::MatrixXd::Zero(n + 1, n + 1);
   const double scale = squares_.diagonal().maxCoeff();
   if (!(scale > 0)) return false;
+  conditions_.setZero();
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
       const double projector = (i == j ? 1.0 : 0.0) - 1 / static_cast<double>(n);
-      conditions(i, j) = projector * squares_(std::max(i, j), std::min(i, j)) / scale;
+      conditions_(i, j) = projector * squares_(std::max(i, j), std::min(i, j)) / scale;
     }
   for (Eigen::Index i = 0; i < n; ++i)
-    conditions(i, n) = conditions(n, i) =
+    conditions_(i, n) = conditions_(n, i) =
         gauge_ == 0 ? 1 / static_cast<double>(n) : (i == gauge_ - 1 ? 1.0 : 0.0);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(conditions);
-  if (!lu.isInvertible()) return false;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
-  right[n] = 1;
-  inverse_gain_ = lu.solve(right).head(n);
+  elimination_.compute(conditions_);
+  if (!elimination_.isInvertible()) return false;
+  // P A Q = L U by hand, since Eigen's solve() asks the heap for its intermediate vector.
+  solution_.setZero();
+  solution_[elimination_.permutationP().indices()[n]] = 1;
+  elimination_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(solution_);
+  elimination_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
+  for (Eigen::Index k = 0; k <= n; ++k)
+    if (const Eigen::Index i = elimination_.permutationQ().indices()[k]; i < n)
+      inverse_gain_[i] = solution_[k];
   return true;
 }
 

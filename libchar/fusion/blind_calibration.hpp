@@ -17,6 +17,7 @@
 // 0.999999 from one. It is a ratio of Gaussians, without a mean (thesis.md B 23): kept for
 // comparison.
 
+#include <Eigen/LU>
 #include <array>
 
 #include "libchar/fusion/algorithm.hpp"
@@ -68,6 +69,9 @@ struct BlindCalibration {
   Eigen::VectorXd levels_;  // given noise variances, or empty
   Eigen::VectorXd mean_, delta_, noise_, factor_, scratch_, inverse_gain_, offset_;
   Eigen::MatrixXd squares_;  // sums of products about the mean, lower triangle
+  Eigen::MatrixXd conditions_;
+  Eigen::VectorXd solution_;
+  Eigen::FullPivLU<Eigen::MatrixXd> elimination_;
   double instants_ = 0, next_ = 0;
   bool solved_ = false;
 };

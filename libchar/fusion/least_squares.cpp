@@ -45,6 +45,7 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
            "set calibrate to 0, or learn elsewhere");
   const Eigen::Vector2d length = a.colwise().norm().transpose();
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a * length.cwiseInverse().asDiagonal());
+  const double mean_x = origin_ + upper(0, n_ + 1) / upper(0, 0);
   Eigen::MatrixXd error(upper.rows(), n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
     const Eigen::VectorXd d = upper.col(1 + i);
@@ -59,7 +60,9 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
       continue;
     }
     learnt.gain[i] = gain;
-    learnt.bias[i] = line[0] - line[1] * origin_;
+    // The line passes through the means; line[0] belongs to the origin, far from them, and would
+    // lose a digit on the way back.
+    learnt.bias[i] = upper(0, 1 + i) / upper(0, 0) - line[1] * mean_x;
     error.col(i) /= gain;
   }
   return error;

@@ -37,6 +37,8 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
   qr.setThreshold(1e-13);
   dependent = unknowns - qr.rank();
+  // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
+  if (qr.rank() == 0) return Eigen::VectorXd::Zero(unknowns);
   return (qr.solve(upper.col(unknowns)).array() / length.array()).matrix();
 }
 
