@@ -121,6 +121,9 @@ SignalSpec read_signal(const Document& node,
   spec.step = at.number_or("step", 1, kNotNegative);
   spec.slope = at.number_or("slope", 0);
   const std::vector<std::string>& own = signal_keys(spec.kind);
+  // These say what the signal is: without them it would be zero, and nobody would notice.
+  for (const char* key : {"value", "slope"})
+    if (holds(own, key)) at.require(key);
   if (holds(own, "points")) spec.points = points_of(at);
   if (holds(own, "of")) spec.of = earlier_signal(at, earlier);
   if (spec.kind == "recording") {

@@ -70,7 +70,7 @@ std::string signal_text(const SignalSpec& s,
       out += fmt::format(", {}: {}", key, shortest_yaml(value));
   };
   if (s.offset != 0) out += ", offset: " + shortest_yaml(s.offset);
-  number("value", s.value, plain.value);
+  number("value", s.value, kMissing);
   number("amplitude", s.amplitude, plain.amplitude);
   number("frequency_hz", s.frequency_hz, plain.frequency_hz);
   number("phase_rad", s.phase_rad, plain.phase_rad);
@@ -81,7 +81,7 @@ std::string signal_text(const SignalSpec& s,
   number("renew_s", s.renew_s, plain.renew_s);
   number("repeat", s.repeat, plain.repeat);
   number("step", s.step, plain.step);
-  number("slope", s.slope, plain.slope);
+  number("slope", s.slope, kMissing);
   if (s.kind == "derivative" || s.kind == "sine_of" || s.kind == "cosine_of")
     out += ", of: " + quoted_yaml(truth_names.at(s.of));
   if (s.kind == "points") {

@@ -178,6 +178,8 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
        2,
        "not between 1e-9 and 1e9 Hz"},
       {{model, "-o", out, "--samples", "5", "--truth", "sinus"}, 3, "did you mean sine?"},
+      {{model, "-o", out, "--samples", "5", "--truth", "constant"}, 3, "value is missing"},
+      {{model, "-o", out, "--samples", "5", "--truth", "ramp"}, 3, "slope is missing"},
       {{model, "-o", out, "--samples", "5", "--truth", "sine,amplitud=1"},
        3,
        "did you mean amplitude?"},
