@@ -261,6 +261,16 @@ LogInfo log_info(const ArraySimulation& simulation, const std::string& path, boo
   return info;
 }
 
+std::vector<double> rows_of(const SceneReference& reference,
+                            const std::vector<double>& h,
+                            const ArraySimulation& simulation) {
+  std::vector<double> row;
+  const auto& names = simulation.truth_names;
+  for (const std::string& channel : reference.channels)
+    row.push_back(h[std::find(names.begin(), names.end(), channel) - names.begin()]);
+  return row;
+}
+
 // The scene that replays the recording: its channels by name, the models inline, the truth as
 // reference.
 // What the simulated scene wanted of its replay is kept.
@@ -271,6 +281,9 @@ Scene replay_scene(const ArraySimulation& simulation,
   Scene scene;
   scene.learning = given.learning;
   scene.evaluation = given.evaluation;
+  scene.rest = given.rest;
+  scene.fault_free_s = given.fault_free_s;
+  scene.tilt = given.tilt;
   scene.algorithms = given.algorithms;
   scene.file = verb.scene_path;
   scene.name = fs::path(verb.output).stem().string();
@@ -288,8 +301,15 @@ Scene replay_scene(const ArraySimulation& simulation,
   }
   for (const SimulatedSensor& sensor : simulation.sensors)
     scene.sensors.push_back({sensor.name, sensor.name, sensor.model, sensor.h});
-  if (!verb.no_truth)
-    scene.reference = SceneReference{simulation.truth_names, false, {}, {}, 0, false};
+  for (std::size_t i = 0; i < given.sensors.size(); ++i)
+    scene.sensors[i].noise = given.sensors[i].noise;
+  if (!verb.no_truth) {
+    scene.reference =
+        given.reference.value_or(SceneReference{simulation.truth_names, false, {}, {}, 0, false});
+    // Rows of the matrix have a weight for each input that the reference names.
+    for (SceneSensor& sensor : scene.sensors)
+      sensor.h = rows_of(*scene.reference, sensor.h, simulation);
+  }
   scene.simulated = SimulatedFrom{simulation.seed, simulation.faults};
   return scene;
 }

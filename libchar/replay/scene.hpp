@@ -19,6 +19,14 @@ struct SceneSensor {
   std::string channel;               ///< of the recording; the name when the file does not say
   std::optional<SensorModel> model;  ///< inline or from a file beside the scene
   std::vector<double> h = {1};       ///< row of the observation matrix
+  double scale = 1;                  ///< the recording's samples are multiplied by it on reading
+  std::optional<double>
+      noise;  ///< standard deviation of a sample's noise, in the unit after `scale`
+};
+
+/// Which sensors (by index) a tilt filter reads: tilt = atan2(accelerometer_x, accelerometer_z).
+struct SceneTilt {
+  std::size_t gyroscope = 0, accelerometer_x = 0, accelerometer_z = 0;
 };
 
 /// A stretch of the recording, in seconds from its first sample.
@@ -58,7 +66,11 @@ struct Scene {
   std::optional<ArraySimulation> simulate;
   std::vector<SceneSensor> sensors;
   std::optional<SceneReference> reference;
+  std::optional<SceneTilt> tilt;  ///< then the reference is the tilt, and rows h say nothing
   std::optional<TimeWindow> learning, evaluation;
+  std::optional<TimeWindow> rest;  ///< the true inputs are zero there
+  std::optional<double>
+      fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed

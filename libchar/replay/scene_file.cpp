@@ -21,8 +21,11 @@ const std::vector<std::string> kKeys = {"format",
                                         "simulate",
                                         "sensors",
                                         "reference",
+                                        "tilt",
                                         "learning",
                                         "evaluation",
+                                        "rest",
+                                        "fault_free_s",
                                         "faults",
                                         "simulated",
                                         "algorithms"};
@@ -60,9 +63,12 @@ class SceneReader {
     if (top_.has("simulate")) scene_.simulate = scene_simulation_of(top_, folder_, scene_);
     sensors();
     reference();
+    if (top_.has("tilt")) tilt();
     check_rows();
     if (top_.has("learning")) scene_.learning = window("learning");
     if (top_.has("evaluation")) scene_.evaluation = window("evaluation");
+    if (top_.has("rest")) scene_.rest = window("rest");
+    scene_.fault_free_s = top_.maybe_number("fault_free_s", kPositive);
     if (top_.has("faults")) scene_.faults = faults(top_);
     if (top_.has("simulated")) simulated();
     if (top_.has("algorithms")) algorithms();
@@ -123,7 +129,8 @@ class SceneReader {
       sensor.name = sensor.channel = node.text;
       return add(sensor, {&node, path});
     }
-    const MapReader at(node, folder_.scene, path, {"name", "channel", "model", "h", "count"});
+    const MapReader at(
+        node, folder_.scene, path, {"name", "channel", "model", "h", "count", "scale", "noise"});
     const char* named = at.has("name") || !at.has("channel") ? "name" : "channel";
     sensor.name = at.text(named);
     sensor.channel = at.text_or("channel", sensor.name);
@@ -132,6 +139,11 @@ class SceneReader {
     if (at.has("h")) sensor.h = at.numbers("h");
     if (sensor.h.empty()) refuse_scene("E0741", at, "h", "expected one weight a true input");
     if (at.has("model")) sensor.model = model(at);
+    sensor.scale = at.number_or("scale", 1);
+    if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
+    sensor.noise = at.maybe_number("noise", kPositive);
+    if (scene_.simulate && at.has("scale"))
+      at.refuse("scale", "the samples of a simulation are used as they are");
     if (scene_.simulate && at.has("channel"))
       at.refuse("channel", "a simulated sensor's channel has its name");
     if (scene_.simulate && !at.has("model"))
@@ -233,8 +245,27 @@ class SceneReader {
     if (!reference.estimate_lag) reference.lag_s = at.number("lag_s");
   }
 
+  void tilt() {
+    const MapReader at = top_.map("tilt", {"gyroscope", "accelerometer_x", "accelerometer_z"});
+    SceneTilt tilt;
+    tilt.gyroscope = sensor_index(at, "gyroscope");
+    tilt.accelerometer_x = sensor_index(at, "accelerometer_x");
+    tilt.accelerometer_z = sensor_index(at, "accelerometer_z");
+    if (tilt.gyroscope == tilt.accelerometer_x || tilt.gyroscope == tilt.accelerometer_z ||
+        tilt.accelerometer_x == tilt.accelerometer_z)
+      refuse_scene("E0747", top_, "tilt", "three different sensors make a tilt");
+    if (scene_.reference && !scene_.reference->mean && scene_.reference->channels.size() != 1)
+      refuse_scene("E0747",
+                   top_,
+                   "reference",
+                   "the reference of a tilt is one channel: the angle",
+                   "reference: [NAME]");
+    scene_.tilt = tilt;
+  }
+
   // Every sensor weighs the same true inputs.
   void check_rows() const {
+    if (scene_.tilt && !scene_.simulate) return;
     std::size_t inputs = scene_.sensors[0].h.size();
     if (scene_.simulate)
       inputs = scene_.simulate->truth.size();
@@ -294,7 +325,7 @@ class SceneReader {
 
   SensorFault fault(const MapReader& at) const {
     SensorFault fault;
-    fault.sensor = sensor_index(at);
+    fault.sensor = sensor_index(at, "sensor");
     fault.kind = fault_kind(at.word("kind", fault_kinds()));
     const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
     if (valueless && at.has("value"))
@@ -311,13 +342,13 @@ class SceneReader {
     return fault;
   }
 
-  std::size_t sensor_index(const MapReader& at) const {
-    const std::string name = at.text("sensor");
+  std::size_t sensor_index(const MapReader& at, const char* key) const {
+    const std::string name = at.text(key);
     const auto found = index_.find(name);
     if (found != index_.end()) return found->second;
     std::vector<std::string> names;
     for (const SceneSensor& sensor : scene_.sensors) names.push_back(sensor.name);
-    return index_of_name(at, "sensor", name, names, "a sensor of this scene");
+    return index_of_name(at, key, name, names, "a sensor of this scene");
   }
 
   void simulated() {

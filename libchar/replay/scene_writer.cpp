@@ -154,6 +154,8 @@ std::string sensors_block(const Scene& scene) {
     if (sensor.channel != sensor.name && !scene.simulate)
       out += "    channel: " + quoted_yaml(sensor.channel) + "\n";
     if (sensor.h != std::vector<double>{1}) out += "    h: " + list_of(sensor.h) + "\n";
+    if (sensor.scale != 1) out += "    scale: " + shortest_yaml(sensor.scale) + "\n";
+    if (sensor.noise) out += "    noise: " + shortest_yaml(*sensor.noise) + "\n";
     if (sensor.model)
       out += "    model:\n" + inline_model(*sensor.model, "      ");
     else if (scene.simulate)
@@ -216,6 +218,11 @@ std::string scene_yaml(const Scene& scene) {
                         : recording_block(scene.recording, scene.reading, scene.file, "");
   out += sensors_block(scene);
   if (scene.reference) out += reference_block(*scene.reference, scene.file);
+  if (scene.tilt)
+    out += fmt::format("tilt: {{gyroscope: {}, accelerometer_x: {}, accelerometer_z: {}}}\n",
+                       quoted_yaml(scene.sensors[scene.tilt->gyroscope].name),
+                       quoted_yaml(scene.sensors[scene.tilt->accelerometer_x].name),
+                       quoted_yaml(scene.sensors[scene.tilt->accelerometer_z].name));
   const auto window = [&](const char* key, const std::optional<TimeWindow>& w) {
     if (w)
       out += fmt::format("{}: [{}, {}]\n",
@@ -225,6 +232,8 @@ std::string scene_yaml(const Scene& scene) {
   };
   window("learning", scene.learning);
   window("evaluation", scene.evaluation);
+  window("rest", scene.rest);
+  if (scene.fault_free_s) out += "fault_free_s: " + shortest_yaml(*scene.fault_free_s) + "\n";
   if (!scene.faults.empty()) out += faults_block(scene.faults, scene, "");
   if (scene.simulated) {
     out += fmt::format(

@@ -339,3 +339,19 @@ TEST_CASE("scene: outputs never overwrite what a scene reads, nor one another") 
   std::filesystem::create_symlink("log.csv", bench.path("three"));
   CHECK_THAT(refusal({bench.path("three")}), Contains("E0504"));
 }
+
+TEST_CASE("a tilt, a rest, a scale and a noise are read and written", "[scene]") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(
+      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: g, channel: a}, {name: x, "
+      "channel: b, scale: -1}, {name: z, channel: c, noise: 0.5}]\nreference: d\n"
+      "tilt: {gyroscope: g, accelerometer_x: x, accelerometer_z: z}\nrest: [0, 2]\nfault_free_s: "
+      "3\n");
+  REQUIRE(scene.tilt);
+  CHECK(scene.tilt->accelerometer_z == 2);
+  CHECK(scene.sensors[1].scale == -1);
+  CHECK(scene.sensors[2].noise == 0.5);
+  CHECK(scene.rest->to_s == 2);
+  CHECK(scene.fault_free_s == 3);
+  CHECK(scene_yaml(parse_scene(scene_yaml(scene), scene.file)) == scene_yaml(scene));
+}
