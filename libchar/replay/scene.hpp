@@ -20,8 +20,8 @@ struct SceneSensor {
   std::optional<SensorModel> model;  ///< inline or from a file beside the scene
   std::vector<double> h = {1};       ///< row of the observation matrix
   double scale = 1;                  ///< the recording's samples are multiplied by it on reading
-  std::optional<double>
-      noise;  ///< standard deviation of a sample's noise, in the unit after `scale`
+  /// Standard deviation of a sample's noise, in the unit after `scale`.
+  std::optional<double> noise = std::nullopt;
 };
 
 /// Which sensors (by index) a tilt filter reads: tilt = atan2(accelerometer_x, accelerometer_z).
