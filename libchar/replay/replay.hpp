@@ -1,0 +1,53 @@
+#pragma once
+// Every fusion algorithm that a scene can feed, on one recording.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/replay/heap_meter.hpp"
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+/// Receives the estimates of all algorithms that ran, in order of time.
+struct EstimateSink {
+  virtual ~EstimateSink() = default;
+  /// `labels`: the algorithms; one column a label and input.
+  virtual void begin(const std::vector<std::string>& labels,
+                     const std::vector<InputResult>& inputs,
+                     double rate_hz,
+                     double start_s,
+                     std::uint64_t instants) = 0;
+  /// Columns of consecutive instants: the truth (when there is a reference), then label by label,
+  /// input by input.
+  virtual void block(const std::vector<std::vector<double>>& columns) = 0;
+};
+
+struct ReplayOptions {
+  std::vector<SceneAlgorithm> algorithms;          ///< win over the scene's list; `line` 0
+  std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
+  double window_s = 0;                             ///< of the window RMS; 0: a fiftieth of the run
+  bool allan = true;                               ///< Allan deviation of each error
+  bool no_skip = false;       ///< do all work, whether an output needs it or not: same numbers
+  std::size_t block = 0;      ///< instants at once; 0: by length. Results do not depend on it
+  std::uint64_t seed = 1;     ///< of the bootstrap
+  HeapMeter* heap = nullptr;  ///< who can say how much memory an algorithm holds
+  EstimateSink* estimates = nullptr;
+};
+
+/// What would be done, in sentences; reads the recording once to know its length and rate.
+std::vector<std::string> explain_replay(const Scene& scene,
+                                        const ReplayOptions& options = {},
+                                        Progress& progress = no_progress());
+
+/// Throws Error(input) when the scene does not fit its recording, Error(numeric) when no algorithm
+/// can run.
+ReplayResult replay(const Scene& scene,
+                    const ReplayOptions& options = {},
+                    Progress& progress = no_progress());
+
+}  // namespace libchar

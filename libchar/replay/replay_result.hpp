@@ -1,0 +1,146 @@
+#pragma once
+// What a replay found: everything that its reports show.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/json.hpp"
+#include "libchar/fusion/registry.hpp"
+#include "libchar/log/recording.hpp"
+#include "libchar/replay/error_meter.hpp"
+#include "libchar/replay/scene.hpp"
+
+namespace libchar {
+
+/// Values over time, thinned to bins: the smallest and the largest in each. Empty: nothing to show.
+struct Timeline {
+  std::vector<double> time_s;  ///< middle of each bin, seconds from the recording's first sample
+  std::vector<std::vector<double>> low, high;  ///< [series][bin]; NaN: no value in this bin
+  bool empty() const { return time_s.empty(); }
+};
+
+/// A stretch during which an algorithm had a sensor out.
+struct FoundFault {
+  std::size_t sensor = 0;
+  std::string kind;  ///< the rule that raised it
+  double from_s = 0;
+  std::optional<double> to_s;  ///< none: out until the end
+};
+
+/// How an algorithm dealt with one of the faults that the scene knows.
+struct FaultAnswer {
+  std::size_t fault = 0;          ///< index into ReplayResult::faults
+  std::optional<double> found_s;  ///< delay from the fault's beginning; none: never while it lasted
+  std::optional<double> returned_s;  ///< delay from the fault's end until the sensor was used again
+};
+
+/// One true input as one algorithm estimated it.
+struct InputScore {
+  ErrorScore error;
+  double optimum_ratio = 0;  ///< RMSE / optimum RMSE of this input; NaN: unknown
+  AllanCurve allan;          ///< overlapping Allan deviation of the error; no points: not computed
+  Timeline window_rms;       ///< one series: RMS of the error in a window centred on each bin [RV]
+};
+
+/// Scores that need no reference, named as such: errors that all sensors share are not seen.
+struct BlindScore {
+  double leave_one_out_rms = 0;  ///< RMS over all sensors of (fused from the others) - (the sensor)
+  std::vector<double> leave_one_out;  ///< the same for each sensor; NaN: could not run
+  double split_rms =
+      0;  ///< RMS of half the difference of two halves of the array; NaN: could not run
+  Interval leave_one_out_ci95;
+};
+
+struct AlgorithmResult {
+  std::string label;  ///< the name, with its options when one algorithm runs twice
+  const fusion::Card* card = nullptr;
+  fusion::Settings settings;
+  bool ran = false;
+  std::string why;     ///< why it did not run, a sentence
+  bool bound = false;  ///< it looked at the reference of the run itself
+
+  std::vector<InputScore> inputs;  ///< empty without a reference
+  std::optional<BlindScore> blind;
+  double rmse = 0;  ///< of the first input, or leave-one-out without a reference: what tables sort
+                    ///< by; NaN: none
+  Interval rmse_ci95;
+  double regret = 0;  ///< root mean square over the inputs of RMSE / optimum, minus 1; NaN: unknown
+  std::optional<Interval> ratio_to_best;  ///< 95 % interval of RMSE / RMSE of the best method
+                                          ///< (bounds apart); none: it is the best
+  bool as_good_as_best = false;           ///< that interval holds 1: the difference is not resolved
+  double availability = 0;
+
+  double ns_per_sample = 0;  ///< median over interleaved blocks; NaN: too short to measure
+  double learning_s = 0;     ///< making and teaching it, CPU of one core
+  std::optional<std::uint64_t>
+      peak_bytes;  ///< of heap, over learning and run; none: nobody measured
+
+  std::optional<Eigen::MatrixXd> weights;    ///< n x r at the end
+  std::optional<Eigen::VectorXd> variances;  ///< at the end
+  double weight_distance =
+      0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
+  double variance_error =
+      0;  ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
+  Timeline weight_track;  ///< a series a sensor; empty when the weights stand still
+  Timeline variance_track;
+  std::vector<FoundFault> faults;
+  std::uint64_t faults_not_kept = 0;
+  std::vector<FaultAnswer> answers;
+  Warnings remarks;
+};
+
+struct SensorResult {
+  std::string name, unit;
+  ErrorScore error;                      ///< of y - h x; NaN without a reference
+  std::optional<double> noise_variance;  ///< what algorithms were given
+  std::string noise_source;              ///< "model", "rest", "scene", ""
+  double offset = 0;                     ///< subtracted (mean over the rest)
+  double missing = 0;                    ///< share of the instants of the run
+  bool constant = false;                 ///< never changed during the run
+  std::vector<double> h;
+};
+
+struct InputResult {
+  std::string name, unit;
+  double optimum_rmse = 0;  ///< of the best linear unbiased weights of the run; NaN: no reference
+};
+
+/// Work done, to prove what was skipped.
+struct ReplayWork {
+  std::uint64_t passes = 0;       ///< over the recording or simulation
+  std::uint64_t learnt = 0;       ///< instants given to learning, summed over algorithms
+  std::uint64_t steps = 0;        ///< instants fused, summed over algorithms
+  std::uint64_t blind_steps = 0;  ///< the same for leave-one-out and split arrays
+};
+
+struct ReplayResult {
+  Scene scene;
+  std::vector<LogInfo> logs;  ///< the recording, the reference's own log; empty for a simulation
+  std::vector<std::string> command;  ///< as typed; set by the caller
+  Json settings;                     ///< effective ones, for provenance
+  std::vector<std::string> plan;     ///< sentences: what was read, learnt, run, skipped and why
+  double rate_hz = 0;                ///< of the instants that are fused
+  std::uint64_t instants = 0;        ///< of the run
+  double start_s = 0;                ///< of the run, seconds from the recording's first sample
+  std::optional<TimeWindow> learning;
+  TimeWindow evaluation;
+  double window_s = 0;  ///< of the window RMS
+  double lag_s = 0;     ///< the sensors lag the reference by this
+  bool lag_estimated = false;
+  bool has_reference = false;
+  std::string reference_use;  ///< "each instant", "mean over its intervals of 3600 s"…
+  std::vector<SensorResult> sensors;
+  std::vector<InputResult> inputs;
+  std::vector<SensorFault> faults;          ///< that the scene knows, injected or simulated
+  std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
+  std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`
+  Warnings warnings;
+  ReplayWork work;
+  double seconds = 0;  ///< measured
+};
+
+}  // namespace libchar
