@@ -30,11 +30,14 @@ struct Recorded {
   }
 };
 
-inline Recorded simulate(const std::string& file, std::uint64_t seed) {
+inline Recorded simulate(const std::string& file, std::uint64_t seed, bool flicker = true) {
   Recorded r;
   r.scene = libchar::read_scene_file(std::string(LIBCHAR_FIXTURES_DIR) + "/scenes/" + file);
   libchar::ArraySimulation& s = *r.scene.simulate;
   s.seed = seed;
+  if (!flicker)
+    for (libchar::SimulatedSensor& sensor : s.sensors)
+      sensor.model.noise[static_cast<std::size_t>(libchar::Term::flicker)].value = 0;
   const auto n = static_cast<Index>(s.sensors.size()), samples = static_cast<Index>(s.samples);
   r.y.resize(n, samples);
   r.x.resize(samples);
@@ -114,10 +117,13 @@ inline libchar::fusion::LearntWeights learnt(const Recorded& r,
   return learner.weights(form);
 }
 
-/// Optimal weights for given noise variances.
-inline Eigen::RowVectorXd weighted(const Recorded& r, const Eigen::VectorXd& variances) {
-  const Eigen::VectorXd w = variances.cwiseInverse() / variances.cwiseInverse().sum();
-  return w.transpose() * r.y;
+/// The same recording with some of its sensors only.
+inline Recorded only(const Recorded& r, const std::vector<Index>& sensors) {
+  Recorded part = r;
+  part.y = r.y(sensors, Eigen::all);
+  part.given.noise_levels = r.given.noise_levels(sensors);
+  part.given.channels = static_cast<Index>(sensors.size());
+  return part;
 }
 
 }  // namespace test::thesis
