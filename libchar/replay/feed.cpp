@@ -177,7 +177,7 @@ Feed::Feed(const Scene& scene, Progress& progress)
   if (info_.has_reference) {
     info_.reference_use = "each instant";
     if (scene.reference->recording) {
-      track_ = read_reference(scene, source.logs.at(0), progress);
+      track_ = read_reference(scene, source_, progress);
       info_.logs.push_back(track_->log);
       reference_units = track_->units;
       info_.reference_use = "interpolated between its own samples";
@@ -237,7 +237,7 @@ void Feed::convert_tilt() {
 
 void Feed::set_lag(double lag_s, Progress& progress) {
   lag_s_ = lag_s;
-  if (lag_s != 0 && !track_) track_ = read_reference(*scene_, source_.info().logs.at(0), progress);
+  if (lag_s != 0 && !track_) track_ = read_reference(*scene_, source_, progress);
 }
 
 std::int64_t Feed::instant_at(double time_s) const {

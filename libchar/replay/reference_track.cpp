@@ -42,14 +42,20 @@ double ReferenceTrack::at(std::size_t channel, double time_s) const {
   return k + 1 < track.size() ? track[k] + rest * (track[k + 1] - track[k]) : kMissing;
 }
 
-ReferenceTrack read_reference(const Scene& scene, const LogInfo& recording, Progress& progress) {
+ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress) {
   const SceneReference& reference = *scene.reference;
-  const bool own = reference.recording.has_value();
-  ReadOptions reading = own ? reference.reading : scene.reading;
+  ReferenceTrack track;
+  if (!reference.recording) {
+    track.rate_hz = source.info().rate_hz;
+    track.units = source.info().reference_units;
+    track.values = source.reference_columns(progress);
+    return track;
+  }
+  ReadOptions reading = reference.reading;
   if (reading.names.empty()) reading.channels = reference.channels;
   Recording read;
   try {
-    read = read_recording(own ? *reference.recording : scene.recording, reading, progress);
+    read = read_recording(*reference.recording, reading, progress);
   } catch (const Error& error) {
     if (error.fault().kind != ErrorKind::usage) throw;
     Fault fault = error.fault();
@@ -57,7 +63,6 @@ ReferenceTrack read_reference(const Scene& scene, const LogInfo& recording, Prog
     if (fault.code.empty()) fault.code = "E0900";
     throw Error(fault);
   }
-  ReferenceTrack track;
   track.rate_hz = read.info.time.rate_hz;
   if (!(track.rate_hz > 0))
     throw Error({ErrorKind::input,
@@ -72,7 +77,8 @@ ReferenceTrack read_reference(const Scene& scene, const LogInfo& recording, Prog
     track.units.push_back(read.info.channels[column].unit);
   }
   // Both clocks count from one epoch when both have stamps; else the logs begin together.
-  if (own && read.info.time.start_ns && recording.time.start_ns)
+  const LogInfo& recording = source.info().logs.at(0);
+  if (read.info.time.start_ns && recording.time.start_ns)
     track.start_s = static_cast<double>(*read.info.time.start_ns - *recording.time.start_ns) * 1e-9;
   track.log = std::move(read.info);
   return track;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libchar/core/progress.hpp"
-#include "libchar/replay/scene.hpp"
+#include "libchar/replay/scene_source.hpp"
 
 namespace libchar {
 
@@ -22,6 +22,6 @@ struct ReferenceTrack {
 };
 
 /// Reads the reference of a scene: from a log of its own, or from the recording itself.
-ReferenceTrack read_reference(const Scene& scene, const LogInfo& recording, Progress& progress);
+ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress);
 
 }  // namespace libchar

@@ -8,6 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/replay/resampled.hpp"
 
 namespace libchar {
 namespace {
@@ -93,8 +94,24 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
     if (scene.simulated)
       known_faults_.insert(
           known_faults_.end(), scene.simulated->faults.begin(), scene.simulated->faults.end());
-    scan(progress);
+    if (scene.resample_hz)
+      read_even(progress);
+    else
+      scan(progress);
   }
+}
+
+void SceneSource::read_even(Progress& progress) {
+  ResampledLog even =
+      read_resampled(scene_->recording, scene_->reading, wanted_, *scene_->resample_hz, progress);
+  even_ = std::move(even.samples);
+  info_.rate_hz = *scene_->resample_hz;
+  info_.samples = even.log.samples;
+  for (std::size_t k = 0; k < wanted_.size(); ++k)
+    for (const Channel& channel : even.log.channels)
+      if (channel.name == wanted_[k])
+        (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
+  info_.logs.push_back(std::move(even.log));
 }
 
 void SceneSource::scan(Progress& progress) {
@@ -148,8 +165,35 @@ void SceneSource::scan(Progress& progress) {
 void SceneSource::stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
   if (scene_->simulate)
     stream_simulation(until, block, progress);
+  else if (!even_.empty())
+    stream_even(until, block);
   else
     stream_recording(until, block, progress);
+}
+
+std::vector<std::vector<double>> SceneSource::reference_columns(Progress& progress) const {
+  std::vector<std::vector<double>> out(info_.reference_units.size());
+  const std::size_t sensors = info_.units.size();
+  stream(
+      info_.samples,
+      [&](std::uint64_t, std::span<const std::span<const double>> columns) {
+        for (std::size_t c = 0; c < out.size(); ++c)
+          out[c].insert(out[c].end(), columns[sensors + c].begin(), columns[sensors + c].end());
+      },
+      progress);
+  return out;
+}
+
+void SceneSource::stream_even(std::uint64_t until, const SourceBlock& block) const {
+  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  const auto rows = static_cast<std::size_t>(std::min(until, info_.samples));
+  if (rows == 0) return;
+  std::vector<std::span<const double>> out;
+  for (std::size_t k = 0; k < even_.size(); ++k) {
+    const std::span<const double> column(even_[k].data(), rows);
+    out.push_back(k < scene_->sensors.size() ? path(k, column) : column);
+  }
+  block(0, out);
 }
 
 void SceneSource::stream_recording(std::uint64_t until,

@@ -36,19 +36,24 @@ class SceneSource {
   const SourceInfo& info() const { return info_; }
   /// Samples 0 to `until` (not included).
   void stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
+  /// The reference channels that stand in this source, whole.
+  std::vector<std::vector<double>> reference_columns(Progress& progress) const;
   /// The faults that are injected here or were simulated: what the scene knows.
   const std::vector<SensorFault>& known_faults() const { return known_faults_; }
 
  private:
   void scan(Progress& progress);
+  void read_even(Progress& progress);
+  void stream_even(std::uint64_t until, const SourceBlock& block) const;
   void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
   void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
 
   const Scene* scene_;
   ArraySimulation simulation_;
   ReadOptions reading_;
-  std::vector<std::string> wanted_;   // channels of the recording, sensors first
-  std::vector<std::size_t> columns_;  // of the source, for each of `wanted_`
+  std::vector<std::string> wanted_;        // channels of the recording, sensors first
+  std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
+  std::vector<std::vector<double>> even_;  // a resampled recording, for each of `wanted_`
   SourceInfo info_;
   std::vector<SensorFault> known_faults_;
 };
