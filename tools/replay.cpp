@@ -173,6 +173,24 @@ std::string bytes_for_people(const std::optional<std::uint64_t>& bytes) {
                        : fmt::format("{} MB", significant(value / 1e6, 3));
 }
 
+// Reasons without the name in front, with all algorithms they hold for.
+std::vector<std::pair<std::string, std::string>> skipped(const ReplayResult& r) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const AlgorithmResult& a : r.algorithms) {
+    if (a.ran) continue;
+    const std::string name(a.card->name);
+    const std::string reason =
+        a.why.starts_with(name + " ") ? a.why.substr(name.size() + 1) : a.why;
+    const auto known =
+        std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.first == reason; });
+    if (known == out.end())
+      out.emplace_back(reason, a.label);
+    else
+      known->second += ", " + a.label;
+  }
+  return out;
+}
+
 std::string text_for_people(const ReplayResult& r) {
   const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
   const char* error = r.has_reference ? "RMSE" : "leave-one-out";
@@ -215,8 +233,8 @@ std::string text_for_people(const ReplayResult& r) {
         : a->as_good_as_best ? "  *"
                              : "");
   text += "\n* the best method, and those whose difference from it is not resolved\n";
-  for (const AlgorithmResult& a : r.algorithms)
-    if (!a.ran) text += fmt::format("skipped: {}\n", printable(a.why));
+  for (const auto& [reason, names] : skipped(r))
+    text += fmt::format("skipped {}: {}\n", printable(names), printable(reason));
   return text;
 }
 

@@ -16,13 +16,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Clock = std::chrono::steady_clock;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return kNone;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why) {
@@ -112,6 +105,14 @@ void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
   timed_run(samples);
 }
 
+double AlgorithmRun::median_ns() const {
+  if (ns_.empty()) return kNone;
+  std::vector<double> sorted = ns_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
 void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth) {
   if (!alive()) return;
   available_ += static_cast<double>((x_.row(0).array().isFinite()).count());
@@ -183,7 +184,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     out.rmse_ci95 = out.inputs[0].error.rmse_ci95;
   }
   out.availability = steps_ > 0 ? available_ / static_cast<double>(steps_) : 0;
-  out.ns_per_sample = median(ns_);
+  out.ns_per_sample = median_ns();
   out.learning_s = learning_s_;
   if (frame_->heap != nullptr)
     out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));

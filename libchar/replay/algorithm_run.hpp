@@ -44,6 +44,7 @@ class AlgorithmRun {
   const Eigen::MatrixXd& estimates() const { return x_; }
   const std::vector<ErrorMeter>& meters() const { return meters_; }
   std::size_t timed_blocks() const { return ns_.size(); }
+  double median_ns() const;  ///< of an instant; NaN before the first block
   /// Everything that is known without the others: scores, tracks, faults, cost.
   AlgorithmResult result(const ScoreOptions& options, double window_s) const;
   /// Weights of one input at the end of each block.

@@ -194,8 +194,8 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
 }
 
 // The smallest error that fixed weights can have, taught on the run itself: with and without
-// calibration, section by section when sensors are known to fail. For a tilt: the Kalman filter
-// tuned on the run.
+// calibration, section by section when sensors are known to fail. For a tilt: the best of the
+// filters tuned on the run and of either sensor alone.
 std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   std::vector<PlannedAlgorithm> out;
   const auto add = [&](const char* name, std::vector<std::pair<std::string, double>> options) {
@@ -208,7 +208,11 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
     if (bound.runs()) out.push_back(std::move(bound));
   };
   if (given.tilt) {
-    add("tilt-kalman-tuned", {});
+    for (const char* name : {"tilt-kalman-tuned",
+                             "tilt-complementary-tuned",
+                             "tilt-gyroscope",
+                             "tilt-accelerometer"})
+      add(name, {});
     return out;
   }
   add("optimal-weights", {});

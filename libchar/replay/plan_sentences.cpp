@@ -71,7 +71,7 @@ std::string levels(const Scene& scene, const SensorKnowledge& knowledge) {
 std::string optimum(const ReplayPlan& plan) {
   if (plan.optimum.empty()) return "";
   return plan.given.tilt
-             ? "optimum: the Kalman filter tuned on the evaluation itself"
+             ? "optimum: the best filter tuned on the evaluation itself"
              : fmt::format("optimum: best fixed weights taught on the evaluation itself{}",
                            plan.given.section_starts.empty() ? "" : ", section by section");
 }

@@ -59,8 +59,9 @@ class Replay {
     for (AlgorithmRun& run : runs_) run.finish_learning();
     for (AlgorithmRun& run : optimum_) run.finish_learning();
     run_all();
-    time_again();
-    return collect();
+    ReplayResult result = collect();
+    time_again(result);
+    return result;
   }
 
  private:
@@ -204,16 +205,19 @@ class Replay {
     options_.estimates->block(columns);
   }
 
-  void time_again() {
+  // After everything else: what the algorithms hold then is of no interest.
+  void time_again(ReplayResult& result) {
     if (kept_.empty()) return;
-    while (!runs_.empty()) {
-      std::size_t timed = std::numeric_limits<std::size_t>::max();
-      for (const AlgorithmRun& run : runs_)
-        if (run.alive()) timed = std::min(timed, run.timed_blocks());
-      if (timed >= kLeastTimed) return;
+    const auto timed_enough = [](const AlgorithmRun& run) {
+      return !run.alive() || run.timed_blocks() >= kLeastTimed;
+    };
+    while (!std::all_of(runs_.begin(), runs_.end(), timed_enough))
       for (const Eigen::MatrixXd& samples : kept_)
         for (AlgorithmRun& run : runs_) run.repeat(samples);
-    }
+    for (const AlgorithmRun& run : runs_)
+      for (AlgorithmResult& algorithm : result.algorithms)
+        if (run.alive() && algorithm.label == run.planned().label)
+          algorithm.ns_per_sample = run.median_ns();
   }
 
   std::vector<InputResult> inputs() const {
