@@ -30,7 +30,10 @@ NoiseDesign noise_design(const SensorModel& m, const ChainOptions& options) {
   return design;
 }
 
-// One term made at its own step and held in between, as published [RV 3.3].
+// One term made at its own step and held in between, as published [RV 3.3]. Sample k of the
+// low-pass answers to what stood between k - 1 and k, so a value is renewed behind the instants m
+// hold_s, and the sample there still has the old one: read at renewals, its variance is (1 - a)/(1
+// + a) of the held noise, a = exp(-2 pi bandwidth hold_s).
 class HeldNoise {
  public:
   HeldNoise(const SensorModel& m, Term term, double hold_s, const ChainOptions& options)
@@ -39,8 +42,8 @@ class HeldNoise {
 
   void add(std::span<double> out) {
     for (double& sample : out) {
-      const auto due = 1 + static_cast<std::uint64_t>(static_cast<double>(k_++) /
-                                                      samples_per_renewal_ * (1 + 1e-12));
+      const auto due = 1 + static_cast<std::uint64_t>(std::ceil(
+                               static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
       for (; renewals_ < due; ++renewals_) {
         value_ = 0;
         noise_.add({&value_, 1}, {});
