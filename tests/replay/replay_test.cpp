@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "libchar/replay/feed.hpp"
+#include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;
 using Catch::Contains;
+using test::named;
+using test::numbers;
 
 namespace {
 
@@ -22,51 +25,6 @@ std::string array_scene(std::size_t samples, const std::string& more) {
             ", model: {unit: rad/s, rate_hz: 100, density: two-sided, white_noise: {value: " +
             levels[i] + "}}}\n";
   return text + more;
-}
-
-const AlgorithmResult& named(const ReplayResult& result, const std::string& label) {
-  for (const AlgorithmResult& a : result.algorithms)
-    if (a.label == label) return a;
-  FAIL("no algorithm " << label);
-  return result.algorithms[0];
-}
-
-// Everything but what a clock or the heap said.
-std::string numbers(const ReplayResult& r) {
-  std::string out;
-  const auto add = [&](double v) { out += std::isnan(v) ? "nan " : std::to_string(v * 1e9) + " "; };
-  const auto track = [&](const Timeline& t) {
-    for (const double v : t.time_s) add(v);
-    for (const auto& series : t.low)
-      for (const double v : series) add(v);
-  };
-  for (const SensorResult& s : r.sensors) add(s.error.rmse);
-  for (const InputResult& i : r.inputs) add(i.optimum_rmse);
-  for (const AlgorithmResult& a : r.algorithms) {
-    out += a.label + a.why + (a.as_good_as_best ? "*" : "");
-    for (const double v : {a.rmse,
-                           a.rmse_ci95.low,
-                           a.rmse_ci95.high,
-                           a.regret,
-                           a.availability,
-                           a.weight_distance,
-                           a.variance_error})
-      add(v);
-    for (const InputScore& i : a.inputs) {
-      add(i.error.bias);
-      add(i.error.maximum);
-      for (const AllanPoint& p : i.allan.points) add(p.deviation);
-      track(i.window_rms);
-    }
-    if (a.weights)
-      for (Eigen::Index k = 0; k < a.weights->size(); ++k) add(a.weights->data()[k]);
-    if (a.variances)
-      for (Eigen::Index k = 0; k < a.variances->size(); ++k) add(a.variances->data()[k]);
-    for (const FoundFault& f : a.faults) add(f.from_s);
-    track(a.weight_track);
-    track(a.variance_track);
-  }
-  return out;
 }
 
 }  // namespace
