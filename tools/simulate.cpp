@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "fault_words.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
@@ -100,53 +101,6 @@ void read_signal_samples(SignalSpec& spec,
                  option);
 }
 
-// "gyr_x:bias=0.2@100..200" in seconds; an open end is the end of the record.
-SensorFault fault_from_words(const std::string& text, const ArraySimulation& simulation) {
-  const std::string form = "SENSOR:KIND[=VALUE]@FROM..TO";
-  const std::size_t at = text.rfind('@'),
-                    colon = at == std::string::npos ? at : text.rfind(':', at);
-  if (colon == std::string::npos)
-    refuse("--fault", "expected " + form + " in seconds", text, "such as gyr_x:bias=0.2@100..200");
-  const std::string name = text.substr(0, colon), what = text.substr(colon + 1, at - colon - 1),
-                    when = text.substr(at + 1);
-  SensorFault fault;
-  std::vector<std::string> names;
-  for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    const auto near = nearest(name, names);
-    refuse("--fault",
-           "there is no such sensor",
-           name,
-           near ? fmt::format("did you mean {}?", *near)
-                : fmt::format("the sensors are {}", fmt::join(names, ", ")));
-  }
-  fault.sensor = static_cast<std::size_t>(found - names.begin());
-  const std::size_t equals = what.find('=');
-  const std::string kind = what.substr(0, equals);
-  if (std::find(fault_kinds().begin(), fault_kinds().end(), kind) == fault_kinds().end())
-    refuse("--fault", fmt::format("expected one of {}", fmt::join(fault_kinds(), ", ")), kind);
-  fault.kind = fault_kind(kind);
-  const auto number = [&](const std::string& word) {
-    const auto value = parse_double(word);
-    if (!value) refuse("--fault", "expected a number in " + form, word);
-    return *value;
-  };
-  const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
-  if (valueless != (equals == std::string::npos))
-    refuse("--fault", valueless ? kind + " takes no value" : kind + " needs a value", text, form);
-  if (!valueless) fault.value = number(what.substr(equals + 1));
-  if ((fault.kind == FaultKind::saturation || fault.kind == FaultKind::noise) && fault.value < 0)
-    refuse("--fault", kind + " needs a value of at least 0", what.substr(equals + 1));
-  const std::size_t dots = when.find("..");
-  if (dots == std::string::npos) refuse("--fault", "expected FROM..TO in seconds", when, form);
-  fault.from_s = number(when.substr(0, dots));
-  if (dots + 2 < when.size()) fault.to_s = number(when.substr(dots + 2));
-  if (!(fault.from_s >= 0 && fault.from_s < fault.to_s))
-    refuse("--fault", "a fault lasts from a time to a later one", when);
-  return fault;
-}
-
 bool is_scene(const std::string& path) {
   const std::string text = read_document_text(path);
   const Document document =
@@ -221,8 +175,10 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
   if (!verb.truth.empty()) simulation.truth = {signal_from_words(verb.truth, "--truth")};
   if (!verb.temperature.empty())
     simulation.temperature = signal_from_words(verb.temperature, "--temperature");
+  std::vector<std::string> names;
+  for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   for (const std::string& fault : verb.faults)
-    simulation.faults.push_back(fault_from_words(fault, simulation));
+    simulation.faults.push_back(fault_from_words(fault, names));
   const auto recorded = [&](SignalSpec& spec, const std::string& option) {
     if (spec.kind != "recording") return;
     for (const std::string& output : {verb.output, verb.scene_path})
@@ -481,11 +437,7 @@ void add_simulate(CLI::App& app, Session& session) {
                   verb->temperature,
                   "temperature in degC, a signal as well (default: the models' reference)")
       ->type_name("SIGNAL");
-  sub->add_option("--fault",
-                  verb->faults,
-                  "SENSOR:KIND[=VALUE]@FROM..TO in seconds; KIND scale, bias, ramp, stuck, "
-                  "saturation, noise, dropout")
-      ->type_name("FAULT");
+  sub->add_option("--fault", verb->faults, kFaultHelp)->type_name("FAULT");
   add_count(*sub,
             "--oversampling",
             verb->oversampling,

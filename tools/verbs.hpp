@@ -14,6 +14,7 @@ void add_psd(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_model(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
+void add_replay(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
@@ -25,6 +26,7 @@ inline void add_verbs(CLI::App& app, Session& session) {
   add_fit(app, session);
   add_model(app, session);
   add_simulate(app, session);
+  add_replay(app, session);
   add_convert(app, session);
 }
 

@@ -15,9 +15,11 @@ InverseVariance::InverseVariance(const Given& given) : levels_(given.noise_level
   const double sum = weights_.sum();
   weights_ /= sum;
   variance_ = smallest / sum;
+  if (!given.plain()) general_ = std::make_unique<GeneralMean>(given.h(), levels_);
 }
 
 Estimate InverseVariance::step(const Sample& y) const {
+  if (general_) return general_->step(y);
   const WeightedMean mean = weighted_mean(y.data(), weights_.data(), weights_.size());
   return Estimate::scalar(mean.x, variance_ / mean.used);
 }

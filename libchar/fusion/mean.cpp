@@ -9,9 +9,18 @@ namespace libchar::fusion {
 Mean::Mean(const Given& given) : levels_(given.noise_levels), channels_(given.channels) {
   const double n = static_cast<double>(channels_);
   variance_ = levels_.size() == channels_ ? levels_.sum() / (n * n) : std::nan("");
+  if (!given.plain())
+    general_ = std::make_unique<GeneralMean>(given.h(), Eigen::VectorXd::Ones(channels_));
 }
 
 Estimate Mean::step(const Sample& y) const {
+  if (!general_) return plain(y);
+  Estimate estimate = general_->step(y);
+  estimate.variance.setConstant(std::nan(""));  // nobody said how noisy the channels are
+  return estimate;
+}
+
+Estimate Mean::plain(const Sample& y) const {
   const double* const v = y.data();
   const double base = v[0];
   double a = 0, b = 0;
@@ -41,6 +50,7 @@ Estimate Mean::of_present(const Sample& y) const {
 }
 
 Eigen::MatrixXd Mean::weights() const {
+  if (general_) return general_->weights();
   return Eigen::MatrixXd::Constant(channels_, 1, 1 / static_cast<double>(channels_));
 }
 

@@ -1,7 +1,9 @@
 // RMSE = sqrt(sum e^2 / n). Its interval: moving-block bootstrap (H. R. Künsch, Ann. Stat. 17
 // (1989) 1217): stretches of record/blocks consecutive samples, starting anywhere, are drawn with
-// replacement until the record is full; percentiles of the resampled RMSE. Errors are correlated in
-// time, and a stretch keeps their correlation. Cells are the grain at which stretches begin.
+// replacement until the record is full; percentiles of the resampled RMSE. Stretches run on from
+// the end at the beginning (Politis & Romano 1992), or both ends, where filters settle, would be
+// drawn too seldom. Errors are correlated in time, and a stretch keeps their correlation. Cells are
+// the grain at which stretches begin.
 #include "libchar/replay/error_meter.hpp"
 
 #include <algorithm>
@@ -43,7 +45,7 @@ class Resampler {
         deviates_({options.seed, 0, Purpose::bootstrap}) {}
   const std::vector<std::size_t>& draw() {
     starts_.clear();
-    const double places = static_cast<double>(cells_ - length_ + 1);
+    const double places = static_cast<double>(cells_);
     for (std::size_t filled = 0; filled < cells_; filled += length_)
       starts_.push_back(static_cast<std::size_t>(deviates_.uniform() * places));
     return starts_;
@@ -56,10 +58,11 @@ class Resampler {
   std::vector<std::size_t> starts_;
 };
 
-// Sums before each cell: a stretch is a difference.
+// Sums before each cell, the record once round and once more: a stretch is a difference.
 std::vector<ErrorCell> cumulated(const std::vector<ErrorCell>& cells) {
-  std::vector<ErrorCell> sums(cells.size() + 1);
-  for (std::size_t i = 0; i < cells.size(); ++i) sums[i + 1] = merged(sums[i], cells[i]);
+  std::vector<ErrorCell> sums(2 * cells.size() + 1);
+  for (std::size_t i = 0; i + 1 < sums.size(); ++i)
+    sums[i + 1] = merged(sums[i], cells[i % cells.size()]);
   return sums;
 }
 

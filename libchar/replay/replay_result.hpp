@@ -87,6 +87,7 @@ struct AlgorithmResult {
       0;  ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
   Timeline weight_track;  ///< a series a sensor; empty when the weights stand still
   Timeline variance_track;
+  bool watches_faults = false;  ///< it takes sensors out; `faults` and `answers` mean something
   std::vector<FoundFault> faults;
   std::uint64_t faults_not_kept = 0;
   std::vector<FaultAnswer> answers;

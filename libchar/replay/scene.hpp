@@ -61,8 +61,9 @@ struct SimulatedFrom {
 struct Scene {
   std::string file;  ///< of the scene
   std::string name;
-  std::string recording;  ///< resolved path; empty for a simulation
-  ReadOptions reading;    ///< rate, delimiter, names… of the recording
+  std::string recording;              ///< resolved path; empty for a simulation
+  ReadOptions reading;                ///< rate, delimiter, names… of the recording
+  std::optional<double> resample_hz;  ///< uneven stamps: interpolated to this rate
   std::optional<ArraySimulation> simulate;
   std::vector<SceneSensor> sensors;
   std::optional<SceneReference> reference;

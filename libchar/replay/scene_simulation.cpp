@@ -146,6 +146,7 @@ std::string scene_recording_of(const MapReader& at,
   const MapReader map = at.map(key,
                                {"file",
                                 "rate_hz",
+                                "resample_hz",
                                 "delimiter",
                                 "decimal",
                                 "header",
@@ -161,6 +162,12 @@ std::string scene_recording_of(const MapReader& at,
                                 "overflow_as_missing",
                                 "skip_repeated_header"});
   reading.rate_hz = map.maybe_number("rate_hz", kPositive);
+  const auto resample_hz = map.maybe_number("resample_hz", kPositive);
+  if (resample_hz && (&reading != &scene.reading || reading.rate_hz))
+    map.refuse("resample_hz",
+               reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
+                               : "a reference is interpolated in any case");
+  if (resample_hz) scene.resample_hz = resample_hz;
   reading.delimiter = map.text_or("delimiter", "auto");
   const std::vector<std::string> words = {"auto", "tab", "space"};
   if (reading.delimiter.size() != 1 &&

@@ -31,11 +31,13 @@ std::string list_of(const std::vector<double>& numbers) {
 std::string recording_block(const std::string& file,
                             const ReadOptions& r,
                             const std::string& scene,
-                            const std::string& indent) {
+                            const std::string& indent,
+                            std::optional<double> resample_hz = {}) {
   std::string more;
   const auto add = [&](const std::string& key, const std::string& value) {
     more += indent + "  " + key + ": " + value + "\n";
   };
+  if (resample_hz) add("resample_hz", shortest_yaml(*resample_hz));
   if (r.rate_hz) add("rate_hz", shortest_yaml(*r.rate_hz));
   if (r.delimiter != "auto") add("delimiter", quoted_yaml(r.delimiter));
   if (r.decimal != "auto") add("decimal", r.decimal);
@@ -214,8 +216,9 @@ std::string scene_yaml(const Scene& scene) {
       "docs/scenes.md\nformat: scene\nversion: 1\ntool: {{name: sensorchar, version: {}}}\n",
       quoted_yaml(version()));
   if (!scene.name.empty()) out += "name: " + quoted_yaml(scene.name) + "\n";
-  out += scene.simulate ? simulation_block(scene)
-                        : recording_block(scene.recording, scene.reading, scene.file, "");
+  out += scene.simulate
+             ? simulation_block(scene)
+             : recording_block(scene.recording, scene.reading, scene.file, "", scene.resample_hz);
   out += sensors_block(scene);
   if (scene.reference) out += reference_block(*scene.reference, scene.file);
   if (scene.tilt)

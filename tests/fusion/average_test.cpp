@@ -1,7 +1,10 @@
 // Mean, inverse-variance and median against oracle/fusion and by hand.
 
+#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "libchar/fusion/inverse_variance.hpp"
+#include "libchar/fusion/mean.hpp"
 #include "tests/fusion/vectors.hpp"
 
 using namespace libchar::fusion;
@@ -83,4 +86,37 @@ TEST_CASE("median: even and odd, few and many, against sorting") {
       CHECK(out.x(0, k) == (n % 2 == 1 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2));
     }
   }
+}
+
+TEST_CASE("mean and inverse variance of several inputs are least squares", "[fusion]") {
+  Given given;
+  given.channels = 5;
+  given.observation_matrix.resize(5, 2);
+  given.observation_matrix << 1, -0.2, 1, -0.1, 1, 0, 1, 0.15, 2, 0.3;
+  given.noise_levels = Eigen::VectorXd::LinSpaced(5, 0.1, 2);
+  Eigen::VectorXd y(5);
+  y << 0.3, -1, 2, 0.7, 5;
+  const auto expected = [&](const Eigen::VectorXd& w, const std::vector<Eigen::Index>& rows) {
+    const Eigen::MatrixXd h = given.observation_matrix(rows, Eigen::all);
+    const Eigen::MatrixXd hw = h.transpose() * Eigen::VectorXd(w(rows)).asDiagonal();
+    return Eigen::VectorXd((hw * h).ldlt().solve(hw * y(rows)));
+  };
+  const std::vector<Eigen::Index> all = {0, 1, 2, 3, 4}, some = {0, 2, 4};
+  const auto check = [&](auto& algorithm, const Eigen::VectorXd& w) {
+    const Eigen::VectorXd samples = y;
+    const Estimate whole = algorithm.step(Sample(samples.data(), 5));
+    CHECK((whole.x - expected(w, all)).norm() < 1e-13);
+    CHECK((algorithm.weights().transpose() * y - whole.x).norm() < 1e-13);
+    Eigen::VectorXd gaps = y;
+    gaps[1] = gaps[3] = std::nan("");
+    CHECK((algorithm.step(Sample(gaps.data(), 5)).x - expected(w, some)).norm() < 1e-13);
+    gaps.setConstant(std::nan(""));
+    gaps[2] = 1;
+    CHECK(std::isnan(algorithm.step(Sample(gaps.data(), 5)).x[0]));
+    CHECK((algorithm.step(Sample(samples.data(), 5)).x - whole.x).norm() == 0);
+  };
+  Mean mean(given);
+  check(mean, Eigen::VectorXd::Ones(5));
+  InverseVariance weighted(given);
+  check(weighted, given.noise_levels.cwiseInverse());
 }

@@ -1,0 +1,27 @@
+#pragma once
+// A reference on a grid of its own, in memory: truth at any time, or over any of its intervals.
+
+#include <string>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/replay/scene_source.hpp"
+
+namespace libchar {
+
+struct ReferenceTrack {
+  double start_s =
+      0;  ///< of its first sample, on the clock of the scene's recording (0: its first sample)
+  double rate_hz = 0;
+  std::vector<std::vector<double>> values;  ///< [channel][sample], NaN: missing
+  std::vector<std::string> units;
+  LogInfo log;
+
+  /// Linear between samples; NaN beyond the ends and beside missing samples.
+  double at(std::size_t channel, double time_s) const;
+};
+
+/// Reads the reference of a scene: from a log of its own, or from the recording itself.
+ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress);
+
+}  // namespace libchar

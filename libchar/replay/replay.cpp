@@ -1,0 +1,347 @@
+// The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
+// teaches in the learning window, one that teaches the bounds on the evaluation, one that runs
+// everything on it block by block, algorithm after algorithm, so that all see the same machine.
+#include "libchar/replay/replay.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "libchar/core/error.hpp"
+#include "libchar/replay/algorithm_run.hpp"
+#include "libchar/replay/blind_run.hpp"
+#include "libchar/replay/find_lag.hpp"
+#include "libchar/replay/judgement.hpp"
+#include "libchar/replay/plan.hpp"
+
+namespace libchar {
+namespace {
+
+/// A median of fewer blocks is no median: short recordings are run again for the clock.
+constexpr std::size_t kLeastTimed = 31;
+constexpr std::size_t kLearningBlock = 4096;
+constexpr double kWindowShare = 0.02;
+
+// Says which pass it is; the source knows how far it is.
+struct PassProgress final : Progress {
+  PassProgress(Progress& to, std::string name) : next(to), what(std::move(name)) {}
+  void update(double fraction, std::string_view) override { next.update(fraction, what); }
+  Progress& next;
+  std::string what;
+};
+
+struct SensorMeter {
+  ErrorMeter error;
+  double first = kMissing;
+  bool constant = true;
+  std::uint64_t missing = 0;
+};
+
+class Replay {
+ public:
+  Replay(const Scene& scene, const ReplayOptions& options, Progress& progress)
+      : scene_(scene), options_(options), progress_(progress), feed_(scene, progress) {
+    if (scene.reference && scene.reference->estimate_lag) estimate_lag();
+    PassProgress at_rest(progress, "measuring the rest");
+    knowledge_ = know_sensors(scene, feed_, at_rest);
+    passes_ += scene.rest ? 1 : 0;
+    feed_.set_offsets(knowledge_.offsets);
+    plan_ = make_plan(scene, options, feed_, knowledge_);
+  }
+
+  std::vector<std::string> explain() const { return sentences(plan_, scene_, feed_, knowledge_); }
+
+  ReplayResult run() {
+    prepare();
+    if (plan_.learning_pass) teach();
+    if (plan_.run_learning_pass) teach_on_run();
+    for (AlgorithmRun& run : runs_) run.finish_learning();
+    for (AlgorithmRun& run : optimum_) run.finish_learning();
+    run_all();
+    ReplayResult result = collect();
+    time_again(result);
+    return result;
+  }
+
+ private:
+  void estimate_lag() {
+    PassProgress passing(progress_, "estimating the lag");
+    const TimeWindow all;
+    lag_s_ = find_lag(scene_,
+                      feed_,
+                      options_.evaluation ? *options_.evaluation : scene_.evaluation.value_or(all),
+                      passing);
+    feed_.set_lag(lag_s_, progress_);
+    ++passes_;
+  }
+
+  void prepare() {
+    frame_.given = &plan_.given;
+    frame_.heap = options_.heap;
+    frame_.rate_hz = feed_.info().rate_hz;
+    frame_.start_s = feed_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
+    frame_.output_scale = feed_.info().output_scale;
+    frame_.tilt = scene_.tilt.has_value();
+    frame_.allan = (options_.allan || options_.no_skip) && feed_.info().has_reference;
+    frame_.tracks = true;
+    runs_.reserve(plan_.algorithms.size());
+    for (const PlannedAlgorithm& algorithm : plan_.algorithms)
+      if (algorithm.runs()) {
+        runs_.emplace_back(algorithm, frame_);
+        if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run())
+          blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.given));
+        else
+          blind_.push_back(nullptr);
+      }
+    given_on_run_ = plan_.given;
+    given_on_run_.learning_samples = plan_.run_to - plan_.run_from;
+    optimum_frame_ = frame_;
+    optimum_frame_.given = &given_on_run_;
+    optimum_frame_.heap = nullptr;
+    optimum_frame_.allan = optimum_frame_.tracks = false;
+    optimum_.reserve(plan_.optimum.size());
+    for (const PlannedAlgorithm& algorithm : plan_.optimum)
+      optimum_.emplace_back(algorithm, optimum_frame_);
+    sensors_.resize(scene_.sensors.size());
+  }
+
+  void teach() {
+    PassProgress passing(progress_, "learning");
+    ++passes_;
+    feed_.pass(
+        plan_.learn_from,
+        plan_.learn_to,
+        kLearningBlock,
+        [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+          for (AlgorithmRun& run : runs_)
+            if (run.planned().learns_before()) run.learn(samples, truth);
+        },
+        passing);
+  }
+
+  void teach_on_run() {
+    PassProgress passing(progress_, "teaching the bounds");
+    ++passes_;
+    feed_.pass(
+        plan_.run_from,
+        plan_.run_to,
+        kLearningBlock,
+        [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+          for (AlgorithmRun& run : runs_)
+            if (run.planned().learns_run()) run.learn(samples, truth);
+          for (AlgorithmRun& run : optimum_) run.learn(samples, truth);
+        },
+        passing);
+  }
+
+  void run_all() {
+    PassProgress passing(progress_, "replaying");
+    ++passes_;
+    if (options_.estimates != nullptr) begin_estimates();
+    const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
+    feed_.pass(
+        plan_.run_from,
+        plan_.run_to,
+        plan_.block,
+        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+          for (AlgorithmRun& run : runs_) run.run(samples);
+          for (AlgorithmRun& run : optimum_) run.run(samples);
+          for (AlgorithmRun& run : runs_) run.score(first - plan_.run_from, truth);
+          for (AlgorithmRun& run : optimum_) run.score(first - plan_.run_from, truth);
+          for (const auto& blind : blind_)
+            if (blind) blind->run(samples);
+          judge_sensors(samples, truth);
+          if (options_.estimates != nullptr) give_estimates(truth);
+          if (blocks < kLeastTimed) kept_.push_back(samples);
+        },
+        passing);
+  }
+
+  void judge_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+    const bool errors = truth.rows() > 0 && !scene_.tilt;
+    if (errors) expected_ = plan_.given.h() * truth;
+    std::vector<double> error(static_cast<std::size_t>(samples.cols()));
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      SensorMeter& meter = sensors_[i];
+      const auto row = static_cast<Eigen::Index>(i);
+      for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+        const double y = samples(row, k);
+        if (!std::isfinite(y)) {
+          ++meter.missing;
+        } else if (std::isnan(meter.first)) {
+          meter.first = y;
+        } else if (y != meter.first) {
+          meter.constant = false;
+        }
+        if (errors) {
+          const double e = y - expected_(row, k);
+          error[static_cast<std::size_t>(k)] = std::isfinite(e) ? e : kMissing;
+        }
+      }
+      if (errors) meter.error.push(error);
+    }
+  }
+
+  void begin_estimates() {
+    std::vector<std::string> labels;
+    for (const AlgorithmRun& run : runs_)
+      if (run.alive() && run.planned().asked) labels.push_back(run.planned().label);
+    options_.estimates->begin(labels,
+                              inputs(),
+                              frame_.rate_hz,
+                              frame_.start_s,
+                              static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
+  }
+
+  void give_estimates(const Eigen::MatrixXd& truth) {
+    std::vector<std::vector<double>> columns;
+    const auto add = [&](const auto& row) { columns.emplace_back(row.begin(), row.end()); };
+    for (Eigen::Index j = 0; j < truth.rows(); ++j)
+      add((truth.row(j) * frame_.output_scale).eval());
+    for (const AlgorithmRun& run : runs_)
+      if (run.alive() && run.planned().asked)
+        for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
+    options_.estimates->block(columns);
+  }
+
+  // After everything else: what the algorithms hold then is of no interest.
+  void time_again(ReplayResult& result) {
+    if (kept_.empty()) return;
+    const auto timed_enough = [](const AlgorithmRun& run) {
+      return !run.alive() || run.timed_blocks() >= kLeastTimed;
+    };
+    while (!std::all_of(runs_.begin(), runs_.end(), timed_enough))
+      for (const Eigen::MatrixXd& samples : kept_)
+        for (AlgorithmRun& run : runs_) run.repeat(samples);
+    for (const AlgorithmRun& run : runs_)
+      for (AlgorithmResult& algorithm : result.algorithms)
+        if (run.alive() && algorithm.label == run.planned().label)
+          algorithm.ns_per_sample = run.median_ns();
+  }
+
+  std::vector<InputResult> inputs() const {
+    std::vector<InputResult> out;
+    for (std::size_t j = 0; j < feed_.info().input_names.size(); ++j)
+      out.push_back({feed_.info().input_names[j], feed_.info().input_units[j], kMissing});
+    return out;
+  }
+
+  ReplayResult collect();
+  SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
+
+  const Scene& scene_;
+  const ReplayOptions& options_;
+  Progress& progress_;
+  Feed feed_;
+  SensorKnowledge knowledge_;
+  ReplayPlan plan_;
+  RunFrame frame_, optimum_frame_;
+  fusion::Given given_on_run_;
+  std::vector<AlgorithmRun> runs_, optimum_;
+  std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
+  std::vector<SensorMeter> sensors_;
+  std::vector<Eigen::MatrixXd> kept_;
+  Eigen::MatrixXd expected_;
+  double lag_s_ = 0;
+  std::uint64_t passes_ = 0;
+};
+
+SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) const {
+  SensorResult out;
+  out.name = scene_.sensors[i].name;
+  out.unit = feed_.info().units[i];
+  out.error = score(sensors_[i].error, frame_.rate_hz, scoring);
+  if (knowledge_.noise_variances[i] > 0) out.noise_variance = knowledge_.noise_variances[i];
+  out.noise_source = knowledge_.noise_sources[i];
+  out.offset = knowledge_.offsets[i];
+  out.missing =
+      static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
+  out.constant = sensors_[i].constant;
+  out.h = scene_.sensors[i].h;
+  return out;
+}
+
+ReplayResult Replay::collect() {
+  const ScoreOptions scoring{40, 1000, options_.seed};
+  const FeedInfo& info = feed_.info();
+  ReplayResult out;
+  out.scene = scene_;
+  out.logs = info.logs;
+  out.plan = explain();
+  out.rate_hz = info.rate_hz;
+  out.instants = static_cast<std::uint64_t>(plan_.run_to - plan_.run_from);
+  out.start_s = frame_.start_s;
+  if (plan_.learn_to > plan_.learn_from) out.learning = plan_.learning;
+  out.evaluation = plan_.evaluation;
+  out.window_s = options_.window_s > 0
+                     ? options_.window_s
+                     : kWindowShare * static_cast<double>(out.instants) / info.rate_hz;
+  out.lag_s = scene_.reference && scene_.reference->estimate_lag ? lag_s_
+              : scene_.reference                                 ? scene_.reference->lag_s
+                                                                 : 0;
+  out.lag_estimated = scene_.reference && scene_.reference->estimate_lag;
+  out.has_reference = info.has_reference;
+  out.reference_use = info.reference_use;
+  out.faults = feed_.source().known_faults();
+  out.warnings = scene_.warnings;
+  out.warnings.merge(plan_.warnings);
+  out.inputs = inputs();
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    out.sensors.push_back(sensor_result(i, scoring));
+  std::vector<const ErrorMeter*> meters;
+  auto run = runs_.begin();
+  for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
+    const bool ran = algorithm.runs();
+    const AlgorithmRun* mine = ran ? &*run : nullptr;
+    const BlindRun* blind =
+        ran ? blind_[static_cast<std::size_t>(run - runs_.begin())].get() : nullptr;
+    if (ran) ++run;
+    if (mine != nullptr) {
+      out.work.learnt += mine->learnt();
+      out.work.steps += mine->steps();
+    }
+    if (blind != nullptr) out.work.blind_steps += blind->steps();
+    if (!algorithm.asked) continue;
+    AlgorithmResult result =
+        mine != nullptr ? mine->result(scoring, out.window_s) : not_run(algorithm, algorithm.why);
+    meters.push_back(nullptr);
+    if (result.ran && !result.inputs.empty()) meters.back() = &mine->meters()[0];
+    if (result.ran && blind != nullptr && !info.has_reference) {
+      result.blind = blind->result(info.rate_hz, scoring);
+      result.rmse = result.blind->leave_one_out_rms;
+      result.rmse_ci95 = result.blind->leave_one_out_ci95;
+      meters.back() = &blind->meter();
+    }
+    if (!options_.allan)
+      for (InputScore& input : result.inputs) input.allan = {};
+    if (mine != nullptr) judge_tracking(result, *mine, optimum_, out, plan_.given);
+    answer_faults(result, out);
+    out.algorithms.push_back(std::move(result));
+  }
+  judge_optimum(out, optimum_, plan_.given);
+  judge_best(out, meters, scoring);
+  out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
+  for (const AlgorithmRun& bound : optimum_) {
+    out.work.learnt += bound.learnt();
+    out.work.steps += bound.steps();
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> explain_replay(const Scene& scene,
+                                        const ReplayOptions& options,
+                                        Progress& progress) {
+  return Replay(scene, options, progress).explain();
+}
+
+ReplayResult replay(const Scene& scene, const ReplayOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  ReplayResult out = Replay(scene, options, progress).run();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace libchar

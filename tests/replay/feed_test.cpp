@@ -1,0 +1,242 @@
+#include "libchar/replay/feed.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/replay/resampled.hpp"
+#include "libchar/replay/rest.hpp"
+#include "tests/replay/scene_text.hpp"
+
+using namespace libchar;
+
+namespace {
+
+const std::string kHead = "format: scene\nversion: 1\n";
+
+struct Fed {
+  Eigen::MatrixXd samples, truth;
+  std::vector<Eigen::Index> sizes;
+};
+
+Fed all_of(const Feed& feed, std::int64_t from, std::int64_t to, std::size_t size) {
+  Fed out;
+  out.samples.resize(static_cast<Eigen::Index>(feed.info().units.size()), 0);
+  feed.pass(
+      from,
+      to,
+      size,
+      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        CHECK(first == from + out.samples.cols());
+        const Eigen::Index old = out.samples.cols();
+        out.samples.conservativeResize(Eigen::NoChange, old + samples.cols());
+        out.samples.rightCols(samples.cols()) = samples;
+        out.truth.conservativeResize(truth.rows(), old + truth.cols());
+        out.truth.rightCols(truth.cols()) = truth;
+        out.sizes.push_back(samples.cols());
+      },
+      no_progress());
+  return out;
+}
+
+std::string numbered(std::size_t rows, double rate_hz) {
+  std::string text = "t[s],a[deg/s],b[deg/s],x[deg/s]\n";
+  for (std::size_t k = 0; k < rows; ++k)
+    text += std::to_string(static_cast<double>(k) / rate_hz) + "," + std::to_string(k) + "," +
+            std::to_string(2 * k) + "," + std::to_string(100 + k) + "\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("feed: columns of the recording in blocks of the size that was asked for") {
+  const test::SceneBench bench;
+  bench.put("log.csv", numbered(1000, 10));
+  const Scene scene = bench.read(kHead +
+                                 "recording: log.csv\nsensors: [{name: a, scale: -0.5}, b]\n"
+                                 "reference: x\n");
+  Feed feed(scene, no_progress());
+  CHECK(feed.info().rate_hz == Approx(10).epsilon(1e-9));
+  CHECK(feed.info().instants == 1000);
+  CHECK(feed.info().units == std::vector<std::string>{"deg/s", "deg/s"});
+  const Fed whole = all_of(feed, 0, 1000, 4096);
+  REQUIRE(whole.samples.cols() == 1000);
+  CHECK(whole.samples(0, 7) == -3.5);
+  CHECK(whole.samples(1, 7) == 14);
+  CHECK(whole.truth(0, 7) == 107);
+  for (const std::size_t size : {1, 7, 100, 333}) {
+    const Fed part = all_of(feed, 13, 777, size);
+    CHECK(part.samples == whole.samples.middleCols(13, 764));
+    CHECK(part.truth == whole.truth.middleCols(13, 764));
+    for (std::size_t b = 0; b + 1 < part.sizes.size(); ++b)
+      CHECK(part.sizes[b] == static_cast<Eigen::Index>(size));
+  }
+  feed.set_offsets({1, 2});
+  CHECK(all_of(feed, 7, 8, 1).samples(1, 0) == 12);
+}
+
+TEST_CASE("feed: times in seconds are instants at or after them") {
+  const test::SceneBench bench;
+  bench.put("log.csv", numbered(1000, 10));
+  const Scene scene = bench.read(kHead + "recording: log.csv\nsensors: [a, b]\n");
+  const Feed feed(scene, no_progress());
+  CHECK(feed.instant_at(0) == 0);
+  CHECK(feed.instant_at(0.3) == 3);
+  CHECK(feed.instant_at(0.31) == 4);
+  CHECK(feed.instant_at(1e9) == 1000);
+  CHECK(feed.instant_at(std::numeric_limits<double>::infinity()) == 1000);
+}
+
+TEST_CASE("feed: faults of the scene are injected, whatever window is read") {
+  const test::SceneBench bench;
+  bench.put("log.csv", numbered(1000, 10));
+  const Scene scene = bench.read(
+      kHead +
+      "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, to_s: "
+      "30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
+  const Feed feed(scene, no_progress());
+  const Fed fed = all_of(feed, 250, 600, 64);
+  CHECK(fed.samples(1, 0) == 2 * 199);
+  CHECK(fed.samples(1, 49) == 2 * 199);
+  CHECK(fed.samples(1, 50) == 600);
+  CHECK(fed.samples(0, 249) == 499);
+  CHECK(fed.samples(0, 250) == 1500);
+}
+
+TEST_CASE("feed: a simulation is the same in every pass") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(
+      kHead +
+      "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, {kind: "
+      "sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: gyro.sensor.yaml, h: [1, 0]}, "
+      "{name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
+  const Feed feed(scene, no_progress());
+  const Fed first = all_of(feed, 0, 5000, 1000), second = all_of(feed, 0, 5000, 777);
+  CHECK(first.samples == second.samples);
+  CHECK(first.truth.rows() == 1);
+  CHECK(first.truth == first.samples.row(1));
+}
+
+TEST_CASE("feed: a slow reference is compared with means over its intervals") {
+  const test::SceneBench bench;
+  // Samples at 1 Hz from stamp 5; a reference every 10 s from stamp 0.
+  std::string log = "t[s],a,b\n", station = "t[s],x\n";
+  for (int k = 0; k < 100; ++k) {
+    const int t = 5 + k;
+    const bool missing = t >= 40 && t < 46;
+    log += std::to_string(t) + "," + std::to_string(t) + "," + (missing ? "" : "1") + "\n";
+  }
+  for (int j = 0; j < 20; ++j)
+    station += std::to_string(10 * j) + "," + (j == 2 ? "" : std::to_string(7 * j)) + "\n";
+  bench.put("log.csv", log);
+  bench.put("station.csv", station);
+  const Scene scene = bench.read(
+      kHead +
+      "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: station.csv}\n");
+  const Feed feed(scene, no_progress());
+  CHECK(feed.info().averaged == 10);
+  CHECK(feed.info().rate_hz == Approx(0.1));
+  CHECK(feed.info().start_s == Approx(5));  // stamp 10, the first whole interval
+  CHECK(feed.info().instants == 9);         // 10…20, …, 90…100
+  const Fed fed = all_of(feed, 0, 9, 4);
+  REQUIRE(fed.samples.cols() == 9);
+  CHECK(fed.samples(0, 0) == 14.5);
+  CHECK(fed.samples(0, 8) == 94.5);
+  CHECK(fed.truth(0, 0) == 7);
+  CHECK(std::isnan(fed.truth(0, 1)));
+  CHECK(fed.truth(0, 8) == 63);
+  CHECK(std::isnan(fed.samples(1, 3)));  // six of ten are missing
+  CHECK(fed.samples(1, 4) == 1);
+  const Fed later = all_of(feed, 3, 6, 1);
+  CHECK(later.samples(0, 0) == fed.samples(0, 3));
+  CHECK(later.samples.cols() == 3);
+}
+
+TEST_CASE("feed: reference and recording without a common time are refused") {
+  const test::SceneBench bench;
+  bench.put("log.csv", "t[s],a\n0,1\n1,1\n2,1\n3,2\n");
+  bench.put("station.csv", "t[s],x\n1000,1\n1010,2\n1020,2\n");
+  const Scene scene = bench.read(
+      kHead +
+      "recording: log.csv\nsensors: [a]\nreference: {channels: [x], recording: station.csv}\n");
+  CHECK_THROWS_WITH(Feed(scene, no_progress()), Catch::Contains("E0902"));
+}
+
+TEST_CASE("feed: a faster reference, and a lag, are interpolated") {
+  const test::SceneBench bench;
+  bench.put("log.csv", numbered(100, 10));
+  std::string fast = "t[s],x\n";
+  for (int j = 0; j < 400; ++j)
+    fast += std::to_string(j * 0.04) + "," + std::to_string(j * 0.04) + "\n";
+  bench.put("fast.csv", fast);
+  const Scene scene = bench.read(
+      kHead +
+      "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: fast.csv}\n");
+  Feed feed(scene, no_progress());
+  const Fed fed = all_of(feed, 0, 100, 100);
+  for (Eigen::Index k = 0; k < 100; ++k)
+    CHECK(fed.truth(0, k) == Approx(0.1 * static_cast<double>(k)).margin(1e-12));
+  feed.set_lag(0.25, no_progress());
+  const Fed late = all_of(feed, 0, 100, 100);
+  CHECK(std::isnan(late.truth(0, 2)));  // before the reference begins
+  CHECK(late.truth(0, 10) == Approx(0.75));
+  const Scene own = bench.read(
+      kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], lag_s: 0.05}\n");
+  CHECK(all_of(Feed(own, no_progress()), 0, 100, 100).truth(0, 10) == Approx(109.5));
+}
+
+TEST_CASE("feed: a tilt is in radians inside, its scores in the unit of the reference") {
+  const test::SceneBench bench;
+  bench.put("log.csv", "t[s],w[deg/s],x[g],z[g],angle[deg]\n0,180,0,1,90\n1,0,1,1,45\n2,0,1,0,0\n");
+  const Scene scene = bench.read(kHead +
+                                 "recording: log.csv\nsensors: [w, x, z]\nreference: angle\n"
+                                 "tilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n");
+  const Feed feed(scene, no_progress());
+  const Fed fed = all_of(feed, 0, 3, 3);
+  CHECK(fed.samples(0, 0) == Approx(std::acos(-1.0)));
+  CHECK(fed.samples(1, 1) == 1);
+  CHECK(fed.truth(0, 0) == Approx(std::acos(-1.0) / 2));
+  CHECK(fed.truth(0, 0) * feed.info().output_scale == Approx(90));
+  CHECK(feed.info().input_units[0] == "deg");
+}
+
+TEST_CASE("rest: offsets and noise, drift hardly in it") {
+  RestMeter meter(2);
+  Eigen::MatrixXd block(2, 1000);
+  for (Eigen::Index k = 0; k < 1000; ++k) {
+    block(0, k) = 1e9 + (k % 2 == 0 ? 1.0 : -1.0);
+    block(1, k) = k == 500 ? std::nan("") : 1e-3 * static_cast<double>(k);
+  }
+  meter.push(block.leftCols(301));
+  meter.push(block.rightCols(699));
+  CHECK(meter.means()[0] == 1e9);
+  CHECK(meter.noise_variances()[0] == 2);
+  CHECK(meter.noise_variances()[1] == Approx(0.5e-6));
+}
+
+TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
+  const test::SceneBench bench;
+  std::string log = "t[ms],a,b\n";
+  double t = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double ms = 1000 * t;
+    log += std::to_string(ms) + "," + std::to_string(3 * ms) + "," + std::to_string(k) + "\n";
+    t += k == 200 ? 0.5 : 0.01 * (1 + 0.6 * std::sin(0.1 * k));
+  }
+  bench.put("log.csv", log);
+  const ResampledLog even =
+      read_resampled(bench.path("log.csv"), {}, {"b", "a"}, 50, no_progress());
+  REQUIRE(even.samples.size() == 2);
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < even.samples[1].size(); ++i) {
+    const double a = even.samples[1][i];
+    if (std::isnan(a))
+      ++missing;
+    else
+      CHECK(a == Approx(3 * 20.0 * static_cast<double>(i)).margin(1e-4));
+  }
+  CHECK(missing >= 23);
+  CHECK(missing <= 25);
+  bench.put("bare.csv", "a,b\n1,2\n2,3\n");
+  CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, no_progress()),
+                    Catch::Contains("E0907"));
+}

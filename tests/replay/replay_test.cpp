@@ -1,0 +1,278 @@
+#include "libchar/replay/replay.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/replay/feed.hpp"
+#include "tests/replay/replay_numbers.hpp"
+#include "tests/replay/scene_text.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+using test::named;
+using test::numbers;
+
+namespace {
+
+std::string array_scene(std::size_t samples, const std::string& more) {
+  std::string text =
+      "format: scene\nversion: 1\nname: array\nsimulate:\n  rate_hz: 100\n  samples: " +
+      std::to_string(samples) +
+      "\n  seed: 5\n  truth: {kind: noise, standard_deviation: 2, bandwidth_hz: 3}\nsensors:\n";
+  const char* levels[] = {"3e-3", "4e-3", "5e-3", "6e-3", "7e-3", "8e-3"};
+  for (int i = 0; i < 6; ++i)
+    text += "  - {name: g" + std::to_string(i + 1) +
+            ", model: {unit: rad/s, rate_hz: 100, density: two-sided, white_noise: {value: " +
+            levels[i] + "}}}\n";
+  return text + more;
+}
+
+}  // namespace
+
+TEST_CASE("replay: the RMSE of the mean is that of a loop over the samples") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(array_scene(5000, "algorithms: [mean, inverse-variance]\n"));
+  double squares = 0;
+  std::int64_t count = 0;
+  const Feed feed(scene, no_progress());
+  feed.pass(
+      0,
+      5000,
+      100,
+      [&](std::int64_t, const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
+        for (Eigen::Index k = 0; k < y.cols(); ++k, ++count)
+          squares += std::pow(y.col(k).mean() - x(0, k), 2);
+      },
+      no_progress());
+  const ReplayResult result = replay(scene);
+  REQUIRE(count == 5000);
+  CHECK(named(result, "mean").rmse == Approx(std::sqrt(squares / 5000)).epsilon(1e-12));
+  CHECK(result.algorithms.size() == 2);
+  // Q^2 rate, weights by inverse variance: the optimum of this scene.
+  double information = 0;
+  for (const double q : {3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 8e-3}) information += 1 / (q * q * 100);
+  CHECK(result.inputs[0].optimum_rmse == Approx(1 / std::sqrt(information)).epsilon(0.03));
+  CHECK(named(result, "inverse-variance").regret >= -1e-9);
+  CHECK(named(result, "inverse-variance").regret < 0.005);
+  CHECK(named(result, "mean").regret == Approx(0.238).margin(0.03));
+  CHECK(result.best == std::size_t{1});
+  CHECK_FALSE(named(result, "mean").as_good_as_best);
+  CHECK(result.sensors[2].error.rmse == Approx(5e-2).epsilon(0.05));
+}
+
+TEST_CASE("replay: what needs a reference is taught in its window and scored behind it") {
+  const test::SceneBench bench;
+  const Scene scene =
+      bench.read(array_scene(6000, "learning: [0, 20]\nalgorithms: [least-squares, mean]\n"));
+  const ReplayResult result = replay(scene);
+  CHECK(result.instants == 4000);
+  CHECK(result.start_s == 20);
+  const AlgorithmResult& taught = named(result, "least-squares");
+  REQUIRE(taught.ran);
+  CHECK(taught.regret < 0.02);
+  REQUIRE(taught.weights);
+  CHECK(taught.weights->sum() == Approx(1).epsilon(1e-12));
+  CHECK(taught.weight_distance < 0.1);
+  CHECK(result.work.learnt == 2000 + 2 * 4000);  // it, and the two bounds that tell the optimum
+  CHECK(taught.learning_s > 0);
+}
+
+TEST_CASE("replay: nothing is learnt that nobody needs") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(array_scene(3000, "learning: [0, 10]\nalgorithms: [mean]\n"));
+  const auto plan = explain_replay(scene);
+  const auto said = [&](const std::string& sentence) {
+    return std::any_of(plan.begin(), plan.end(), [&](const std::string& s) {
+      return s.find(sentence) != std::string::npos;
+    });
+  };
+  CHECK(said("the learning window is not read"));
+  const ReplayResult lean = replay(scene);
+  ReplayOptions options;
+  options.no_skip = true;
+  const ReplayResult full = replay(scene, options);
+  CHECK(full.work.passes > lean.work.passes);
+  CHECK(full.work.steps > 5 * lean.work.steps);
+  CHECK(full.work.blind_steps > 0);
+  CHECK(lean.work.blind_steps == 0);
+  CHECK(numbers(full) == numbers(lean));
+}
+
+TEST_CASE("replay: without skipping the numbers of all algorithms are the same") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(array_scene(4000,
+                                             "learning: [0, 10]\nfaults: [{sensor: g1, kind: "
+                                             "scale, value: 0.5, from_s: 25, to_s: 35}]\n"));
+  ReplayOptions options;
+  options.no_skip = true;
+  CHECK(numbers(replay(scene, options)) == numbers(replay(scene)));
+}
+
+TEST_CASE("replay: scores do not depend on the block size") {
+  const test::SceneBench bench;
+  const Scene scene = bench.read(array_scene(
+      4000,
+      "learning: [0, 10]\nfaults: [{sensor: g1, kind: bias, value: 3, from_s: 25, to_s: 30}]\n"));
+  ReplayOptions options;
+  const ReplayResult standard = replay(scene);
+  for (const std::size_t block : {1, 37, 100000}) {
+    options.block = block;
+    const ReplayResult other = replay(scene, options);
+    for (std::size_t k = 0; k < standard.algorithms.size(); ++k) {
+      INFO(standard.algorithms[k].label << " in blocks of " << block);
+      const AlgorithmResult &a = standard.algorithms[k], &b = other.algorithms[k];
+      CHECK(a.why == b.why);
+      if (!a.ran) continue;
+      CHECK(a.rmse == b.rmse);
+      CHECK(a.inputs[0].error.maximum == b.inputs[0].error.maximum);
+      REQUIRE(a.faults.size() == b.faults.size());
+      for (std::size_t f = 0; f < a.faults.size(); ++f)
+        CHECK(a.faults[f].from_s == b.faults[f].from_s);
+    }
+  }
+}
+
+TEST_CASE("replay: faults that the scene knows are answered") {
+  const test::SceneBench bench;
+  const Scene scene =
+      bench.read(array_scene(12000,
+                             "faults: [{sensor: g2, kind: bias, value: 5, from_s: 60, to_s: 80}]\n"
+                             "algorithms: [minque, mean]\n"));
+  const ReplayResult result = replay(scene);
+  const AlgorithmResult& minque = named(result, "minque");
+  REQUIRE(minque.answers.size() == 1);
+  REQUIRE(minque.answers[0].found_s);
+  CHECK(*minque.answers[0].found_s < 0.1);
+  REQUIRE(minque.answers[0].returned_s);
+  CHECK(*minque.answers[0].returned_s > 0);
+  CHECK(*minque.answers[0].returned_s < 20);
+  CHECK_FALSE(named(result, "mean").watches_faults);
+  CHECK(minque.rmse < 0.2 * named(result, "mean").rmse);
+  CHECK_FALSE(minque.weight_track.empty());
+  CHECK(named(result, "mean").weight_track.empty());
+}
+
+TEST_CASE("replay: no reference, leave-one-out and split arrays of equal sensors") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a,b,c,d,e,f\n";
+  std::uint64_t state = 1;
+  const auto uniform = [&] {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state >> 11U) / 9007199254740992.0 - 0.5;
+  };
+  for (int k = 0; k < 20000; ++k) {
+    log += std::to_string(k * 0.01);
+    for (int i = 0; i < 6; ++i) log += "," + std::to_string(std::sin(0.01 * k) + uniform());
+    log += "\n";
+  }
+  bench.put("array.csv", log);
+  const Scene scene =
+      bench.read("format: scene\nversion: 1\nrecording: array.csv\nsensors: [a, b, c, d, e, f]\n");
+  const ReplayResult result = replay(scene);
+  const AlgorithmResult& mean = named(result, "mean");
+  REQUIRE(mean.blind);
+  const double sigma = std::sqrt(1.0 / 12);
+  CHECK(mean.blind->leave_one_out_rms == Approx(sigma * std::sqrt(1 + 1.0 / 5)).epsilon(0.01));
+  CHECK(mean.blind->split_rms == Approx(sigma / std::sqrt(6.0)).epsilon(0.02));
+  CHECK(mean.rmse == mean.blind->leave_one_out_rms);
+  CHECK(mean.inputs.empty());
+  CHECK(std::isnan(mean.regret));
+  CHECK(mean.blind->leave_one_out_ci95.low < mean.rmse);
+  CHECK_THAT(named(result, "least-squares").why, Contains("learns from a reference"));
+  CHECK_THAT(named(result, "inverse-variance").why, Contains("noise level"));
+}
+
+TEST_CASE("replay: a rest gives offsets and noise levels") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a,b,c\n";
+  for (int k = 0; k < 3000; ++k) {
+    const double x = k < 1000 ? 0 : std::sin(0.01 * k), e = k % 2 == 0 ? 1 : -1;
+    log += std::to_string(k * 0.01) + "," + std::to_string(x + 5 + 0.1 * e) + "," +
+           std::to_string(x - 3 - 0.2 * e) + "," + std::to_string(x + 0.4 * e) + "\n";
+  }
+  bench.put("array.csv", log);
+  const Scene scene = bench.read(
+      "format: scene\nversion: 1\nrecording: array.csv\nsensors: [a, b, c]\nrest: [0, 10]\n"
+      "evaluation: [10, end]\nalgorithms: [inverse-variance]\n");
+  const ReplayResult result = replay(scene);
+  CHECK(result.sensors[0].offset == Approx(5));
+  CHECK(result.sensors[1].offset == Approx(-3));
+  CHECK(*result.sensors[1].noise_variance == Approx(0.08));
+  REQUIRE(named(result, "inverse-variance").weights);
+  CHECK((*named(result, "inverse-variance").weights)(0, 0) == Approx(1 / (1 + 0.25 + 0.0625)));
+}
+
+TEST_CASE("replay: two inputs, each with its own scores and optimum") {
+  const test::SceneBench bench;
+  std::string text =
+      "format: scene\nversion: 1\nsimulate:\n  rate_hz: 100\n  samples: 8000\n  truth: [{kind: "
+      "noise, name: a, bandwidth_hz: 3}, {kind: noise, name: w, bandwidth_hz: 2}]\nsensors:\n";
+  for (int i = 0; i < 6; ++i)
+    text += "  - {name: s" + std::to_string(i) + ", h: [1, " + std::to_string(0.1 * i - 0.25) +
+            "], model: {unit: m/s^2, density: two-sided, white_noise: {value: " +
+            std::to_string(1e-2 * (i + 1)) + "}}}\n";
+  const ReplayResult result = replay(bench.read(text));
+  const AlgorithmResult& minque = named(result, "minque");
+  REQUIRE(minque.ran);
+  REQUIRE(minque.inputs.size() == 2);
+  CHECK(result.inputs[1].optimum_rmse > result.inputs[0].optimum_rmse);
+  CHECK(minque.inputs[0].optimum_ratio == Approx(1).margin(0.05));
+  CHECK(minque.inputs[1].optimum_ratio == Approx(1).margin(0.05));
+  CHECK(minque.regret < 0.05);
+  CHECK_THAT(named(result, "median").why, Contains("one input"));
+}
+
+TEST_CASE("replay: an estimated lag aligns sensors and reference") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a,b,c,x\n";
+  for (int k = 0; k < 6000; ++k) {
+    const double t = 0.01 * k;
+    const auto x = [](double s) { return std::sin(1.7 * s) + 0.7 * std::sin(4.1 * s + 1); };
+    log += std::to_string(t);
+    for (int i = 0; i < 3; ++i) log += "," + std::to_string(x(t - 0.137));
+    log += "," + std::to_string(x(t)) + "\n";
+  }
+  bench.put("late.csv", log);
+  const ReplayResult result = replay(
+      bench.read("format: scene\nversion: 1\nrecording: late.csv\nsensors: [a, b, c]\nreference: "
+                 "{channels: [x], lag_s: estimate}\nalgorithms: [mean]\n"));
+  CHECK(result.lag_estimated);
+  CHECK(result.lag_s == Approx(0.137).margin(0.002));
+  CHECK(named(result, "mean").rmse < 0.01);
+}
+
+TEST_CASE("replay: one algorithm twice with different options has two names") {
+  const test::SceneBench bench;
+  const ReplayResult result = replay(bench.read(array_scene(
+      3000, "algorithms: [{name: minque, gamma: 0.99}, {name: minque, gamma: 0.999}]\n")));
+  CHECK(named(result, "minque (gamma=0.99)").ran);
+  CHECK(named(result, "minque (gamma=0.999)").ran);
+}
+
+TEST_CASE("replay: refusals name the place") {
+  const test::SceneBench bench;
+  const auto said = [&](const std::string& text, const ReplayOptions& options = {}) -> std::string {
+    try {
+      replay(bench.read(text), options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string typo = said(array_scene(100, "algorithms:\n  - minqe\n"));
+  CHECK_THAT(typo, Contains("did you mean minque?"));
+  CHECK_THAT(typo, Contains("s.yaml:"));
+  CHECK_THAT(said(array_scene(100, "algorithms: [{name: minque, gama: 0.9}]\n")),
+             Contains("gamma"));
+  CHECK_THAT(said(array_scene(100, "algorithms: [mean, mean]\n")), Contains("E0904"));
+  CHECK_THAT(said(array_scene(1000, "evaluation: [20, 30]\n")), Contains("after the end"));
+  CHECK_THAT(said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, bb]\n"),
+             Contains("did you mean b"));
+  CHECK_THAT(
+      said(
+          "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nalgorithms: [minque]\n"),
+      Contains("E0905"));
+  CHECK_THAT(
+      said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nreference: zz\n"),
+      Contains("zz"));
+}

@@ -1,0 +1,12 @@
+#pragma once
+// Counts the heap of this program, thread by thread: what an algorithm holds, whoever allocates it
+// (operator new, Eigen's malloc, Ceres).
+
+#include "libchar/replay/heap_meter.hpp"
+
+namespace sensorchar {
+
+/// nullptr where the heap cannot be counted (under sanitizers, which bring their own).
+libchar::HeapMeter* heap_meter();
+
+}  // namespace sensorchar

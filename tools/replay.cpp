@@ -1,0 +1,324 @@
+// replay SCENE -o DIR: every algorithm the scene can feed, and the report that says which to use.
+
+#include "libchar/replay/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "fault_words.hpp"
+#include "heap_meter.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/log/write.hpp"
+#include "numbers.hpp"
+#include "verbs.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+namespace fs = std::filesystem;
+
+struct ReplayVerb {
+  std::string scene, folder, estimates, learning, evaluation;
+  std::vector<std::string> algorithms, settings, faults;
+  bool explain = false, force = false, json = false, no_allan = false, no_skip = false,
+       no_faults = false, allow_outside = false;
+  std::optional<double> window_s;
+  std::uint64_t seed = 1;
+};
+
+[[noreturn]] void refuse(const std::string& where,
+                         const std::string& what,
+                         const std::string& got = "",
+                         const std::string& hint = "") {
+  throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
+}
+
+// "0..50", "50.." in seconds.
+TimeWindow window_from_words(const std::string& text, const std::string& option) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos)
+    refuse(option, "expected FROM..TO in seconds", text, "50..1000, or 50.. up to the end");
+  TimeWindow window;
+  try {
+    if (dots > 0) window.from_s = parse_duration_s(text.substr(0, dots));
+    if (dots + 2 < text.size()) window.to_s = parse_duration_s(text.substr(dots + 2));
+  } catch (const Error& error) {
+    Fault fault = error.fault();
+    fault.where = option;
+    throw Error(fault);
+  }
+  if (!(window.from_s < window.to_s))
+    refuse(option, "a window goes from a time to a later one", text);
+  return window;
+}
+
+// "minque.gamma=0.99": an option of an algorithm that runs.
+void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms) {
+  const std::size_t equals = text.find('='), dot = text.rfind('.', equals);
+  const auto value =
+      equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
+  if (dot == std::string::npos || !value)
+    refuse("--set", "expected ALGORITHM.OPTION=NUMBER", text, "--set minque.gamma=0.99");
+  const std::string name = text.substr(0, dot), option = text.substr(dot + 1, equals - dot - 1);
+  fusion::Settings(fusion::algorithm(name).options).set(option, *value);
+  bool found = false;
+  for (SceneAlgorithm& algorithm : algorithms)
+    if (algorithm.name == name) {
+      found = true;
+      std::erase_if(algorithm.options, [&](const auto& o) { return o.first == option; });
+      algorithm.options.emplace_back(option, *value);
+    }
+  if (!found)
+    refuse("--set", "this algorithm is not among those that run", name, "--algorithms names them");
+}
+
+// What the command line says on top of the scene. Empty: the scene's list as it is.
+std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
+  std::vector<SceneAlgorithm> out;
+  for (const std::string& name : verb.algorithms) {
+    fusion::algorithm(name);
+    out.push_back({name, {}, 0, 0});
+  }
+  if (verb.settings.empty()) return out;
+  if (out.empty()) out = scene.algorithms;
+  if (out.empty())
+    for (const fusion::Entry& entry : fusion::algorithms())
+      out.push_back({std::string(entry.card->name), {}, 0, 0});
+  for (const std::string& setting : verb.settings) set_option(setting, out);
+  return out;
+}
+
+Scene read_scene(Session& session, const ReplayVerb& verb) {
+  Scene scene = read_scene_file(verb.scene, {verb.allow_outside});
+  session.terminal.warn(scene.warnings, scene.file);
+  if (verb.no_faults) {
+    scene.faults.clear();
+    if (scene.simulate) scene.simulate->faults.clear();
+  }
+  std::vector<std::string> names;
+  for (const SceneSensor& sensor : scene.sensors) names.push_back(sensor.name);
+  for (const std::string& words : verb.faults) {
+    const SensorFault fault = fault_from_words(words, names);
+    scene.faults.push_back(fault);
+    if (scene.simulate) scene.simulate->faults.push_back(fault);
+  }
+  return scene;
+}
+
+// Truth and estimates as a log.
+class EstimateFile final : public EstimateSink {
+ public:
+  EstimateFile(std::string path, bool overwrite) : path_(std::move(path)) {
+    writing_.overwrite = overwrite;
+  }
+  void begin(const std::vector<std::string>& labels,
+             const std::vector<InputResult>& inputs,
+             double rate_hz,
+             double,
+             std::uint64_t instants) override {
+    LogInfo info;
+    info.file = path_;
+    info.samples = info.rows = instants;
+    info.time.rate_hz = rate_hz;
+    inputs_ = inputs.size();
+    labels_ = labels.size();
+    for (const InputResult& input : inputs)
+      info.channels.push_back({input.name, input.unit, false});
+    for (const std::string& label : labels)
+      for (const InputResult& input : inputs)
+        info.channels.push_back(
+            {inputs.size() == 1 ? label : label + " " + input.name, input.unit, false});
+    writer_ = open_log_writer(path_, info, writing_);
+  }
+  void block(const std::vector<std::vector<double>>& columns) override {
+    std::vector<std::span<const double>> out;
+    // Without a reference the columns of the truth are missing.
+    if (columns.size() < inputs_ * (labels_ + 1)) {
+      missing_.assign(columns.empty() ? 0 : columns[0].size(), kMissing);
+      out.assign(inputs_, missing_);
+    }
+    out.insert(out.end(), columns.begin(), columns.end());
+    writer_->write(out);
+  }
+  std::vector<std::string> finish() {
+    writer_->finish();
+    return writer_->files();
+  }
+
+ private:
+  std::string path_;
+  WriteOptions writing_;
+  std::unique_ptr<LogWriter> writer_;
+  std::size_t inputs_ = 1, labels_ = 0;
+  std::vector<double> missing_;
+};
+
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? significant(value, digits) : "-";
+}
+
+std::string bytes_for_people(const std::optional<std::uint64_t>& bytes) {
+  if (!bytes) return "-";
+  const auto value = static_cast<double>(*bytes);
+  return value < 1e4   ? fmt::format("{} B", *bytes)
+         : value < 1e7 ? fmt::format("{} kB", significant(value / 1e3, 3))
+                       : fmt::format("{} MB", significant(value / 1e6, 3));
+}
+
+// Reasons without the name in front, with all algorithms they hold for.
+std::vector<std::pair<std::string, std::string>> skipped(const ReplayResult& r) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const AlgorithmResult& a : r.algorithms) {
+    if (a.ran) continue;
+    const std::string name(a.card->name);
+    const std::string reason =
+        a.why.starts_with(name + " ") ? a.why.substr(name.size() + 1) : a.why;
+    const auto known =
+        std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.first == reason; });
+    if (known == out.end())
+      out.emplace_back(reason, a.label);
+    else
+      known->second += ", " + a.label;
+  }
+  return out;
+}
+
+std::string text_for_people(const ReplayResult& r) {
+  const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
+  const char* error = r.has_reference ? "RMSE" : "leave-one-out";
+  std::string text = fmt::format("{}: {} sensors, {} instants at {} Hz\n",
+                                 printable(r.scene.name.empty() ? r.scene.file : r.scene.name),
+                                 r.sensors.size(),
+                                 r.instants,
+                                 significant(r.rate_hz, 6));
+  if (r.lag_estimated)
+    text +=
+        fmt::format("the sensors lag the reference by {} s (estimated)\n", significant(r.lag_s, 3));
+  if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
+    text += fmt::format(
+        "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);
+  text += fmt::format("\n{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}\n",
+                      "algorithm",
+                      error,
+                      "95 %",
+                      "regret",
+                      "ns/sample",
+                      "memory");
+  std::vector<const AlgorithmResult*> order;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran) order.push_back(&a);
+  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
+    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
+  });
+  for (const AlgorithmResult* a : order)
+    text += fmt::format(
+        "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
+        printable(a->label),
+        cell(a->rmse, 5),
+        std::isfinite(a->rmse_ci95.low)
+            ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
+            : "-",
+        std::isfinite(a->regret) ? fmt::format("{:.2f} %", 100 * a->regret) : "-",
+        cell(a->ns_per_sample, 3),
+        bytes_for_people(a->peak_bytes),
+        a->bound             ? "  (bound)"
+        : a->as_good_as_best ? "  *"
+                             : "");
+  text += "\n* the best method, and those whose difference from it is not resolved\n";
+  for (const auto& [reason, names] : skipped(r))
+    text += fmt::format("skipped {}: {}\n", printable(names), printable(reason));
+  return text;
+}
+
+struct Output {
+  std::string path, text;
+};
+
+void run_replay(Session& session, const ReplayVerb& verb) {
+  const Scene scene = read_scene(session, verb);
+  ReplayOptions options;
+  options.algorithms = chosen(verb, scene);
+  if (!verb.learning.empty()) options.learning = window_from_words(verb.learning, "--learning");
+  if (!verb.evaluation.empty())
+    options.evaluation = window_from_words(verb.evaluation, "--evaluation");
+  options.window_s = verb.window_s.value_or(0);
+  options.allan = !verb.no_allan;
+  options.no_skip = verb.no_skip;
+  options.seed = verb.seed;
+  options.heap = heap_meter();
+  if (verb.explain) {
+    const auto plan = explain_replay(scene, options, session.terminal);
+    session.terminal.clear();
+    for (const std::string& sentence : plan) print(printable(sentence) + "\n");
+    return;
+  }
+  const ReplayResult result = replay(scene, options, session.terminal);
+  session.terminal.clear();
+  print(text_for_people(result));
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Session& session) {
+  const auto verb = std::make_shared<ReplayVerb>();
+  CLI::App* sub = add_verb(
+      app,
+      session,
+      "replay",
+      "Every fusion algorithm a scene can feed, compared: report.html, report.json, report.md",
+      [&session, verb] { run_replay(session, *verb); });
+  sub->add_option(
+         "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation")
+      ->required();
+  sub->add_option("-o,--output", verb->folder, "folder for the results, made when absent")
+      ->type_name("DIR");
+  sub->add_option("--algorithms",
+                  verb->algorithms,
+                  "run these only (default: the scene's, else all it can feed)")
+      ->delimiter(',')
+      ->type_name("NAME,…");
+  sub->add_option("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
+      ->type_name("SETTING");
+  sub->add_option(
+         "--learning", verb->learning, "learning window FROM..TO in seconds (default: the scene's)")
+      ->type_name("WINDOW");
+  sub->add_option("--evaluation",
+                  verb->evaluation,
+                  "what is scored, FROM..TO in seconds (default: the scene's, else all behind the "
+                  "learning window)")
+      ->type_name("WINDOW");
+  sub->add_option(
+         "--fault", verb->faults, std::string(kFaultHelp) + "; injected on top of the scene's")
+      ->type_name("FAULT");
+  sub->add_flag("--no-faults", verb->no_faults, "leave out the faults that the scene injects");
+  add_duration(*sub,
+               "--window",
+               verb->window_s,
+               "length of the window RMS (default: a fiftieth of the evaluation)");
+  sub->add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
+  sub->add_option("--estimates",
+                  verb->estimates,
+                  "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
+      ->type_name("FORMAT");
+  add_count(*sub, "--seed", verb->seed, "seed of the bootstrap intervals (default: 1)");
+  sub->add_flag("--explain",
+                verb->explain,
+                "print the plan: what would be read, learnt, run, skipped and why");
+  sub->add_flag("--no-skip",
+                verb->no_skip,
+                "do all work whether an output needs it or not; the numbers are the same");
+  sub->add_flag(
+      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
+  sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
+  sub->add_flag("--json", verb->json, "print report.json to stdout instead of the table");
+}
+
+}  // namespace sensorchar
