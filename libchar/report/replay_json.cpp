@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
 #include "libchar/report/replay_verdict.hpp"
@@ -53,12 +54,21 @@ Json variances_json(const std::optional<Eigen::VectorXd>& variances) {
   return numbers({variances->begin(), variances->end()});
 }
 
+// Tracks are looked at: six digits, or they would be most of the file.
+Json drawn(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double value : values)
+    out.push_back(std::isfinite(value) ? Json(parse_double(significant(value, 6)).value_or(value))
+                                       : Json(nullptr));
+  return out;
+}
+
 Json timeline_json(const Timeline& track) {
   if (track.empty()) return nullptr;
   Json low = Json::array(), high = Json::array();
-  for (const auto& series : track.low) low.push_back(numbers(series));
-  for (const auto& series : track.high) high.push_back(numbers(series));
-  return {{"time_s", numbers(track.time_s)}, {"low", std::move(low)}, {"high", std::move(high)}};
+  for (const auto& series : track.low) low.push_back(drawn(series));
+  for (const auto& series : track.high) high.push_back(drawn(series));
+  return {{"time_s", drawn(track.time_s)}, {"low", std::move(low)}, {"high", std::move(high)}};
 }
 
 Json error_json(const ErrorScore& e) {
