@@ -1,0 +1,137 @@
+#include "libchar/report/replay_verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+/// Names of equals beyond so many are only counted.
+constexpr std::size_t kMostEquals = 4;
+
+std::string list_of(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  const std::vector<std::string> head(names.begin(), names.end() - 1);
+  return fmt::format("{} and {}", fmt::join(head, ", "), names.back());
+}
+
+bool learns(const AlgorithmResult& a) {
+  return a.card->needs.reference;
+}
+
+// The cheapest of those that cannot be told from the best.
+const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
+  const AlgorithmResult* out = nullptr;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && !a.bound && a.as_good_as_best && a.ns_per_sample > 0 &&
+        (out == nullptr || a.ns_per_sample < out->ns_per_sample))
+      out = &a;
+  return out;
+}
+
+std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
+  std::vector<std::string> equals;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && !a.bound && a.as_good_as_best && a.label != best.label) equals.push_back(a.label);
+  if (equals.empty()) return " Every other method is worse, and the record is long enough to tell.";
+  const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
+  equals.resize(equals.size() - more);
+  if (more > 0) equals.push_back(fmt::format("{} more", more));
+  std::string out = fmt::format(" The record is too short to tell {} from it.", list_of(equals));
+  const AlgorithmResult* cheap = cheapest_equal(r);
+  if (costs && cheap != nullptr && cheap->label != best.label &&
+      cheap->ns_per_sample < 0.8 * best.ns_per_sample)
+    out += fmt::format(" Of these {} is the cheapest, {} a sample.",
+                       cheap->label,
+                       people_nanoseconds(cheap->ns_per_sample));
+  return out;
+}
+
+// The best that needs no teaching, when the best of all does.
+std::string untaught_sentence(const ReplayResult& r, const AlgorithmResult& best) {
+  if (!learns(best)) return "";
+  for (const AlgorithmResult* a : ranked(r))
+    if (!a->bound && !learns(*a) && std::isfinite(a->rmse))
+      return fmt::format(
+          " It learns from a reference; of the methods that need none {} is best, {}.",
+          a->label,
+          people_error(a->rmse, r.inputs[0].unit));
+  return " It learns from a reference.";
+}
+
+}  // namespace
+
+std::string people_nanoseconds(double ns) {
+  if (!std::isfinite(ns)) return "–";
+  if (ns < 1e3) return significant(ns, 3) + " ns";
+  return ns < 1e6 ? significant(ns / 1e3, 3) + " µs" : significant(ns / 1e6, 3) + " ms";
+}
+
+std::string people_bytes(const std::optional<std::uint64_t>& bytes) {
+  if (!bytes) return "–";
+  const auto value = static_cast<double>(*bytes);
+  if (value < 1e4) return fmt::format("{} B", *bytes);
+  return value < 1e6 ? significant(value / 1e3, 3) + " kB" : significant(value / 1e6, 3) + " MB";
+}
+
+std::string people_error(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "–";
+  return significant(value, 4) + (unit.empty() ? "" : " " + unit);
+}
+
+std::vector<const AlgorithmResult*> ranked(const ReplayResult& result) {
+  std::vector<const AlgorithmResult*> out;
+  for (const AlgorithmResult& a : result.algorithms)
+    if (a.ran) out.push_back(&a);
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
+    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
+  });
+  return out;
+}
+
+std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
+  std::vector<SkippedAlgorithms> out;
+  for (const AlgorithmResult& a : result.algorithms) {
+    if (a.ran) continue;
+    const std::string front = std::string(a.card->name) + " ";
+    const std::string reason = a.why.starts_with(front) ? a.why.substr(front.size()) : a.why;
+    const auto known = std::find_if(
+        out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
+    if (known == out.end())
+      out.push_back({reason, {a.label}});
+    else
+      known->labels.push_back(a.label);
+  }
+  return out;
+}
+
+std::string replay_verdict(const ReplayResult& r, bool costs) {
+  if (!r.best)
+    return "No algorithm has a score: without a reference and with these sensors nothing can be "
+           "compared.";
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  std::string out = fmt::format("Use {}: {} {}",
+                                best.label,
+                                r.has_reference ? "RMSE" : "leave-one-out RMS",
+                                people_error(best.rmse, r.inputs[0].unit));
+  if (std::isfinite(best.regret))
+    out += best.regret >= 0 ? fmt::format(", {} % above the optimum of fixed weights in this scene",
+                                          significant(100 * best.regret, 2))
+                            : fmt::format(", {} % below the optimum of fixed weights in this scene",
+                                          significant(-100 * best.regret, 2));
+  if (costs && std::isfinite(best.ns_per_sample))
+    out += fmt::format(", {} a sample", people_nanoseconds(best.ns_per_sample));
+  out += ".";
+  out += equals_sentence(r, best, costs);
+  out += untaught_sentence(r, best);
+  if (!r.has_reference)
+    out += " Without a reference nobody sees the errors that all sensors share.";
+  return out;
+}
+
+}  // namespace libchar
