@@ -194,8 +194,8 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
 }
 
 // The smallest error that fixed weights can have, taught on the run itself: with and without
-// calibration, section by section when sensors are known to fail. For a tilt: the best of the
-// filters tuned on the run and of either sensor alone.
+// calibration, section by section when sensors are known to fail. For a tilt: the best filter,
+// as it stands or tuned on the run, and either sensor alone.
 std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   std::vector<PlannedAlgorithm> out;
   const auto add = [&](const char* name, std::vector<std::pair<std::string, double>> options) {
@@ -210,6 +210,8 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   if (given.tilt) {
     for (const char* name : {"tilt-kalman-tuned",
                              "tilt-complementary-tuned",
+                             "tilt-kalman",
+                             "tilt-complementary",
                              "tilt-gyroscope",
                              "tilt-accelerometer"})
       add(name, {});
