@@ -194,7 +194,7 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
 }
 
 // The smallest error that fixed weights can have, taught on the run itself: with and without
-// calibration, section by section when sensors are known to fail. For a tilt: the best filter,
+// calibration, of the sensors that are sound at each instant. For a tilt: the best filter,
 // as it stands or tuned on the run, and either sensor alone.
 std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   std::vector<PlannedAlgorithm> out;
@@ -219,7 +219,6 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   }
   add("optimal-weights", {});
   add("optimal-weights", {{"calibrate", 1}});
-  if (!given.section_starts.empty()) add("sectioned-least-squares", {});
   return out;
 }
 
