@@ -256,11 +256,10 @@ std::string inputs(const ReplayResult& r) {
            html_text(log.sha256.empty() ? "not computed" : log.sha256) + "</td></tr>\n";
   }
   if (r.learning)
-    out += table_row({"Learning window",
-                      people(r.learning->from_s, 6) + " … " + people(r.learning->to_s, 6) + " s"});
-  out += table_row({"Evaluation",
-                    people(r.start_s, 6) + " … " +
-                        people(r.start_s + static_cast<double>(r.instants) / r.rate_hz, 6) + " s"});
+    out += table_row({"Learning window", people_stretch(r.learning->from_s, r.learning->to_s)});
+  out += table_row(
+      {"Evaluation",
+       people_stretch(r.start_s, r.start_s + static_cast<double>(r.instants) / r.rate_hz)});
   out += table_row({"Tool", "sensorchar " + std::string(version())});
   return out + "<tr><th scope=\"row\">Command</th><td><code>" + html_text(command_line(r.command)) +
          "</code></td></tr>\n</tbody></table>\n";

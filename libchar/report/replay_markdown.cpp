@@ -119,8 +119,8 @@ std::string faults(const ReplayResult& r) {
     std::vector<std::string> row = {
         std::string(name_of(fault.kind)),
         fault.sensor < r.sensors.size() ? markdown_text(r.sensors[fault.sensor].name) : "–",
-        people(fault.from_s, 6) + " s",
-        std::isfinite(fault.to_s) ? people(fault.to_s, 6) + " s" : "the end"};
+        people_instant(fault.from_s),
+        std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
     for (const AlgorithmResult* a : watchers) {
       std::string cell = "not looked at";
       for (const FaultAnswer& answer : a->answers)
@@ -164,7 +164,7 @@ std::string markdown_text(std::string_view text) {
     } else if (c == '&') {
       out += "&amp;";
     } else {
-      if (std::string_view("\\`*_{}[]()#|!~$").find(c) != std::string_view::npos) out += '\\';
+      if (std::string_view("\\`*_{}[]#|!~$").find(c) != std::string_view::npos) out += '\\';
       out += c;
     }
   }

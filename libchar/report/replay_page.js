@@ -42,6 +42,20 @@
       ticks: { color: INK, maxRotation: 0, callback: (v) => people(v, 5) }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
     };
   }
+  // Within less than a decade the powers of ten are too few: even steps, as on a linear axis.
+  function valueAxis(title, min, max) {
+    const axis = logAxis(title, min, max);
+    if (!(max / min < 6)) return axis;
+    const rough = (max - min) / 6, power = Math.pow(10, Math.floor(Math.log10(rough)));
+    const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough);
+    axis.afterBuildTicks = (a) => {
+      a.ticks = [];
+      for (let k = Math.ceil(min / step); k * step <= max; ++k) a.ticks.push({ value: k * step });
+    };
+    axis.ticks.callback = (v) => people(v, 4);
+    axis.grid = { color: "#edf0f3", borderColor: "#8a929b" };
+    return axis;
+  }
   const timeAxis = () => linearAxis("time from the recording's first sample, s", stretch[0], stretch[1]);
 
   // One bin beyond each end, so that lines reach the frame.
@@ -82,7 +96,7 @@
   const minMax = (values) => values.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
   function logFor(title, sets, factor) {
     const [low, high] = minMax(extremes(sets));
-    return low <= high ? logAxis(title, low / factor, high * factor) : logAxis(title, 0.1, 10);
+    return low <= high ? valueAxis(title, low / factor, high * factor) : logAxis(title, 0.1, 10);
   }
   const timeTip = (u) => (name, p) => {
     const out = [name, "t = " + people(p.x, 6) + " s"];
@@ -168,7 +182,7 @@
       line.push({ x: xMax, y: line[line.length - 1].y });
       sets.push({ label: "Pareto front", data: line, stepped: "before", borderColor: COLOURS[1], borderWidth: 1.5, borderDash: [6, 3], pointRadius: 0, pointHitRadius: 0, fill: false, order: 5 });
     }
-    return chart(sets, logAxis(title, xMin, xMax), logAxis(axis, yMin, yMax), [pointNames]);
+    return chart(sets, logAxis(title, xMin, xMax), valueAxis(axis, yMin, yMax), [pointNames]);
   }
 
   // ---- over time ----
@@ -254,7 +268,7 @@
       sets.push({ label: a.label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: look.dash, pointStyle: MARKS[k % MARKS.length], pointRadius: 3.5, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [a.label, "τ = " + people(p.x) + " s", people(p.y, 5) + " " + u] });
     });
     const points = sets.flatMap((set) => set.data), [xMin, xMax] = padded(points.map((p) => p.x), 1.4), [yMin, yMax] = padded(points.map((p) => p.y), 1.5);
-    return chart(sets, logAxis("averaging time τ, s", xMin, xMax), logAxis(withUnit(axis, u), yMin, yMax));
+    return chart(sets, logAxis("averaging time τ, s", xMin, xMax), valueAxis(withUnit(axis, u), yMin, yMax));
   }
 
   // ---- dragging out a stretch ----

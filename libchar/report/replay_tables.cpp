@@ -285,8 +285,8 @@ std::string faults_table(const ReplayResult& r) {
                  ? ""
                  : " " + people(fault.value, 4)),
         fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
-        people(fault.from_s, 6) + " s",
-        std::isfinite(fault.to_s) ? people(fault.to_s, 6) + " s" : "the end"};
+        people_instant(fault.from_s),
+        std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
     for (const AlgorithmResult* a : watchers) row.push_back(answer_in_words(*a, f));
     out += table_row(row);
   }

@@ -88,12 +88,10 @@ void unresolved(const ReplayResult& r, bool measured, std::vector<std::string>& 
 void without_teacher(const ReplayResult& r, bool measured, std::vector<std::string>& out) {
   const AlgorithmResult& best = r.algorithms[*r.best];
   if (!taught(best)) return;
-  out.push_back(fmt::format("{} learns from a reference before the run{}.",
-                            best.label,
-                            r.learning ? fmt::format(" (here from {} to {} s)",
-                                                     people(r.learning->from_s, 6),
-                                                     people(r.learning->to_s, 6))
-                                       : ""));
+  out.push_back(fmt::format(
+      "{} learns from a reference before the run{}.",
+      best.label,
+      r.learning ? " (here " + people_stretch(r.learning->from_s, r.learning->to_s) + ")" : ""));
   for (const std::size_t i : ranked(r)) {
     const AlgorithmResult& a = r.algorithms[i];
     if (a.bound || taught(a) || !std::isfinite(a.rmse)) continue;

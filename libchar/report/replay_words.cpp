@@ -54,7 +54,16 @@ std::string people_percent(double share, int digits) {
   const double percent = 100 * share;
   // A regret of 3e-7 is none: it would be written as a power of ten.
   if (std::fabs(percent) < 0.005) return "0.00 %";
+  if (std::fabs(percent) >= 1000) return people(percent, 4) + " %";
   return fmt::format("{:.{}f} %", percent, std::fabs(percent) < 10 ? digits : digits > 1 ? 1 : 0);
+}
+
+std::string people_instant(double seconds) {
+  return std::isfinite(seconds) ? significant(seconds, 8) + " s" : "–";
+}
+
+std::string people_stretch(double from_s, double to_s) {
+  return people_instant(from_s) + " … " + (std::isfinite(to_s) ? people_instant(to_s) : "the end");
 }
 
 std::string people_bytes(double bytes) {

@@ -19,6 +19,10 @@ std::string score_unit(const ReplayResult& result);
 std::string usual_unit(const std::string& unit);
 /// "0.12 %".
 std::string people_percent(double share, int digits = 2);
+/// A point in time, in seconds without trailing zeros: "400 s".
+std::string people_instant(double seconds);
+/// "400 s … 500 s", "600 s … the end".
+std::string people_stretch(double from_s, double to_s);
 /// "912 B", "3.2 kB", "14 MB": powers of 1000.
 std::string people_bytes(double bytes);
 /// "82 ns", "3.1 µs".
