@@ -1,16 +1,17 @@
 #pragma once
-// report.json of a replay; the keys of design.md 6.3, which may grow and never change.
+// report.json of a replay.
 
 #include "libchar/core/json.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
 
-/// {"format":"replay-report","version":1,…}. What a clock or the heap measured stands at
-/// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
+/// {"format":"replay-report","version":1,…} (keys of design.md 6.3, which may grow and never
+/// change; all of them in docs/replay.md).
 Json replay_json(const ReplayResult& result);
 
-/// The same with those keys null or absent: the same bytes for the same scene and options.
+/// The same without what differs from run to run: ns_per_sample, learning_s, peak_bytes, the fronts
+/// that follow from them, "measured" and the command.
 Json replay_json_without_times(const ReplayResult& result);
 
 }  // namespace libchar
