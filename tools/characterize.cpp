@@ -1,4 +1,5 @@
-// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a colleague.
+// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a
+// colleague.
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/outputs.hpp"
 #include "libchar/report/verification.hpp"
+#include "output_files.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
 
@@ -32,53 +34,50 @@ struct CharacterizeVerb {
   AnalysisOptions analysis;
 };
 
-struct Output {
-  std::string path, text;
-};
-
-std::vector<Output> outputs_of(const Characterization& result, const fs::path& folder) {
-  std::vector<Output> outputs = {{(folder / "report.html").string(), html_report(result)},
-                                 {(folder / "report.json").string(), dump_json(json_report(result))},
-                                 {(folder / "curves.csv").string(), csv_curves(result)}};
+std::vector<OutputFile> outputs_of(const Characterization& result, const fs::path& folder) {
+  std::vector<OutputFile> outputs = {
+      {(folder / "report.html").string(), html_report(result)},
+      {(folder / "report.json").string(), dump_json(json_report(result))},
+      {(folder / "curves.csv").string(), csv_curves(result)}};
   std::set<std::string> taken;
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;
     const std::string name = unused_file_name_for(c.channel.name, taken);
-    outputs.push_back({(folder / (name + ".sensor.yaml")).string(), model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
+    outputs.push_back(
+        {(folder / (name + ".sensor.yaml")).string(),
+         model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
   }
   return outputs;
-}
-
-// All files are written before the first gets its name: a full disk leaves none of them.
-void write_outputs(const std::vector<Output>& outputs, const fs::path& folder, const std::string& log, bool force) {
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (problem) throw Error({ErrorKind::output, "E0505", folder.string(), "cannot make this folder: " + problem.message(), "", ""});
-  std::vector<WholeFile> files;
-  for (const Output& output : outputs) {
-    refuse_same_file(log, output.path);
-    files.emplace_back(output.path, force).write(output.text);
-  }
-  for (WholeFile& file : files) file.commit();
 }
 
 std::string text_for_people(const Characterization& result) {
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
-  const std::string length = rate > 0 ? fmt::format("{} Hz, {} s", significant(rate, 6), significant(static_cast<double>(log.samples) / rate, 6))
-                                      : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
-  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n", printable(log.file), log.channels.size(), log.channels.size() == 1 ? "" : "s",
-                                 length, log.time.gaps, log.time.gaps == 1 ? "" : "s");
+  const std::string length =
+      rate > 0 ? fmt::format("{} Hz, {} s",
+                             significant(rate, 6),
+                             significant(static_cast<double>(log.samples) / rate, 6))
+               : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
+  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n",
+                                 printable(log.file),
+                                 log.channels.size(),
+                                 log.channels.size() == 1 ? "" : "s",
+                                 length,
+                                 log.time.gaps,
+                                 log.time.gaps == 1 ? "" : "s");
   for (const ChannelResult& c : result.channels) {
     text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
     if (c.verification)
-      for (const std::string& sentence : c.verification->sentences) text += fmt::format("  {}\n", printable(sentence));
+      for (const std::string& sentence : c.verification->sentences)
+        text += fmt::format("  {}\n", printable(sentence));
     for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
   }
   return text;
 }
 
-fs::path folder_for(const CharacterizeVerb& verb, const std::string& log, std::set<std::string>& taken) {
+fs::path folder_for(const CharacterizeVerb& verb,
+                    const std::string& log,
+                    std::set<std::string>& taken) {
   if (verb.logs.size() == 1) return verb.folder;
   return fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken);
 }
@@ -101,8 +100,8 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
     session.terminal.clear();
     report_warnings(session, result.log);
     const fs::path folder = folder_for(verb, log, taken);
-    const std::vector<Output> outputs = outputs_of(result, folder);
-    write_outputs(outputs, folder, log, verb.force);
+    const std::vector<OutputFile> outputs = outputs_of(result, folder);
+    write_outputs(outputs, folder, {log}, verb.force);
     for (const ChannelResult& c : result.channels) any_fit = any_fit || c.fit;
     if (verb.json) {
       documents.push_back(json_report(result));
@@ -110,26 +109,52 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
     }
     print(text_for_people(result));
     std::string written = "\nwrote";
-    for (const Output& output : outputs) written += fmt::format(" {}", printable(output.path));
+    for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
     print(written + "\n");
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
-  if (!any_fit) throw Error({ErrorKind::numeric, "E0711", verb.logs[0], "no channel could be fitted; the report says why", "", ""});
+  if (!any_fit)
+    throw Error({ErrorKind::numeric,
+                 "E0711",
+                 verb.logs[0],
+                 "no channel could be fitted; the report says why",
+                 "",
+                 ""});
   if (!agrees)
-    throw Error({ErrorKind::check, "E0713", verb.logs[0], "a simulation of the model does not agree with the recording; the report says where", "", ""});
+    throw Error(
+        {ErrorKind::check,
+         "E0713",
+         verb.logs[0],
+         "a simulation of the model does not agree with the recording; the report says where",
+         "",
+         ""});
 }
 
 }  // namespace
 
 void add_characterize(CLI::App& app, Session& session) {
   auto verb = std::make_shared<CharacterizeVerb>();
-  CLI::App* sub = add_verb(app, session, "characterize", "everything about a recording: report.html, report.json, curves.csv, a sensor model per channel",
+  CLI::App* sub = add_verb(app,
+                           session,
+                           "characterize",
+                           "everything about a recording: report.html, report.json, curves.csv, a "
+                           "sensor model per channel",
                            [&session, verb] { run_characterize(session, *verb); });
-  sub->add_option("LOG", verb->logs, "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")->required();
-  sub->add_option("-o,--output", verb->folder, "folder for the results (made when absent; with several logs one folder each inside)")->required();
+  sub->add_option("LOG",
+                  verb->logs,
+                  "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      ->required();
+  sub->add_option(
+         "-o,--output",
+         verb->folder,
+         "folder for the results (made when absent; with several logs one folder each inside)")
+      ->required();
   sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
   sub->add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
-  sub->add_flag("--verify", verb->verify, "simulate every channel from its model, characterize that, and compare (exit code 6 when they disagree)");
+  sub->add_flag("--verify",
+                verb->verify,
+                "simulate every channel from its model, characterize that, and compare (exit code "
+                "6 when they disagree)");
   add_count(*sub, "--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
   add_reading_options(*sub, session, verb->analysis.options.reading);
   add_data_options(*sub, verb->analysis);

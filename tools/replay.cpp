@@ -3,6 +3,7 @@
 #include "libchar/replay/replay.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,12 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/write.hpp"
+#include "libchar/report/replay_html.hpp"
+#include "libchar/report/replay_json.hpp"
+#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "numbers.hpp"
+#include "output_files.hpp"
 #include "verbs.hpp"
 
 namespace sensorchar {
@@ -96,9 +102,8 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   return out;
 }
 
-Scene read_scene(Session& session, const ReplayVerb& verb) {
+Scene read_scene(const ReplayVerb& verb) {
   Scene scene = read_scene_file(verb.scene, {verb.allow_outside});
-  session.terminal.warn(scene.warnings, scene.file);
   if (verb.no_faults) {
     scene.faults.clear();
     if (scene.simulate) scene.simulate->faults.clear();
@@ -165,32 +170,6 @@ std::string cell(double value, int digits) {
   return std::isfinite(value) ? significant(value, digits) : "-";
 }
 
-std::string bytes_for_people(const std::optional<std::uint64_t>& bytes) {
-  if (!bytes) return "-";
-  const auto value = static_cast<double>(*bytes);
-  return value < 1e4   ? fmt::format("{} B", *bytes)
-         : value < 1e7 ? fmt::format("{} kB", significant(value / 1e3, 3))
-                       : fmt::format("{} MB", significant(value / 1e6, 3));
-}
-
-// Reasons without the name in front, with all algorithms they hold for.
-std::vector<std::pair<std::string, std::string>> skipped(const ReplayResult& r) {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const AlgorithmResult& a : r.algorithms) {
-    if (a.ran) continue;
-    const std::string name(a.card->name);
-    const std::string reason =
-        a.why.starts_with(name + " ") ? a.why.substr(name.size() + 1) : a.why;
-    const auto known =
-        std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.first == reason; });
-    if (known == out.end())
-      out.emplace_back(reason, a.label);
-    else
-      known->second += ", " + a.label;
-  }
-  return out;
-}
-
 std::string text_for_people(const ReplayResult& r) {
   const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
   const char* error = r.has_reference ? "RMSE" : "leave-one-out";
@@ -212,13 +191,7 @@ std::string text_for_people(const ReplayResult& r) {
                       "regret",
                       "ns/sample",
                       "memory");
-  std::vector<const AlgorithmResult*> order;
-  for (const AlgorithmResult& a : r.algorithms)
-    if (a.ran) order.push_back(&a);
-  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
-    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
-  });
-  for (const AlgorithmResult* a : order)
+  for (const AlgorithmResult* a : ranked(r))
     text += fmt::format(
         "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
         printable(a->label),
@@ -228,22 +201,32 @@ std::string text_for_people(const ReplayResult& r) {
             : "-",
         std::isfinite(a->regret) ? fmt::format("{:.2f} %", 100 * a->regret) : "-",
         cell(a->ns_per_sample, 3),
-        bytes_for_people(a->peak_bytes),
+        people_bytes(a->peak_bytes),
         a->bound             ? "  (bound)"
         : a->as_good_as_best ? "  *"
                              : "");
   text += "\n* the best method, and those whose difference from it is not resolved\n";
-  for (const auto& [reason, names] : skipped(r))
-    text += fmt::format("skipped {}: {}\n", printable(names), printable(reason));
+  for (const SkippedAlgorithms& s : skipped_algorithms(r))
+    text += fmt::format("skipped {}: {}\n",
+                        printable(fmt::format("{}", fmt::join(s.labels, ", "))),
+                        printable(s.reason));
+  text += "\n" + printable(replay_verdict(r)) + "\n";
   return text;
 }
 
-struct Output {
-  std::string path, text;
-};
+Json settings_json(const ReplayVerb& verb, const ReplayResult& result) {
+  Json out = {{"seed", verb.seed},
+              {"window_s", json_number(result.window_s)},
+              {"allan", !verb.no_allan},
+              {"no_skip", verb.no_skip},
+              {"no_faults", verb.no_faults},
+              {"faults", Json::array()}};
+  for (const std::string& fault : verb.faults) out["faults"].push_back(printable(fault));
+  return out;
+}
 
 void run_replay(Session& session, const ReplayVerb& verb) {
-  const Scene scene = read_scene(session, verb);
+  const Scene scene = read_scene(verb);
   ReplayOptions options;
   options.algorithms = chosen(verb, scene);
   if (!verb.learning.empty()) options.learning = window_from_words(verb.learning, "--learning");
@@ -257,12 +240,45 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   if (verb.explain) {
     const auto plan = explain_replay(scene, options, session.terminal);
     session.terminal.clear();
+    session.terminal.warn(scene.warnings, verb.scene);
     for (const std::string& sentence : plan) print(printable(sentence) + "\n");
     return;
   }
-  const ReplayResult result = replay(scene, options, session.terminal);
+  if (verb.folder.empty())
+    refuse("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
+  std::vector<std::string> inputs = scene.files;
+  inputs.push_back(verb.scene);
+  const fs::path folder = verb.folder;
+  std::vector<std::string> files;
+  for (const char* name : {"report.html", "report.json", "report.md"})
+    files.push_back((folder / name).string());
+  std::optional<EstimateFile> estimates;
+  if (!verb.estimates.empty()) {
+    const std::string path = (folder / ("estimates." + verb.estimates)).string();
+    format_to_write(path, {});
+    check_outputs({path}, folder, inputs, verb.force);
+    estimates.emplace(path, verb.force);
+    options.estimates = &*estimates;
+  }
+  check_outputs(files, folder, inputs, verb.force);
+  ReplayResult result = replay(scene, options, session.terminal);
   session.terminal.clear();
+  result.command = session.command;
+  result.settings = settings_json(verb, result);
+  session.terminal.warn(result.warnings, verb.scene);
+  for (const LogInfo& log : result.logs) report_warnings(session, log);
+  const std::vector<OutputFile> outputs = {{files[0], replay_html(result)},
+                                           {files[1], dump_json(replay_json(result))},
+                                           {files[2], replay_markdown(result)}};
+  write_outputs(outputs, folder, inputs, verb.force, [&] {
+    if (estimates)
+      for (const std::string& file : estimates->finish()) files.push_back(file);
+  });
+  if (verb.json) return print(dump_json(replay_json(result)));
   print(text_for_people(result));
+  std::string written = "\nwrote";
+  for (const std::string& file : files) written += fmt::format(" {}", printable(file));
+  print(written + "\n");
 }
 
 }  // namespace
