@@ -105,7 +105,8 @@ void add_compare(CLI::App& app, Session& session) {
          verb->checks,
          "exit with 6 when B exceeds A by more: [LABEL:]METRIC+LIMIT, METRIC one of rmse, "
          "regret, ns_per_sample, peak_bytes, LIMIT in % or absolute (\"rmse+5%\"); may be repeated")
-      ->type_name("CHECK");
+      ->type_name("CHECK")
+      ->allow_extra_args(false);
   sub->add_flag("--unlike", verb->unlike, "compare unlike scenes all the same");
   sub->add_flag("--json", verb->json, "print one JSON document instead of the table");
   sub->add_flag("--markdown", verb->markdown, "print Markdown, for a pull request");

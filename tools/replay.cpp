@@ -20,7 +20,7 @@
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
-#include "libchar/report/replay_words.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "numbers.hpp"
 #include "output_files.hpp"
 #include "verbs.hpp"
@@ -191,8 +191,7 @@ std::string text_for_people(const ReplayResult& r) {
                       "regret",
                       "ns/sample",
                       "memory");
-  for (const std::size_t index : ranked(r)) {
-    const AlgorithmResult* a = &r.algorithms[index];
+  for (const AlgorithmResult* a : ranked(r))
     text += fmt::format(
         "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
         printable(a->label),
@@ -202,18 +201,16 @@ std::string text_for_people(const ReplayResult& r) {
             : "-",
         std::isfinite(a->regret) ? fmt::format("{:.2f} %", 100 * a->regret) : "-",
         cell(a->ns_per_sample, 3),
-        a->peak_bytes ? people_bytes(static_cast<double>(*a->peak_bytes)) : "-",
+        people_bytes(a->peak_bytes),
         a->bound             ? "  (bound)"
         : a->as_good_as_best ? "  *"
                              : "");
-  }
   text += "\n* the best method, and those whose difference from it is not resolved\n";
-  for (const auto& [reason, labels] : skipped_by_reason(r))
+  for (const SkippedAlgorithms& s : skipped_algorithms(r))
     text += fmt::format("skipped {}: {}\n",
-                        printable(fmt::format("{}", fmt::join(labels, ", "))),
-                        printable(reason));
-  text += "\n";
-  for (const std::string& sentence : replay_verdict(r, true)) text += printable(sentence) + "\n";
+                        printable(fmt::format("{}", fmt::join(s.labels, ", "))),
+                        printable(s.reason));
+  text += "\n" + printable(replay_verdict(r)) + "\n";
   return text;
 }
 

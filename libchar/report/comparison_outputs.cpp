@@ -10,6 +10,7 @@
 #include "libchar/report/escape.hpp"
 #include "libchar/report/people.hpp"
 #include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "libchar/report/replay_words.hpp"
 
 namespace libchar {
@@ -28,7 +29,7 @@ std::string change(const std::optional<double>& share) {
 }
 
 std::string bytes(const std::optional<double>& value) {
-  return value ? people_bytes(*value) : "–";
+  return value && *value >= 0 ? people_bytes(static_cast<std::uint64_t>(*value)) : "–";
 }
 
 Json side(const ReportedAlgorithm& a) {

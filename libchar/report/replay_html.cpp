@@ -16,6 +16,7 @@
 #include "libchar/report/people.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_tables.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "libchar/report/replay_words.hpp"
 
 namespace libchar {
@@ -50,7 +51,7 @@ std::string facts(const ReplayResult& r) {
 
 std::string overview(const ReplayResult& r) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
-  for (const std::string& sentence : replay_verdict(r, true))
+  for (const std::string& sentence : verdict_sentences(r, true))
     out += "<p>" + html_text(sentence) + "</p>\n";
   out += "</div>\n" + facts(r) + ranking_table(r);
   out +=
@@ -76,7 +77,7 @@ std::string overview(const ReplayResult& r) {
 }
 
 std::string skipped(const ReplayResult& r) {
-  const auto all = skipped_by_reason(r);
+  const auto all = skipped_algorithms(r);
   std::string out = "<section class=\"part\" id=\"needs\">\n<h2>What each algorithm needs</h2>\n";
   if (!all.empty()) {
     std::vector<std::string> items;

@@ -1,155 +1,161 @@
-// report.md: what of a replay fits into a pull request. Every text of a file is escaped, so that a
-// sensor's name can be no link, tag or column.
-
 #include "libchar/report/replay_markdown.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
 #include "libchar/core/text.hpp"
-#include "libchar/core/version.hpp"
-#include "libchar/report/people.hpp"
-#include "libchar/report/replay_words.hpp"
+#include "libchar/report/replay_verdict.hpp"
 
 namespace libchar {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
-std::string joined(const std::vector<std::string>& all) {
-  return fmt::format("{}", fmt::join(all, ", "));
+std::string number(double value, int digits = 4) {
+  return std::isfinite(value) ? significant(value, digits) : "–";
 }
 
-std::string algorithms_table(const ReplayResult& r) {
-  const std::string unit = score_unit(r);
-  const ParetoFront front = pareto_front(r);
-  std::vector<std::string> head = {
-      "algorithm", score_name(r) + (unit.empty() ? "" : ", " + markdown_text(unit)), "95 %"};
-  if (r.has_reference)
-    for (const char* name : {"regret", "bias", "maximum"}) head.emplace_back(name);
-  else
-    head.emplace_back("split-array RMS");
-  for (const char* name : {"available", "ns/sample", "memory", "learning", ""})
-    head.emplace_back(name);
-  Rows rows;
-  for (const std::size_t i : ranked(r)) {
-    const AlgorithmResult& a = r.algorithms[i];
-    std::vector<std::string> row = {
-        markdown_text(a.label), people(a.rmse), people_interval(a.rmse_ci95)};
-    if (r.best == i) row[0] = "**" + row[0] + "**";
-    if (r.has_reference) {
-      row.push_back(people_percent(a.regret));
-      row.push_back(a.inputs.empty() ? "–" : people(a.inputs[0].error.bias, 3));
-      row.push_back(a.inputs.empty() ? "–" : people(a.inputs[0].error.maximum, 3));
-    } else {
-      row.push_back(a.blind ? people(a.blind->split_rms) : "–");
-    }
-    row.push_back(people_percent(a.availability, 1));
-    row.push_back(people(a.ns_per_sample, 3));
-    row.push_back(a.peak_bytes ? people_bytes(static_cast<double>(*a.peak_bytes)) : "–");
-    row.push_back(people_seconds(a.learning_s));
-    row.push_back(a.bound                            ? "bound"
-                  : r.best == i                      ? "best"
-                  : a.as_good_as_best                ? "not resolved from the best"
-                  : front.time[i] || front.memory[i] ? "on a front"
-                                                     : "");
-    rows.push_back(std::move(row));
+std::string between(const Interval& i) {
+  return std::isfinite(i.low) && std::isfinite(i.high)
+             ? fmt::format("{} … {}", number(i.low), number(i.high))
+             : "–";
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.2f} %", 100 * share) : "–";
+}
+
+std::string with_reference(const ReplayResult& r) {
+  std::string out =
+      "| algorithm | RMSE | 95 % | regret | bias | maximum | availability | a sample | memory |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const AlgorithmResult* a : ranked(r)) {
+    const bool scored = !a->inputs.empty();
+    out += fmt::format("| {}{}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+                       markdown_text(a->label),
+                       a->bound ? " (bound)" : "",
+                       a->as_good_as_best && !a->bound ? " \\*" : "",
+                       number(a->rmse),
+                       between(a->rmse_ci95),
+                       percent(a->regret),
+                       scored ? number(a->inputs[0].error.bias, 2) : "–",
+                       scored ? number(a->inputs[0].error.maximum, 3) : "–",
+                       percent(a->availability),
+                       people_nanoseconds(a->ns_per_sample),
+                       people_bytes(a->peak_bytes));
   }
-  return markdown_table(head, rows);
+  return out;
 }
 
-std::string inputs_table(const ReplayResult& r) {
+std::string without_reference(const ReplayResult& r) {
+  std::string out =
+      "| algorithm | leave-one-out RMS | 95 % | split-array RMS | availability | a sample | memory "
+      "|\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (const AlgorithmResult* a : ranked(r))
+    out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
+                       markdown_text(a->label),
+                       a->as_good_as_best ? " \\*" : "",
+                       number(a->rmse),
+                       between(a->rmse_ci95),
+                       a->blind ? number(a->blind->split_rms) : "–",
+                       percent(a->availability),
+                       people_nanoseconds(a->ns_per_sample),
+                       people_bytes(a->peak_bytes));
+  return out;
+}
+
+std::string several_inputs(const ReplayResult& r) {
   if (r.inputs.size() < 2 || !r.has_reference) return "";
-  std::vector<std::string> head = {"RMSE an input"};
-  for (const InputResult& input : r.inputs)
-    head.push_back(markdown_text(input.name) +
-                   (input.unit.empty() ? "" : ", " + markdown_text(usual_unit(input.unit))));
-  Rows rows;
-  std::vector<std::string> optimum = {"optimum"};
-  for (const InputResult& input : r.inputs) optimum.push_back(people(input.optimum_rmse));
-  rows.push_back(optimum);
-  for (const std::size_t i : ranked(r)) {
-    std::vector<std::string> row = {markdown_text(r.algorithms[i].label)};
-    for (const InputScore& input : r.algorithms[i].inputs) row.push_back(people(input.error.rmse));
-    row.resize(head.size(), "–");
-    rows.push_back(std::move(row));
-  }
-  return "\n" + markdown_table(head, rows);
-}
-
-std::string skipped(const ReplayResult& r) {
-  const auto all = skipped_by_reason(r);
-  if (all.empty()) return "";
-  std::string out = "\n## Skipped\n\n";
-  for (const auto& [reason, labels] : all) {
-    std::vector<std::string> names;
-    for (const std::string& label : labels) names.push_back(markdown_text(label));
-    out += fmt::format("- {}: {}\n", joined(names), markdown_text(reason));
+  std::string out;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) {
+    out += fmt::format(
+        "\n### {}\nOptimum {}.\n\n| algorithm | RMSE | 95 % | of the optimum "
+        "|\n|---|---|---|---|\n",
+        markdown_text(r.inputs[j].name),
+        people_error(r.inputs[j].optimum_rmse, markdown_text(r.inputs[j].unit)));
+    for (const AlgorithmResult* a : ranked(r)) {
+      if (j >= a->inputs.size()) continue;
+      out += fmt::format("| {} | {} | {} | {} |\n",
+                         markdown_text(a->label),
+                         number(a->inputs[j].error.rmse),
+                         between(a->inputs[j].error.rmse_ci95),
+                         number(a->inputs[j].optimum_ratio));
+    }
   }
   return out;
 }
 
 std::string sensors(const ReplayResult& r) {
-  Rows rows;
-  for (const SensorResult& s : r.sensors) {
-    std::string note = s.constant ? "constant" : "";
-    rows.push_back({markdown_text(s.name),
-                    people(s.error.rmse),
-                    people(s.error.bias, 3),
-                    people(s.error.maximum, 3),
-                    s.noise_variance ? people(std::sqrt(*s.noise_variance), 3) : "–",
-                    s.missing > 0 ? people_percent(s.missing) : "none",
-                    note});
-  }
-  return "\n## Sensors\n\n" +
-         markdown_table({"sensor", "RMSE", "bias", "maximum", "noise given", "missing", ""}, rows);
+  std::string out =
+      "\n## Sensors\n\n| sensor | unit | RMSE | bias | missing | noise of a sample | from "
+      "|\n|---|---|---|---|---|---|---|\n";
+  for (const SensorResult& s : r.sensors)
+    out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
+                       markdown_text(s.name),
+                       s.constant ? " (constant)" : "",
+                       markdown_text(s.unit),
+                       number(s.error.rmse),
+                       number(s.error.bias, 2),
+                       percent(s.missing),
+                       s.noise_variance ? number(std::sqrt(*s.noise_variance)) : "–",
+                       s.noise_source.empty() ? "–" : s.noise_source);
+  return out;
+}
+
+std::string delay(const std::optional<double>& seconds) {
+  return seconds ? significant(*seconds, 3) + " s" : "never";
 }
 
 std::string faults(const ReplayResult& r) {
   if (r.faults.empty()) return "";
-  std::vector<const AlgorithmResult*> watchers;
+  std::string out = "\n## Faults\n\n| fault |";
+  std::string line = "\n|---|", rows;
+  std::vector<const AlgorithmResult*> watching;
   for (const AlgorithmResult& a : r.algorithms)
-    if (a.ran && a.watches_faults) watchers.push_back(&a);
-  std::vector<std::string> head = {"fault", "sensor", "from", "to"};
-  for (const AlgorithmResult* a : watchers) head.push_back("found by " + markdown_text(a->label));
-  Rows rows;
+    if (a.ran && a.watches_faults) {
+      watching.push_back(&a);
+      out += fmt::format(" {}: found after | used again after |", markdown_text(a.label));
+      line += "---|---|";
+    }
   for (std::size_t f = 0; f < r.faults.size(); ++f) {
     const SensorFault& fault = r.faults[f];
-    std::vector<std::string> row = {
-        std::string(name_of(fault.kind)),
-        fault.sensor < r.sensors.size() ? markdown_text(r.sensors[fault.sensor].name) : "–",
-        people_instant(fault.from_s),
-        std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
-    for (const AlgorithmResult* a : watchers) {
-      std::string cell = "not looked at";
-      for (const FaultAnswer& answer : a->answers)
-        if (answer.fault == f)
-          cell = !answer.found_s
-                     ? "missed"
-                     : "after " + people_seconds(*answer.found_s) +
-                           (answer.returned_s ? ", back after " + people_seconds(*answer.returned_s)
-                                              : "");
-      row.push_back(cell);
+    rows += fmt::format(
+        "| {} {} {} from {} s{} |",
+        markdown_text(r.sensors[fault.sensor].name),
+        name_of(fault.kind),
+        fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout ? ""
+                                                                           : number(fault.value),
+        significant(fault.from_s, 6),
+        std::isfinite(fault.to_s) ? fmt::format(" to {} s", significant(fault.to_s, 6)) : "");
+    for (const AlgorithmResult* a : watching) {
+      const FaultAnswer* answer = nullptr;
+      for (const FaultAnswer& candidate : a->answers)
+        if (candidate.fault == f) answer = &candidate;
+      rows += fmt::format(
+          " {} | {} |",
+          answer != nullptr ? delay(answer->found_s) : "–",
+          answer != nullptr && std::isfinite(fault.to_s) ? delay(answer->returned_s) : "–");
     }
-    rows.push_back(std::move(row));
+    rows += "\n";
   }
-  return "\n## Faults\n\n" + markdown_table(head, rows);
+  return out + line + "\n" + rows;
 }
 
-std::string warnings(const ReplayResult& r) {
+std::string remarks(const ReplayResult& r) {
   std::string out;
   const auto add = [&](const Warnings& list, const std::string& of) {
     for (const Warning& w : list.list())
-      out += fmt::format("- {}{} ({} ×)\n",
+      out += fmt::format("- {}{}{}\n",
                          of.empty() ? "" : markdown_text(of) + ": ",
                          markdown_text(w.message),
-                         w.count);
+                         w.count > 1 ? fmt::format(" ({} ×)", w.count) : "");
   };
   add(r.warnings, "");
   for (const LogInfo& log : r.logs) add(log.warnings, log.file);
-  for (const AlgorithmResult& a : r.algorithms) add(a.remarks, a.label);
-  return out.empty() ? "" : "\n## Warnings and remarks\n\n" + out;
+  // The remarks of an algorithm begin with its name.
+  for (const AlgorithmResult& a : r.algorithms) add(a.remarks, "");
+  return out.empty() ? "" : "\n## Warnings\n\n" + out;
 }
 
 }  // namespace
@@ -157,51 +163,49 @@ std::string warnings(const ReplayResult& r) {
 std::string markdown_text(std::string_view text) {
   std::string out;
   for (const char c : printable(text)) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else {
-      if (std::string_view("\\`*_{}[]#|!~$").find(c) != std::string_view::npos) out += '\\';
-      out += c;
-    }
+    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
   }
   return out;
 }
 
 std::string markdown_table(const std::vector<std::string>& head,
                            const std::vector<std::vector<std::string>>& rows) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    std::string out = "|";
-    for (const std::string& cell : cells) out += " " + cell + " |";
-    return out + "\n";
-  };
-  std::string rule = "|";
-  for (std::size_t i = 0; i < head.size(); ++i) rule += i == 0 ? "---|" : "---:|";
-  std::string out = line(head) + rule + "\n";
-  for (const auto& row : rows) out += line(row);
+  std::string out = fmt::format("| {} |\n|", fmt::join(head, " | "));
+  for (std::size_t i = 0; i < head.size(); ++i) out += "---|";
+  out += "\n";
+  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
   return out;
 }
 
 std::string replay_markdown(const ReplayResult& r) {
-  const std::string name = r.scene.name.empty() ? r.scene.file : r.scene.name;
-  std::string out = "# Replay of " + markdown_text(name) + "\n\n";
-  for (const std::string& sentence : replay_verdict(r, true)) out += markdown_text(sentence) + "\n";
-  out += fmt::format("\n{} sensors, {} instants at {} Hz.",
+  std::string out = fmt::format("# {}\n\n{}\n\n",
+                                markdown_text(r.scene.name.empty() ? r.scene.file : r.scene.name),
+                                markdown_text(replay_verdict(r)));
+  out += fmt::format("{} sensors, {} instants at {} Hz from {} s.",
                      r.sensors.size(),
                      r.instants,
-                     significant(r.rate_hz, 6));
-  if (r.has_reference && !r.inputs.empty() && std::isfinite(r.inputs[0].optimum_rmse))
-    out += fmt::format(" Optimum of this scene: RMSE {}.",
-                       markdown_text(with_unit(r.inputs[0].optimum_rmse, 4, score_unit(r))));
+                     significant(r.rate_hz, 6),
+                     significant(r.start_s, 6));
+  if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
+    out += fmt::format(" Optimum of {}: RMSE {}.",
+                       optimum_of(r),
+                       people_error(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
   if (r.lag_estimated)
     out +=
-        fmt::format(" The sensors lag the reference by {} (estimated).", people_seconds(r.lag_s));
-  out += "\n\n" + algorithms_table(r) + inputs_table(r) + skipped(r) + sensors(r) + faults(r) +
-         warnings(r);
-  return out + "\nWritten by sensorchar " + std::string(version()) + ".\n";
+        fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
+  out += "\n\n" + (r.has_reference ? with_reference(r) : without_reference(r));
+  out +=
+      "\n\\* the best method, and those whose difference from it is not resolved; bounds look at "
+      "the reference of the run itself.\n";
+  if (const auto skipped = skipped_algorithms(r); !skipped.empty()) {
+    out += "\n## Skipped\n\n";
+    for (const SkippedAlgorithms& s : skipped)
+      out += fmt::format("- {}: {}\n",
+                         markdown_text(fmt::format("{}", fmt::join(s.labels, ", "))),
+                         markdown_text(s.reason));
+  }
+  return out + several_inputs(r) + sensors(r) + faults(r) + remarks(r);
 }
 
 }  // namespace libchar

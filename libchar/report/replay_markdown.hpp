@@ -1,7 +1,9 @@
 #pragma once
-// report.md of a replay: verdict and tables for a pull request.
+// report.md of a replay: verdict and tables, for a pull request or a mail.
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "libchar/replay/replay_result.hpp"
 
@@ -9,11 +11,9 @@ namespace libchar {
 
 std::string replay_markdown(const ReplayResult& result);
 
-/// Untrusted text for a cell of a Markdown table: nothing in it is a tag, a link, a column or a
-/// line.
+/// Names and paths are anybody's: no mark of theirs becomes a tag, link, column or line.
 std::string markdown_text(std::string_view text);
-
-/// Rows of cells as a table; cells are taken as they are.
+/// Cells are taken as they are.
 std::string markdown_table(const std::vector<std::string>& head,
                            const std::vector<std::vector<std::string>>& rows);
 

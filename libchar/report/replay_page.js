@@ -10,7 +10,7 @@
   const scoreName = report.score === "rmse" ? "RMSE" : "leave-one-out RMS";
   const ran = report.algorithms.filter((a) => a.status === "ran");
   const order = ran.slice().sort((a, b) => (score(a) === null) - (score(b) === null) || score(a) - score(b));
-  const unit = report.true_inputs.length ? report.true_inputs[0].unit : "";
+  const unit = report.inputs.length ? report.inputs[0].unit : "";
   const withUnit = (text, u) => (u ? text + ", " + u : text);
 
   // Neighbours in the table differ in colour and in dash; 8 and 5 have no common factor, so 40 lines differ in one of both.
@@ -25,14 +25,14 @@
   function showDefaults() {
     shown.clear();
     const best = order.find((a) => a.label === report.best);
-    const free = order.find((a) => !a.bound && !a.needs.reference);
+    const free = order.find((a) => !a.bound && !a.card.learns_from_reference);
     [best, free, order.find((a) => a.name === "mean"), order.find((a) => a.bound)].forEach((a) => { if (a) shown.add(a); });
     if (!shown.size) order.slice(0, 3).forEach((a) => shown.add(a));
   }
   showDefaults();
 
   // ---- a stretch of time ----
-  const whole = [report.scene.start_s, report.scene.start_s + report.scene.instants / report.scene.rate_hz];
+  const whole = [report.start_s, report.start_s + report.instants / report.rate_hz];
   let stretch = whole.slice();
   const inStretch = (t) => t >= stretch[0] && t <= stretch[1];
 
@@ -134,6 +134,8 @@
       marks.sort((p, q) => p.dim - q.dim || score(p.a) - score(q.a));
       pen.save();
       pen.textBaseline = "middle";
+      pen.lineWidth = 4;
+      pen.strokeStyle = "rgba(255,255,255,0.9)";
       marks.forEach((p) => {
         pen.font = (p.a.label === report.best ? "700 " : p.dim ? "" : "600 ") + "12px system-ui, 'DejaVu Sans', sans-serif";
         const w = pen.measureText(p.a.label).width;
@@ -144,6 +146,7 @@
         if (!free) return;
         taken.push(free);
         pen.fillStyle = p.dim ? "#8a929b" : INK;
+        pen.strokeText(p.a.label, free[0], (free[1] + free[3]) / 2);
         pen.fillText(p.a.label, free[0], (free[1] + free[3]) / 2);
       });
       pen.restore();
@@ -153,8 +156,8 @@
   function costChart(key, front, title, axis, tipLine) {
     const points = order.filter((a) => positive(score(a)) && positive(a[key])).map((a) => ({ x: a[key], y: score(a), a, dim: !a.on_front[front] }));
     const kinds = [
-      { name: "needs no reference", of: (a) => !a.bound && !a.needs.reference, mark: "circle" },
-      { name: "learns from a reference", of: (a) => !a.bound && a.needs.reference, mark: "rect" },
+      { name: "needs no reference", of: (a) => !a.bound && !a.card.learns_from_reference, mark: "circle" },
+      { name: "learns from a reference", of: (a) => !a.bound && a.card.learns_from_reference, mark: "rect" },
       { name: "bound: looks at the reference of the run", of: (a) => a.bound, mark: "triangle" },
     ];
     const tip = (p) => {
@@ -196,8 +199,8 @@
   }
 
   let tracked = null;
-  const flatWeights = (a) => a.weights.length > 0 && !Array.isArray(a.weights[0]);
-  const trackable = order.filter((a) => flatWeights(a) || a.variances.length || a.watches_faults);
+  const flatWeights = (a) => a.weights !== null && a.weights.length > 0 && !Array.isArray(a.weights[0]);
+  const trackable = order.filter((a) => flatWeights(a) || a.variances || a.watches_faults);
   tracked = [(a) => a.label === report.best && a.weight_track, (a) => a.weight_track && a.watches_faults, (a) => a.weight_track || a.watches_faults, (a) => a.label === report.best, () => true]
     .map((wish) => trackable.find(wish)).find(Boolean) || null;
 
@@ -205,7 +208,7 @@
     const sets = [];
     report.sensors.forEach((s, i) => {
       if (track) sets.push(...bandLine(s.name, track, i, style(i), logarithmic, timeTip(u)));
-      else if (values.length && values[i] !== null && (!logarithmic || values[i] > 0)) sets.push(flat(s.name, values[i], style(i), timeTip(u)));
+      else if (values && values.length && values[i] !== null && (!logarithmic || values[i] > 0)) sets.push(flat(s.name, values[i], style(i), timeTip(u)));
     });
     return sets;
   }
@@ -240,7 +243,7 @@
     const end = whole[1], names = report.sensors.map((s) => s.name), rows = names.map((n, i) => String(i));
     const bar = (f) => ({ x: [Math.max(f.from_s, whole[0]), Math.min(f.to_s === null ? end : f.to_s, end)], y: String(names.indexOf(f.sensor)), f });
     const span = (f) => people(f.from_s, 6) + " … " + (f.to_s === null ? "the end" : people(f.to_s, 6)) + " s";
-    const known = report.scene.faults.filter((f) => f.from_s < end && (f.to_s === null || f.to_s > whole[0])).map(bar);
+    const known = report.faults.filter((f) => f.from_s < end && (f.to_s === null || f.to_s > whole[0])).map(bar);
     const found = tracked ? tracked.faults.map(bar) : [];
     const plain = { grouped: false, minBarLength: 3, borderSkipped: false };
     const sets = [

@@ -9,6 +9,7 @@
 #include "libchar/report/escape.hpp"
 #include "libchar/report/html_parts.hpp"
 #include "libchar/report/people.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "libchar/report/replay_words.hpp"
 
 namespace libchar {
@@ -84,7 +85,7 @@ std::string ranking_row(const ReplayResult& r, std::size_t index) {
   out += cell(people_percent(a.availability, 1), a.availability);
   out += cell(people(a.ns_per_sample, 3), a.ns_per_sample);
   const double bytes = a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::nan("");
-  out += cell(people_bytes(bytes), bytes);
+  out += cell(people_bytes(a.peak_bytes), bytes);
   out += cell(people_seconds(a.learning_s), a.learning_s);
   return out + "</tr>\n";
 }
@@ -105,7 +106,7 @@ std::string ranking_table(const ReplayResult& r) {
   for (const char* name : {"Available", "ns a sample", "Memory", "Learning"})
     head.emplace_back(name);
   std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + table_head(head);
-  for (const std::size_t i : ranked(r)) out += ranking_row(r, i);
+  for (const AlgorithmResult* a : ranked(r)) out += ranking_row(r, index_of(r, *a));
   return out + "</tbody></table></div>\n";
 }
 
@@ -142,9 +143,9 @@ std::string inputs_table(const ReplayResult& r) {
   }
   std::string out =
       "<h3>Each input</h3>\n<div class=\"wide\"><table>\n" + table_head(head) + table_row(optimum);
-  for (const std::size_t i : ranked(r)) {
-    std::vector<std::string> row = {r.algorithms[i].label};
-    for (const InputScore& input : r.algorithms[i].inputs)
+  for (const AlgorithmResult* a : ranked(r)) {
+    std::vector<std::string> row = {a->label};
+    for (const InputScore& input : a->inputs)
       row.push_back(fmt::format("{} ({}; bias {}, maximum {})",
                                 people(input.error.rmse),
                                 people(input.optimum_ratio, 5),
@@ -192,8 +193,8 @@ std::string blind_table(const ReplayResult& r) {
   for (const SensorResult& s : r.sensors) head.push_back(s.name);
   std::string out =
       "<h3>Each sensor against the others</h3>\n<div class=\"wide\"><table>\n" + table_head(head);
-  for (const std::size_t i : ranked(r)) {
-    const AlgorithmResult& a = r.algorithms[i];
+  for (const AlgorithmResult* one : ranked(r)) {
+    const AlgorithmResult& a = *one;
     if (!a.blind) continue;
     std::vector<std::string> row = {a.label};
     for (const double v : a.blind->leave_one_out) row.push_back(people(v));
@@ -208,8 +209,8 @@ std::string weights_table(const ReplayResult& r) {
   for (const SensorResult& s : r.sensors) head.push_back(s.name);
   head.emplace_back("Distance");
   std::string rows;
-  for (const std::size_t i : ranked(r)) {
-    const AlgorithmResult& a = r.algorithms[i];
+  for (const AlgorithmResult* one : ranked(r)) {
+    const AlgorithmResult& a = *one;
     if (a.weights)
       for (Eigen::Index j = 0; j < a.weights->cols(); ++j) {
         const std::string of =

@@ -66,18 +66,6 @@ std::string people_stretch(double from_s, double to_s) {
   return people_instant(from_s) + " … " + (std::isfinite(to_s) ? people_instant(to_s) : "the end");
 }
 
-std::string people_bytes(double bytes) {
-  if (!std::isfinite(bytes)) return "–";
-  if (bytes < 1000) return fmt::format("{:.0f} B", bytes);
-  if (bytes < 999500) return people(bytes / 1e3, 3) + " kB";
-  return people(bytes / 1e6, 3) + " MB";
-}
-
-std::string people_nanoseconds(double ns) {
-  if (!std::isfinite(ns)) return "–";
-  return ns < 1000 ? people(ns, 3) + " ns" : people_seconds(ns * 1e-9);
-}
-
 std::string people_interval(const Interval& interval, int digits) {
   if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "–";
   return people(interval.low, digits) + " … " + people(interval.high, digits);
@@ -117,44 +105,16 @@ std::string settings_in_words(const fusion::Settings& settings) {
   return out;
 }
 
-std::vector<std::size_t> ranked(const ReplayResult& result) {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < result.algorithms.size(); ++i)
-    if (result.algorithms[i].ran) out.push_back(i);
-  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) {
-    const double x = result.algorithms[a].rmse, y = result.algorithms[b].rmse;
-    return std::isfinite(x) && (!std::isfinite(y) || x < y);
-  });
-  return out;
-}
-
-std::vector<std::pair<std::string, std::vector<std::string>>> skipped_by_reason(
-    const ReplayResult& result) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> out;
-  for (const AlgorithmResult& a : result.algorithms) {
-    if (a.ran) continue;
-    std::string reason = a.why;
-    // The sentences begin with the name, which stands beside them.
-    for (const std::string& name : {a.label, std::string(a.card ? a.card->name : "")})
-      for (const char* glue : {": ", " "})
-        if (!name.empty() && reason.starts_with(name + glue))
-          reason = reason.substr(name.size() + std::string_view(glue).size());
-    const auto known =
-        std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.first == reason; });
-    if (known == out.end())
-      out.push_back({reason, {a.label}});
-    else
-      known->second.push_back(a.label);
-  }
-  return out;
-}
-
 ParetoFront pareto_front(const ReplayResult& result) {
   return {front(result, [](const AlgorithmResult& a) { return a.ns_per_sample; }),
           front(result, [](const AlgorithmResult& a) {
             return a.peak_bytes ? static_cast<double>(*a.peak_bytes)
                                 : std::numeric_limits<double>::quiet_NaN();
           })};
+}
+
+std::size_t index_of(const ReplayResult& result, const AlgorithmResult& algorithm) {
+  return static_cast<std::size_t>(&algorithm - result.algorithms.data());
 }
 
 }  // namespace libchar

@@ -3,7 +3,6 @@
 // its JSON.
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "libchar/replay/replay_result.hpp"
@@ -23,10 +22,6 @@ std::string people_percent(double share, int digits = 2);
 std::string people_instant(double seconds);
 /// "400 s … 500 s", "600 s … the end".
 std::string people_stretch(double from_s, double to_s);
-/// "912 B", "3.2 kB", "14 MB": powers of 1000.
-std::string people_bytes(double bytes);
-/// "82 ns", "3.1 µs".
-std::string people_nanoseconds(double ns);
 /// "0.033 … 0.034"; "–" when it is not known.
 std::string people_interval(const Interval& interval, int digits = 4);
 
@@ -35,12 +30,6 @@ std::vector<std::string> needs_in_words(const fusion::Card& card);
 /// Options that differ from the table's standard, "gamma = 0.99".
 std::string settings_in_words(const fusion::Settings& settings);
 
-/// Indices of the algorithms that ran, by score, those without one last.
-std::vector<std::size_t> ranked(const ReplayResult& result);
-/// Reasons and, for each, the labels of all algorithms that did not run because of it.
-std::vector<std::pair<std::string, std::vector<std::string>>> skipped_by_reason(
-    const ReplayResult& result);
-
 /// On the front of error against a cost: no other method is at least as good in both and better in
 /// one. Bounds are not on it and do not dominate.
 struct ParetoFront {
@@ -48,7 +37,7 @@ struct ParetoFront {
 };
 ParetoFront pareto_front(const ReplayResult& result);
 
-/// The answer in sentences, the first one says which to use. With `measured`, also what it costs.
-std::vector<std::string> replay_verdict(const ReplayResult& result, bool measured);
+/// Place of an algorithm in `result.algorithms`.
+std::size_t index_of(const ReplayResult& result, const AlgorithmResult& algorithm);
 
 }  // namespace libchar

@@ -110,7 +110,7 @@ ReportedAlgorithm algorithm(const Node& node, bool reference) {
   if (status != "ran" && status != "skipped") node["status"].refuse("expected ran or skipped");
   out.ran = status == "ran";
   out.bound = node["bound"].truth();
-  out.why = node["why"].text();
+  if (!out.ran) out.why = node["why"].text();
   const Node blind = node["without_reference"];
   if (reference) {
     out.score = node["rmse"].number();
@@ -129,11 +129,11 @@ std::string listed(const std::vector<std::string>& texts) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::string of_stretch(const Node& scene) {
+std::string of_stretch(const Node& document) {
   return fmt::format("{} instants at {} Hz from {} s",
-                     shortest(scene["instants"].number().value_or(0)),
-                     shortest(scene["rate_hz"].number().value_or(0)),
-                     shortest(scene["start_s"].number().value_or(0)));
+                     document["instants"].json().dump(),
+                     document["rate_hz"].json().dump(),
+                     document["start_s"].json().dump());
 }
 
 std::string of_reference(const Node& reference) {
@@ -149,24 +149,24 @@ std::vector<std::pair<std::string, std::string>> identity(const Node& document) 
   for (const Node& input : document["input"].list())
     recordings.push_back("SHA-256 " + input["sha256"].text());
   const Node scene = document["scene"];
-  const Node simulation = scene["simulation"];
+  const bool simulated = scene["simulated"].truth();
   for (const Node& sensor : document["sensors"].list())
     sensors.push_back(sensor["name"].text() + " [" + sensor["unit"].text() + "]");
-  for (const Node& input : document["true_inputs"].list())
+  for (const Node& input : document["inputs"].list())
     inputs.push_back(input["name"].text() + " [" + input["unit"].text() + "]");
-  for (const Node& fault : scene["faults"].list())
+  for (const Node& fault : document["faults"].list())
     faults.push_back(fault["sensor"].text() + " " + fault["kind"].text() + " " +
                      fault["value"].json().dump() + " from " + fault["from_s"].json().dump() +
                      " to " + fault["to_s"].json().dump() + " s");
   return {{"recording", recordings.empty() ? "none (simulated)" : listed(recordings)},
-          {"seed of the simulation", simulation.null() ? "none" : simulation["seed"].json().dump()},
+          {"seed of the simulation", simulated ? scene["seed"].json().dump() : "none"},
           {"list of sensors and units", listed(sensors)},
           {"list of inputs and units", listed(inputs)},
-          {"reference", of_reference(scene["reference"])},
-          {"evaluation", of_stretch(scene)},
+          {"reference", of_reference(document["reference"])},
+          {"evaluation", of_stretch(document)},
           {"list of faults", faults.empty() ? "none" : listed(faults)},
           {"simulation (models, signals or their options)",
-           simulation.null() ? "none" : "SHA-256 " + simulation["sha256"].text()}};
+           simulated ? "SHA-256 " + scene["identity"].text() : "none"}};
 }
 
 }  // namespace
@@ -182,7 +182,7 @@ ReportedReplay read_reported_replay(std::string_view text, const std::string& fi
   out.score = document["score"].text();
   if (out.score != "rmse" && out.score != "leave_one_out_rms")
     document["score"].refuse("expected rmse or leave_one_out_rms");
-  const auto inputs = document["true_inputs"].list();
+  const auto inputs = document["inputs"].list();
   if (!inputs.empty()) out.unit = inputs[0]["unit"].text();
   out.identity = identity(document);
   for (const Node& node : document["algorithms"].list()) {

@@ -1,0 +1,37 @@
+#pragma once
+// A replay in a few sentences: which algorithm to use, and how sure that is.
+
+#include <string>
+#include <vector>
+
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+/// The sentences, the first says which to use. Bounds are never recommended; a method that learns
+/// from a reference is named as such, with the best one that does not; unresolved differences are
+/// said to be so. `costs`: with what was measured, which differs from run to run.
+std::vector<std::string> verdict_sentences(const ReplayResult& result, bool costs);
+/// All of them in a row.
+std::string replay_verdict(const ReplayResult& result, bool costs = true);
+
+/// Why algorithms did not run: a reason and the labels it holds for.
+struct SkippedAlgorithms {
+  std::string reason;
+  std::vector<std::string> labels;
+};
+std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result);
+
+/// Those that ran, best first; those without a score behind.
+std::vector<const AlgorithmResult*> ranked(const ReplayResult& result);
+
+/// What the optimum of this scene is: "fixed weights", "tilt filters".
+std::string optimum_of(const ReplayResult& result);
+
+/// "82 ns", "3.4 µs"; "17.1 MB"; "–" where nothing was measured.
+std::string people_nanoseconds(double ns);
+std::string people_bytes(const std::optional<std::uint64_t>& bytes);
+/// "0.0331 rad/s".
+std::string people_error(double value, const std::string& unit);
+
+}  // namespace libchar
