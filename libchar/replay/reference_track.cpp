@@ -39,7 +39,12 @@ double ReferenceTrack::at(std::size_t channel, double time_s) const {
   const auto k = static_cast<std::size_t>(below);
   const double rest = place - below;
   if (rest <= kOnSample) return track[k];
-  return k + 1 < track.size() ? track[k] + rest * (track[k + 1] - track[k]) : kMissing;
+  if (k + 1 >= track.size()) return kMissing;
+  const double step = track[k + 1] - track[k];
+  if (turn <= 0) return track[k] + rest * step;
+  // From 179 to -179 degrees it is two degrees, not 358.
+  const double angle = track[k] + rest * (step - turn * std::round(step / turn));
+  return std::abs(angle) <= turn / 2 ? angle : angle - turn * std::round(angle / turn);
 }
 
 ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress) {

@@ -16,6 +16,7 @@ struct ReferenceTrack {
   std::vector<std::vector<double>> values;  ///< [channel][sample], NaN: missing
   std::vector<std::string> units;
   LogInfo log;
+  double turn = 0;  ///< a full turn in its unit, of an angle: the short way round; 0: no angle
 
   /// Linear between samples; NaN beyond the ends and beside missing samples.
   double at(std::size_t channel, double time_s) const;
