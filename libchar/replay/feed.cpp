@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -234,13 +233,11 @@ void Feed::convert_tilt() {
   info_.output_scale = 1 / truth_factor_;
   if (!info_.has_reference || truth_factor_ == 1) info_.input_units[0] = "rad";
   if (!info_.has_reference) info_.input_names[0] = "tilt";
-  if (track_) track_->turn = 2 * std::numbers::pi / truth_factor_;
 }
 
 void Feed::set_lag(double lag_s, Progress& progress) {
   lag_s_ = lag_s;
   if (lag_s != 0 && !track_) track_ = read_reference(*scene_, source_, progress);
-  if (track_ && scene_->tilt) track_->turn = 2 * std::numbers::pi / truth_factor_;
 }
 
 std::int64_t Feed::instant_at(double time_s) const {
