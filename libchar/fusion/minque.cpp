@@ -97,25 +97,11 @@ template <class Variances>
 bool Minque::found_fault(const Variances& variances) {
   if (!variances.started() || m_ < inputs_ + 2) return false;
   const double least = kRounding * variances.rounding();
-  const auto expectation = [&](std::size_t i) {
-    return std::max(variances.residual_variance(i), least);
-  };
-  bool beyond = false;
-  for (int k = 0; k < m_; ++k) {
-    const auto i = static_cast<std::size_t>(in_use(k));
-    beyond |= watch_.beyond(i, variances.residual(i), expectation(i));
-  }
-  if (!beyond || now_ < armed_from_) return false;
-  double worst = 0;
-  int where = in_use(0);
-  for (int k = 0; k < m_; ++k) {
-    const auto i = static_cast<std::size_t>(in_use(k));
-    const double ratio = watch_.moment(i) / expectation(i);
-    if (ratio > worst) {
-      worst = ratio;
-      where = in_use(k);
-    }
-  }
+  const double* const expected = variances.residual_variances();
+  const int* const all = present_.data();
+  if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_)
+    return false;
+  const int where = watch_.worst(expected, least, all, m_);
   for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use(k)));
   watch_.take_out(static_cast<std::size_t>(where), now_);
   return true;

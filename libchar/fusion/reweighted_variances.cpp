@@ -25,6 +25,7 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
       inverse_(n, 1 / v_[0]),
       r_(n, 0),
       p_(n, 0),
+      shown_(n, 1),
       gathered_(n, 0),
       b_(n),
       e_(n),
@@ -82,6 +83,7 @@ void ReweightedVariances::weigh() {
   for (int k = 0; k < m_; ++k) sum += inverse_[index_[k]];
   fused_ = 1 / sum;
   for (int k = 0; k < m_; ++k) p_[index_[k]] = inverse_[index_[k]] * fused_;
+  for (int k = 0; k < m_; ++k) shown_[index_[k]] = v_[index_[k]] - fused_;
 }
 
 void ReweightedVariances::start(const double* y) {
@@ -130,7 +132,7 @@ void ReweightedVariances::start_from_pairs() {
 
 double ReweightedVariances::gain() {
   const double lasting = 1 - options_.gamma;
-  if (options_.start_variance > 0) return lasting;
+  if (options_.start_variance > 0 || instants_ * lasting > 1) return lasting;
   instants_ += 1;
   return std::max(lasting, 1 / (instants_ + kStart));
 }

@@ -69,9 +69,10 @@ class ReweightedVariances {
   double innovation_variance(std::size_t i) const { return v_[i] + fused_; }
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
-  /// Part of the variance of channel i in the last `fuse` that shows in its residual.
-  double residual_variance(std::size_t i) const { return v_[i] - fused_; }
-  double residual(std::size_t i) const { return r_[i]; }
+  /// By channel, of those in use in the last `fuse`.
+  const double* residuals() const { return r_.data(); }
+  /// Part of the variance of each channel in use that shows in its residual.
+  const double* residual_variances() const { return shown_.data(); }
   /// A level below which a variance is rounding error.
   double rounding() const { return rounding_; }
   bool started() const { return started_; }
@@ -109,6 +110,7 @@ class ReweightedVariances {
   // All by channel.
   std::vector<double> v_, inverse_, r_;
   std::vector<double> p_;         // weights; zero where a channel is not in use
+  std::vector<double> shown_;     // v - fused variance, where in use
   std::vector<double> gathered_;  // sum of gain x r^2 since the variances were renewed
   std::vector<double> b_, e_;     // right side, 1 / (1 - 2p + lambda)
   std::vector<int> index_;        // channels in use, rising: the first m_
