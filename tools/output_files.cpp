@@ -7,11 +7,9 @@ namespace sensorchar {
 
 using namespace libchar;
 
-void write_outputs(const std::vector<OutputFile>& outputs,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::string>& inputs,
-                   bool force,
-                   const std::function<void()>& before_names) {
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
@@ -21,6 +19,27 @@ void write_outputs(const std::vector<OutputFile>& outputs,
                  "cannot make this folder: " + problem.message(),
                  "",
                  ""});
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& paths,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& inputs,
+                   bool force) {
+  make_folder(folder);
+  for (const std::string& path : paths) {
+    for (const std::string& input : inputs) refuse_same_file(input, path);
+    const WholeFile trial(path, force);  // discarded: nothing appears under the name
+  }
+}
+
+void write_outputs(const std::vector<OutputFile>& outputs,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& inputs,
+                   bool force,
+                   const std::function<void()>& before_names) {
+  make_folder(folder);
   std::vector<WholeFile> files;
   for (const OutputFile& output : outputs) {
     for (const std::string& input : inputs) refuse_same_file(input, output.path);

@@ -248,27 +248,28 @@ void run_replay(Session& session, const ReplayVerb& verb) {
     refuse("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.scene);
+  const fs::path folder = verb.folder;
+  std::vector<std::string> files;
+  for (const char* name : {"report.html", "report.json", "report.md"})
+    files.push_back((folder / name).string());
   std::optional<EstimateFile> estimates;
   if (!verb.estimates.empty()) {
-    fs::create_directories(verb.folder);
-    const std::string path = (fs::path(verb.folder) / ("estimates." + verb.estimates)).string();
-    for (const std::string& input : inputs) refuse_same_file(input, path);
+    const std::string path = (folder / ("estimates." + verb.estimates)).string();
+    format_to_write(path, {});
+    check_outputs({path}, folder, inputs, verb.force);
     estimates.emplace(path, verb.force);
     options.estimates = &*estimates;
   }
+  check_outputs(files, folder, inputs, verb.force);
   ReplayResult result = replay(scene, options, session.terminal);
   session.terminal.clear();
   result.command = session.command;
   result.settings = settings_json(verb, result);
   session.terminal.warn(result.warnings, verb.scene);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
-  const fs::path folder = verb.folder;
-  const std::vector<OutputFile> outputs = {
-      {(folder / "report.html").string(), replay_html(result)},
-      {(folder / "report.json").string(), dump_json(replay_json(result))},
-      {(folder / "report.md").string(), replay_markdown(result)}};
-  std::vector<std::string> files;
-  for (const OutputFile& output : outputs) files.push_back(output.path);
+  const std::vector<OutputFile> outputs = {{files[0], replay_html(result)},
+                                           {files[1], dump_json(replay_json(result))},
+                                           {files[2], replay_markdown(result)}};
   write_outputs(outputs, folder, inputs, verb.force, [&] {
     if (estimates)
       for (const std::string& file : estimates->finish()) files.push_back(file);

@@ -68,7 +68,7 @@ double find_lag(const Scene& scene,
   if (scene.tilt) found.lag_s += 0.5 / rate_hz;
   if (!(found.correlation >= kLeastCorrelation))
     throw Error({ErrorKind::numeric,
-                 "E0906",
+                 "E0908",
                  scene.file,
                  "reference.lag_s: sensors and reference are too little alike to tell a lag",
                  "estimate",

@@ -194,8 +194,8 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
 }
 
 // The smallest error that fixed weights can have, taught on the run itself: with and without
-// calibration, section by section when sensors are known to fail. For a tilt: the best of the
-// filters tuned on the run and of either sensor alone.
+// calibration, of the sensors that are sound at each instant. For a tilt: the best filter,
+// as it stands or tuned on the run, and either sensor alone.
 std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   std::vector<PlannedAlgorithm> out;
   const auto add = [&](const char* name, std::vector<std::pair<std::string, double>> options) {
@@ -210,6 +210,8 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   if (given.tilt) {
     for (const char* name : {"tilt-kalman-tuned",
                              "tilt-complementary-tuned",
+                             "tilt-kalman",
+                             "tilt-complementary",
                              "tilt-gyroscope",
                              "tilt-accelerometer"})
       add(name, {});
@@ -217,7 +219,6 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   }
   add("optimal-weights", {});
   add("optimal-weights", {{"calibrate", 1}});
-  if (!given.section_starts.empty()) add("sectioned-least-squares", {});
   return out;
 }
 

@@ -73,7 +73,7 @@ std::string optimum(const ReplayPlan& plan) {
   return plan.given.tilt
              ? "optimum: the best filter tuned on the evaluation itself"
              : fmt::format("optimum: best fixed weights taught on the evaluation itself{}",
-                           plan.given.section_starts.empty() ? "" : ", section by section");
+                           plan.given.section_starts.empty() ? "" : ", failed sensors left out");
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
@@ -39,7 +41,18 @@ double ReferenceTrack::at(std::size_t channel, double time_s) const {
   const auto k = static_cast<std::size_t>(below);
   const double rest = place - below;
   if (rest <= kOnSample) return track[k];
-  return k + 1 < track.size() ? track[k] + rest * (track[k + 1] - track[k]) : kMissing;
+  return k + 1 < track.size() ? between(track[k], track[k + 1], rest, period) : kMissing;
+}
+
+double between(double a, double b, double share, double period) {
+  double step = b - a;
+  if (period > 0) step -= period * std::round(step / period);
+  return a + share * step;
+}
+
+double full_turn(const std::string& unit) {
+  const auto known = find_unit(unit);
+  return 2 * std::numbers::pi / (known && known->quantity == Quantity::angle ? known->to_si : 1);
 }
 
 ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress) {
@@ -49,6 +62,7 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
     track.rate_hz = source.info().rate_hz;
     track.units = source.info().reference_units;
     track.values = source.reference_columns(progress);
+    if (scene.tilt) track.period = full_turn(track.units[0]);
     return track;
   }
   ReadOptions reading = reference.reading;
@@ -76,6 +90,7 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
     track.values.push_back(read.samples[column]);
     track.units.push_back(read.info.channels[column].unit);
   }
+  if (scene.tilt) track.period = full_turn(track.units[0]);
   // Both clocks count from one epoch when both have stamps; else the logs begin together.
   const LogInfo& recording = source.info().logs.at(0);
   if (read.info.time.start_ns && recording.time.start_ns)

@@ -127,12 +127,30 @@ class Replay {
         plan_.run_from,
         plan_.run_to,
         kLearningBlock,
-        [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
           for (AlgorithmRun& run : runs_)
             if (run.planned().learns_run()) run.learn(samples, truth);
-          for (AlgorithmRun& run : optimum_) run.learn(samples, truth);
+          const Eigen::MatrixXd& sound = without_faults(first, samples);
+          for (AlgorithmRun& run : optimum_) run.learn(sound, truth);
         },
         passing);
+  }
+
+  // The optimum knows which samples are those of a failed sensor, and leaves them out.
+  const Eigen::MatrixXd& without_faults(std::int64_t first, const Eigen::MatrixXd& samples) {
+    const auto& faults = feed_.source().known_faults();
+    if (faults.empty() || scene_.tilt) return samples;
+    sound_ = samples;
+    for (const SensorFault& fault : faults) {
+      const std::int64_t from = std::max(feed_.instant_at(fault.from_s), first);
+      const std::int64_t to =
+          std::min<std::int64_t>(feed_.instant_at(fault.to_s), first + samples.cols());
+      if (from < to)
+        sound_.row(static_cast<Eigen::Index>(fault.sensor))
+            .segment(from - first, to - from)
+            .setConstant(kMissing);
+    }
+    return sound_;
   }
 
   void run_all() {
@@ -146,7 +164,8 @@ class Replay {
         plan_.block,
         [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
           for (AlgorithmRun& run : runs_) run.run(samples);
-          for (AlgorithmRun& run : optimum_) run.run(samples);
+          const Eigen::MatrixXd& sound = without_faults(first, samples);
+          for (AlgorithmRun& run : optimum_) run.run(sound);
           for (AlgorithmRun& run : runs_) run.score(first - plan_.run_from, truth);
           for (AlgorithmRun& run : optimum_) run.score(first - plan_.run_from, truth);
           for (const auto& blind : blind_)
@@ -242,7 +261,7 @@ class Replay {
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
   std::vector<Eigen::MatrixXd> kept_;
-  Eigen::MatrixXd expected_;
+  Eigen::MatrixXd expected_, sound_;
   double lag_s_ = 0;
   std::uint64_t passes_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/replay/reference_track.hpp"
 
 namespace libchar {
 namespace {
@@ -71,6 +72,7 @@ ResampledLog read_resampled(const std::string& path,
                             const ReadOptions& reading,
                             const std::vector<std::string>& wanted,
                             double rate_hz,
+                            std::size_t first_angle,
                             Progress& progress) {
   if (!reading.names.empty())
     throw Error({ErrorKind::input,
@@ -119,7 +121,12 @@ ResampledLog read_resampled(const std::string& path,
   const double longest = kLongestStep * median_step(t);
   const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
   std::vector<std::size_t> columns;
-  for (const std::string& name : wanted) columns.push_back(column_of(rows.info, name));
+  std::vector<double> periods;
+  for (const std::string& name : wanted) {
+    columns.push_back(column_of(rows.info, name));
+    periods.push_back(
+        columns.size() > first_angle ? full_turn(rows.info.channels[columns.back()].unit) : 0);
+  }
   out.samples.assign(wanted.size(), std::vector<double>(instants, kMissing));
   std::size_t k = 0;
   for (std::size_t i = 0; i < instants; ++i) {
@@ -131,7 +138,7 @@ ResampledLog read_resampled(const std::string& path,
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const auto& y = rows.samples[columns[c]];
       const double a = y[used[k]], b = y[used[k + 1]];
-      out.samples[c][i] = share == 0 ? a : a + share * (b - a);
+      out.samples[c][i] = share == 0 ? a : between(a, b, share, periods[c]);
     }
   }
   out.log.time.rate_hz = rate_hz;

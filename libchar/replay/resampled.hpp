@@ -17,11 +17,13 @@ struct ResampledLog {
 
 /// Linear between neighbouring rows by their stamps; missing where the stamps of both are more than
 /// four median steps apart. Rows whose stamp does not advance are left out and counted. Whole in
-/// memory. Throws Error(input) for a log without stamps.
+/// memory. Wanted channels from `first_angle` on are angles, joined the short way round. Throws
+/// Error(input) for a log without stamps.
 ResampledLog read_resampled(const std::string& path,
                             const ReadOptions& reading,
                             const std::vector<std::string>& wanted,
                             double rate_hz,
+                            std::size_t first_angle,
                             Progress& progress);
 
 }  // namespace libchar

@@ -102,8 +102,12 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
 }
 
 void SceneSource::read_even(Progress& progress) {
-  ResampledLog even =
-      read_resampled(scene_->recording, scene_->reading, wanted_, *scene_->resample_hz, progress);
+  ResampledLog even = read_resampled(scene_->recording,
+                                     scene_->reading,
+                                     wanted_,
+                                     *scene_->resample_hz,
+                                     scene_->tilt ? scene_->sensors.size() : wanted_.size(),
+                                     progress);
   even_ = std::move(even.samples);
   info_.rate_hz = *scene_->resample_hz;
   info_.samples = even.log.samples;

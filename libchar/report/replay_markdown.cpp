@@ -162,7 +162,8 @@ std::string replay_markdown(const ReplayResult& r) {
                      significant(r.rate_hz, 6),
                      significant(r.start_s, 6));
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
-    out += fmt::format(" Optimum of fixed weights: RMSE {}.",
+    out += fmt::format(" Optimum of {}: RMSE {}.",
+                       optimum_of(r),
                        people_error(r.inputs[0].optimum_rmse, plain(r.inputs[0].unit)));
   if (r.lag_estimated)
     out +=

@@ -64,7 +64,20 @@ std::string untaught_sentence(const ReplayResult& r, const AlgorithmResult& best
   return " It learns from a reference.";
 }
 
+std::string regret_for_people(const ReplayResult& r, double regret) {
+  const std::string optimum = "the optimum of " + optimum_of(r);
+  if (regret > 1) return fmt::format("{} times {}", significant(1 + regret, 2), optimum);
+  return fmt::format("{} % {} {}",
+                     significant(std::abs(100 * regret), 2),
+                     regret >= 0 ? "above" : "below",
+                     optimum);
+}
+
 }  // namespace
+
+std::string optimum_of(const ReplayResult& r) {
+  return r.scene.tilt ? "tilt filters" : "fixed weights";
+}
 
 std::string people_nanoseconds(double ns) {
   if (!std::isfinite(ns)) return "–";
@@ -119,11 +132,7 @@ std::string replay_verdict(const ReplayResult& r, bool costs) {
                                 best.label,
                                 r.has_reference ? "RMSE" : "leave-one-out RMS",
                                 people_error(best.rmse, r.inputs[0].unit));
-  if (std::isfinite(best.regret))
-    out += best.regret >= 0 ? fmt::format(", {} % above the optimum of fixed weights in this scene",
-                                          significant(100 * best.regret, 2))
-                            : fmt::format(", {} % below the optimum of fixed weights in this scene",
-                                          significant(-100 * best.regret, 2));
+  if (std::isfinite(best.regret)) out += ", " + regret_for_people(r, best.regret);
   if (costs && std::isfinite(best.ns_per_sample))
     out += fmt::format(", {} a sample", people_nanoseconds(best.ns_per_sample));
   out += ".";

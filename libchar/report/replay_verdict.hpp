@@ -21,6 +21,9 @@ std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result);
 /// Those that ran, best first; those without a score behind.
 std::vector<const AlgorithmResult*> ranked(const ReplayResult& result);
 
+/// What the optimum of this scene is: "fixed weights", "tilt filters".
+std::string optimum_of(const ReplayResult& result);
+
 /// "82 ns", "3.4 µs"; "17.1 MB"; "–" where nothing was measured.
 std::string people_nanoseconds(double ns);
 std::string people_bytes(const std::optional<std::uint64_t>& bytes);

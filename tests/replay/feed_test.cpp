@@ -224,7 +224,7 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
   }
   bench.put("log.csv", log);
   const ResampledLog even =
-      read_resampled(bench.path("log.csv"), {}, {"b", "a"}, 50, no_progress());
+      read_resampled(bench.path("log.csv"), {}, {"b", "a"}, 50, 2, no_progress());
   REQUIRE(even.samples.size() == 2);
   std::size_t missing = 0;
   for (std::size_t i = 0; i < even.samples[1].size(); ++i) {
@@ -237,6 +237,30 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
   CHECK(missing >= 23);
   CHECK(missing <= 25);
   bench.put("bare.csv", "a,b\n1,2\n2,3\n");
-  CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, no_progress()),
+  CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, 1, no_progress()),
                     Catch::Contains("E0907"));
+}
+
+TEST_CASE("feed: a reference angle is interpolated the short way round") {
+  const test::SceneBench bench;
+  std::string log = "t[s],w[deg/s],x[g],z[g],angle[deg]\n";
+  for (int k = 0; k < 10; ++k)
+    log += std::to_string(k) + ",10,0,1," + std::to_string(k < 5 ? 175 + k : k - 185) + "\n";
+  bench.put("log.csv", log);
+  const std::string scene =
+      "sensors: [w, x, z]\ntilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n";
+  const auto truth = [&](const std::string& text) {
+    const Scene read = bench.read(text);
+    const Feed feed(read, no_progress());
+    const double turn = 2 * std::acos(-1.0);
+    const Fed fed = all_of(feed, 1, 9, 4);
+    REQUIRE(fed.truth.size() == 8);
+    for (Eigen::Index k = 0; k < 8; ++k) {
+      const double degrees = fed.truth(0, k) * 360 / turn;
+      CHECK(std::abs(degrees) >= 175);
+      CHECK(std::abs(degrees) <= 190);
+    }
+  };
+  truth(kHead + "recording: log.csv\nreference: {channels: [angle], lag_s: 0.5}\n" + scene);
+  truth(kHead + "recording: {file: log.csv, resample_hz: 1.7}\nreference: angle\n" + scene);
 }
