@@ -189,9 +189,10 @@ class CsvSource final : public RowSource {
                    place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
     }
     if (chunk.unended)
-      warnings.add("no_final_newline",
-                   "the last line has no line end: if the file was cut, its last number may be cut too",
-                   place_name(next_line_ + chunk.unended->line, chunk.unended->column));
+      warnings.add(
+          "no_final_newline",
+          "the last line has no line end: if the file was cut, its last number may be cut too",
+          place_name(next_line_ + chunk.unended->line, chunk.unended->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       words_per_channel_[c] += chunk.words_per_channel[c];
@@ -223,8 +224,8 @@ class CsvSource final : public RowSource {
       raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
       return false;
     }
-    parse_rows(raw_.text(), plan_, chunk);
-    feed_.hash(raw_);
+    parse_rows(raw_.text(), plan_, chunk, feed_.begin_hash(raw_));
+    feed_.end_hash(raw_);
     raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
     current_offset_ = raw_.offset;
     return true;
@@ -241,7 +242,10 @@ class CsvSource final : public RowSource {
     std::unique_lock lock(mutex_);
     if (ended_) return false;
     spare_chunks_.push_back(std::move(chunk));
+    starving_ = done_.count(delivered_) == 0;
+    if (starving_) room_changed_.notify_one();
     done_changed_.wait(lock, [&] { return done_.count(delivered_) > 0; });
+    starving_ = false;
     auto node = done_.extract(delivered_);
     ++delivered_;
     room_changed_.notify_one();
@@ -263,11 +267,16 @@ class CsvSource final : public RowSource {
         std::unique_lock lock(mutex_);
         // Neither the parsed chunks nor those that wait for their hash may pile up.
         room_changed_.wait(lock, [&] {
-          return stop_ || exhausted_ || (!reading_ && read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_);
+          const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
+          // Hashing goes along with parsing only for the chunk whose turn it is: others start early
+          // only when someone waits for them.
+          const bool turn = !feed_.hashes_along() || parsing_ == 0 || starving_;
+          return stop_ || exhausted_ || (!reading_ && room && turn);
         });
         if (stop_ || exhausted_) return;
         reading_ = true;  // one reader at a time, in file order
         sequence = read_++;
+        ++parsing_;
         if (!spare_raws_.empty()) {
           raw = std::move(spare_raws_.back());
           spare_raws_.pop_back();
@@ -283,24 +292,34 @@ class CsvSource final : public RowSource {
         item.failure = std::current_exception();
       }
       item.offset = raw.offset;
+      bool hashing = false;  // along with the parsing
       {
         const std::lock_guard lock(mutex_);
         reading_ = false;
         exhausted_ = exhausted_ || item.end || item.failure;
+        hashing = feed_.hashes_along() && !hashing_ && hashed_ == sequence;
+        hashing_ = hashing_ || hashing;
         room_changed_.notify_all();
       }
+      Sha256Blocks* const along = hashing ? feed_.begin_hash(raw) : nullptr;
       if (!item.end && !item.failure) {
         try {
-          parse_rows(raw.text(), plan_, item.chunk);
+          parse_rows(raw.text(), plan_, item.chunk, along);
         } catch (...) {
           item.failure = std::current_exception();
         }
       }
+      if (hashing) feed_.end_hash(raw);
       {
         const std::lock_guard lock(mutex_);
         done_.emplace(sequence, std::move(item));
-        unhashed_.emplace(sequence, std::move(raw));
+        if (hashing)
+          note_hashed(std::move(raw));
+        else
+          unhashed_.emplace(sequence, std::move(raw));
+        --parsing_;
         done_changed_.notify_one();
+        room_changed_.notify_one();
       }
       hash_in_order();
     }
@@ -318,13 +337,18 @@ class CsvSource final : public RowSource {
         unhashed_.erase(unhashed_.begin());
       }
       feed_.hash(raw);
-      raw.hash_from = raw.hash_to = raw.nuls_after = 0;
       const std::lock_guard lock(mutex_);
-      spare_raws_.push_back(std::move(raw));
-      ++hashed_;
-      hashing_ = false;
-      room_changed_.notify_one();
+      note_hashed(std::move(raw));
     }
+  }
+
+  // Under the lock.
+  void note_hashed(RawChunk raw) {
+    raw.hash_from = raw.hash_to = raw.nuls_after = 0;
+    spare_raws_.push_back(std::move(raw));
+    ++hashed_;
+    hashing_ = false;
+    room_changed_.notify_one();
   }
 
   void stop() {
@@ -364,6 +388,8 @@ class CsvSource final : public RowSource {
   std::vector<ParsedChunk> spare_chunks_;
   std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
   std::size_t room_ = 2;
+  int parsing_ = 0;        // workers between their read and their rows
+  bool starving_ = false;  // someone waits for the next chunk
   bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false;
 };
 
