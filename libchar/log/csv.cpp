@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/sha256_blocks.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/csv_dialect.hpp"
 #include "libchar/log/csv_feed.hpp"
@@ -49,6 +50,7 @@ class CsvSource final : public RowSource {
     const bool small =
         feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
+    goes_along_ = feed_.hashes_along();
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
   }
@@ -242,10 +244,7 @@ class CsvSource final : public RowSource {
     std::unique_lock lock(mutex_);
     if (ended_) return false;
     spare_chunks_.push_back(std::move(chunk));
-    starving_ = done_.count(delivered_) == 0;
-    if (starving_) room_changed_.notify_one();
     done_changed_.wait(lock, [&] { return done_.count(delivered_) > 0; });
-    starving_ = false;
     auto node = done_.extract(delivered_);
     ++delivered_;
     room_changed_.notify_one();
@@ -268,9 +267,9 @@ class CsvSource final : public RowSource {
         // Neither the parsed chunks nor those that wait for their hash may pile up.
         room_changed_.wait(lock, [&] {
           const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
-          // Hashing goes along with parsing only for the chunk whose turn it is: others start early
-          // only when someone waits for them.
-          const bool turn = !feed_.hashes_along() || parsing_ == 0 || starving_;
+          // A chunk can be hashed along with its parsing only when its turn has come, and what
+          // others have parsed by then costs its hash on top.
+          const bool turn = !goes_along_ || parsing_ == 0;
           return stop_ || exhausted_ || (!reading_ && room && turn);
         });
         if (stop_ || exhausted_) return;
@@ -309,9 +308,13 @@ class CsvSource final : public RowSource {
           item.failure = std::current_exception();
         }
       }
+      // Rows that are not plain take no hash along: then all workers parse at once.
+      const bool along_enough =
+          hashing && 2 * (along->end - along->next) <= static_cast<std::ptrdiff_t>(raw.size);
       if (hashing) feed_.end_hash(raw);
       {
         const std::lock_guard lock(mutex_);
+        if (hashing) goes_along_ = along_enough;
         done_.emplace(sequence, std::move(item));
         if (hashing)
           note_hashed(std::move(raw));
@@ -388,9 +391,8 @@ class CsvSource final : public RowSource {
   std::vector<ParsedChunk> spare_chunks_;
   std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
   std::size_t room_ = 2;
-  int parsing_ = 0;        // workers between their read and their rows
-  bool starving_ = false;  // someone waits for the next chunk
-  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false;
+  int parsing_ = 0;  // workers between their read and their rows
+  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, goes_along_ = false;
 };
 
 }  // namespace
