@@ -41,6 +41,7 @@ class CsvSource final : public RowSource {
     words_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
+    info_.rows = expected_rows(head);
     feed_.start_at(dialect_.data_offset);
     next_line_ = dialect_.first_data_line;
     info_.bytes = feed_.size();
@@ -145,6 +146,17 @@ class CsvSource final : public RowSource {
  private:
   static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  // As many rows as there would be if all were as long as those in the head.
+  std::uint64_t expected_rows(std::string_view head) const {
+    const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
+    const auto lines = static_cast<std::uint64_t>(
+        std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (body.empty() || feed_.size() <= dialect_.data_offset) return 0;
+    return static_cast<std::uint64_t>(static_cast<double>(feed_.size() - dialect_.data_offset) /
+                                      static_cast<double>(body.size()) *
+                                      static_cast<double>(lines));
   }
 
   // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
