@@ -15,6 +15,7 @@ void add_fit(CLI::App& app, Session& session);
 void add_model(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
 void add_replay(CLI::App& app, Session& session);
+void add_compare(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 
 /// The table of verbs.
@@ -27,6 +28,7 @@ inline void add_verbs(CLI::App& app, Session& session) {
   add_model(app, session);
   add_simulate(app, session);
   add_replay(app, session);
+  add_compare(app, session);
   add_convert(app, session);
 }
 

@@ -1,21 +1,19 @@
 // report.html: one page that carries its data, scripts and styles, and asks for nothing from
 // anywhere.
 //
-// The content security policy names each script and the style by its SHA-256, so that nothing else
-// can run even if an escape were forgotten. The page holds no time: the same characterization gives
-// the same bytes.
+// The page holds no time: the same characterization gives the same bytes.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/assets.hpp"
 #include "libchar/report/escape.hpp"
+#include "libchar/report/html_page.hpp"
 #include "libchar/report/html_parts.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/model_curve.hpp"
@@ -25,54 +23,6 @@
 
 namespace libchar {
 namespace {
-
-int hexadecimal(char c) {
-  return c <= '9' ? c - '0' : c - 'a' + 10;
-}
-
-// 'sha256-BASE64' of an inline script or style, as a content security policy wants it.
-std::string policy_hash(std::string_view content) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  Sha256 sha;
-  sha.update(content);
-  const std::string hex = sha.finish();
-  std::string out = "'sha256-";
-  for (std::size_t i = 0; i < 64;
-       i += 6) {  // 6 hexadecimal digits are 24 bits; the last group has 16
-    std::uint32_t bits = 0;
-    const std::size_t digits = std::min<std::size_t>(6, 64 - i);
-    for (std::size_t k = 0; k < digits; ++k)
-      bits |= static_cast<std::uint32_t>(hexadecimal(hex[i + k])) << (20 - 4 * k);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += k * 6 < digits * 4 ? kDigits[(bits >> (18 - 6 * k)) & 63U] : '=';
-  }
-  return out + "'";
-}
-
-std::string head(const Characterization& result) {
-  const std::string policy = fmt::format(
-      "default-src 'none'; script-src {} {}; style-src {}; img-src data:; base-uri 'none'; "
-      "form-action 'none'",
-      policy_hash(chart_js()),
-      policy_hash(page_js()),
-      policy_hash(page_css()));
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-      "name=\"referrer\" content=\"no-referrer\">\n"
-      "<meta name=\"generator\" content=\"sensorchar {}\">\n<title>Sensor noise: "
-      "{}</title>\n<style>{}</style>\n"
-      "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and "
-      "@kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both "
-      "follows.\n\n{}-->\n</head>\n",
-      policy,
-      version(),
-      html_text(result.log.file),
-      page_css(),
-      html_comment(chart_js_licence()));
-}
 
 std::string facts(const Characterization& result) {
   const LogInfo& log = result.log;
@@ -168,7 +118,8 @@ std::string overview(const Characterization& result) {
     out += overview_row(result.channels[i], i, result.log.time.rate_hz);
   return out +
          "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
-         "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or contradicts it. "
+         "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or "
+         "contradicts it. "
          "All else stands with each channel.</p>\n</section>\n";
 }
 
@@ -194,47 +145,6 @@ std::string time_base(const LogInfo& log) {
   return out + "</tbody></table>\n";
 }
 
-std::string repairs(const LogInfo& log) {
-  std::string out = "<h3>Repairs and warnings</h3>\n";
-  if (log.warnings.empty()) return out + "<p>None.</p>\n";
-  out += "<table>\n" + table_head({"Kind", "What", "Count", "First places"});
-  for (const Warning& w : log.warnings.list()) {
-    std::string places;
-    for (const std::string& place : w.places) places += (places.empty() ? "" : ", ") + place;
-    out += table_row({w.code, w.message, people_count(w.count), places});
-  }
-  return out + "</tbody></table>\n";
-}
-
-std::string command_line(const std::vector<std::string>& command) {
-  std::string out;
-  for (const std::string& word : command) {
-    const bool plain =
-        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;!#~") == std::string::npos;
-    std::string quoted = word;
-    if (!plain) {
-      for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
-        quoted.replace(at, 1, "'\\''");
-      quoted = "'" + quoted + "'";
-    }
-    out += (out.empty() ? "" : " ") + quoted;
-  }
-  return out;
-}
-
-// The line breaks of the document are ours; its strings are not.
-std::string settings(const Json& document) {
-  if (document.is_null() || document.empty()) return "";
-  std::string out = "<details><summary>Effective settings</summary>\n<pre>";
-  const std::string text = with_valid_text(document).dump(2);
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += html_text(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
-  return out + "</pre>\n</details>\n";
-}
-
 std::string provenance(const Characterization& result) {
   const LogInfo& log = result.log;
   std::string out =
@@ -253,8 +163,8 @@ std::string provenance(const Characterization& result) {
     out += "<h4>How the file was understood</h4>\n" + bullet_list(log.dialect, "plain");
   if (!log.guesses.empty())
     out += "<h4>Guessed, not read</h4>\n" + bullet_list(log.guesses, "cautions");
-  out += "</div>\n<div>\n" + time_base(log) + repairs(log) + "</div>\n</div>\n";
-  out += settings(result.settings);
+  out += "</div>\n<div>\n" + time_base(log) + warnings_part(log.warnings) + "</div>\n</div>\n";
+  out += settings_details(result.settings);
   return out + "</section>\n";
 }
 
@@ -267,23 +177,14 @@ ChannelResult in_usual_spelling(ChannelResult channel) {
 }
 
 std::string page_of(const Characterization& result, const std::string& data) {
-  std::string out = head(result);
-  out += "<body>\n<header>\n<h1>Sensor noise <span class=\"unit\">" + html_text(result.log.file) +
-         "</span></h1>\n"
-         "<button id=\"download\" type=\"button\" hidden>Download the numbers "
-         "(JSON)</button>\n</header>\n"
-         "<noscript><p class=\"noscript\">The plots need JavaScript. Every number stands in the "
-         "tables.</p></noscript>\n<main>\n";
-  out += overview(result);
+  std::string body = overview(result);
   for (std::size_t i = 0; i < result.channels.size(); ++i)
-    out += channel_section(result.channels[i], result.log, i);
-  out += provenance(result);
-  out += "</main>\n<footer>Written by sensorchar " + std::string(version()) +
-         ". Plots: Chart.js, MIT licence (in the source of this page).</footer>\n";
-  out += "<script id=\"report-data\" type=\"application/json\">" + data + "</script>\n";
-  out += "<script>" + std::string(chart_js()) + "</script>\n<script>" + std::string(page_js()) +
-         "</script>\n</body>\n</html>\n";
-  return out;
+    body += channel_section(result.channels[i], result.log, i);
+  body += provenance(result);
+  return html_page(
+      {"Sensor noise", result.log.file, std::string(page_js()), std::string(page_css())},
+      body,
+      data);
 }
 
 }  // namespace

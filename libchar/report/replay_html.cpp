@@ -1,13 +1,305 @@
+// report.html of a replay: which algorithm to use, what it costs, and why one may believe it.
+
 #include "libchar/report/replay_html.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/core/version.hpp"
+#include "libchar/report/assets.hpp"
 #include "libchar/report/escape.hpp"
-#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/html_page.hpp"
+#include "libchar/report/html_parts.hpp"
+#include "libchar/report/people.hpp"
+#include "libchar/report/replay_json.hpp"
+#include "libchar/report/replay_tables.hpp"
+#include "libchar/report/replay_verdict.hpp"
+#include "libchar/report/replay_words.hpp"
 
 namespace libchar {
+namespace {
 
-std::string replay_html(const ReplayResult& result) {
-  return "<!doctype html><meta charset=\"utf-8\"><pre>" + html_text(replay_markdown(result)) +
-         "</pre>";
+std::string name_of_scene(const ReplayResult& r) {
+  return r.scene.name.empty() ? r.scene.file : r.scene.name;
+}
+
+std::string facts(const ReplayResult& r) {
+  std::string out = fmt::format(
+      "<p class=\"facts\"><b>{}</b> sensors · <b>{}</b> instants at <b>{}</b> Hz · <b>{}</b>",
+      r.sensors.size(),
+      people_count(r.instants),
+      significant(r.rate_hz, 6),
+      html_text(people_seconds(static_cast<double>(r.instants) / r.rate_hz)));
+  if (r.has_reference) {
+    out += " · reference: " + html_text(r.reference_use);
+    for (const InputResult& input : r.inputs)
+      if (std::isfinite(input.optimum_rmse))
+        out += fmt::format(" · optimum{} RMSE <b>{}</b>",
+                           r.inputs.size() > 1 ? " of " + html_text(input.name) : "",
+                           html_text(with_unit(input.optimum_rmse, 4, usual_unit(input.unit))));
+  } else {
+    out += " · <b>no reference</b>";
+  }
+  if (r.lag_estimated)
+    out += " · the sensors lag the reference by <b>" + html_text(people_seconds(r.lag_s)) +
+           "</b> (estimated)";
+  return out + "</p>\n";
+}
+
+std::string overview(const ReplayResult& r) {
+  std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
+  for (const std::string& sentence : verdict_sentences(r, true))
+    out += "<p>" + html_text(sentence) + "</p>\n";
+  out += "</div>\n" + facts(r) + ranking_table(r);
+  out +=
+      r.has_reference
+          ? "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
+            "Regret: "
+            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1. “× best”: "
+            "interval of "
+            "the ratio of RMSEs on the same resampled stretches; when it holds 1 the difference is "
+            "not "
+            "resolved. Converged: from here on the window RMS stays within a tenth of its final "
+            "level. "
+            "Bounds look at the reference of the run itself: they are for comparison. A click on a "
+            "column's head sorts by it.</p>\n"
+          : "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
+            "(the "
+            "estimate from all other sensors) − (the sensor left out), over all sensors; it holds "
+            "that "
+            "sensor's own noise. Split-array RMS: of half the difference between the estimates "
+            "from two "
+            "halves of the array. Neither sees an error that all sensors share.</p>\n";
+  return out + inputs_table(r) + "</section>\n";
+}
+
+std::string skipped(const ReplayResult& r) {
+  const auto all = skipped_algorithms(r);
+  std::string out = "<section class=\"part\" id=\"needs\">\n<h2>What each algorithm needs</h2>\n";
+  if (!all.empty()) {
+    std::vector<std::string> items;
+    for (const auto& [reason, labels] : all)
+      items.push_back(fmt::format("Skipped {}: {}", fmt::join(labels, ", "), reason));
+    out += bullet_list(items, "plain");
+  }
+  return out + "<details><summary>Needs, cost and source of all</summary>\n" + needs_table(r) +
+         "</details>\n</section>\n";
+}
+
+bool any(const ReplayResult& r, bool (*has)(const AlgorithmResult& a)) {
+  return std::any_of(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+    return a.ran && has(a);
+  });
+}
+
+std::string cost_plots(const ReplayResult& r) {
+  if (!any(r, [](const AlgorithmResult& a) { return a.rmse > 0; })) return "";
+  const std::string name = name_of_scene(r), unit = score_unit(r);
+  std::string plots;
+  if (any(r, [](const AlgorithmResult& a) { return a.rmse > 0 && a.ns_per_sample > 0; }))
+    plots += plot_figure(
+        "cost-time",
+        0,
+        {"Error against run time",
+         score_name(r),
+         unit,
+         "Lower and further left is better. Dashed: the Pareto front, on which no method is "
+         "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
+         "methods."},
+        name);
+  if (any(r,
+          [](const AlgorithmResult& a) { return a.rmse > 0 && a.peak_bytes && *a.peak_bytes > 0; }))
+    plots += plot_figure(
+        "cost-memory",
+        0,
+        {"Error against memory",
+         score_name(r),
+         unit,
+         "Peak of the memory from the heap, over learning and run. Methods that take none "
+         "have no place on this axis; the table has them."},
+        name);
+  return plots.empty() ? ""
+                       : "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n<div "
+                         "class=\"plots cost\">\n" +
+                             plots + "</div>\n</section>\n";
+}
+
+std::string of_input(const ReplayResult& r, std::size_t j) {
+  return r.inputs.size() > 1 && j < r.inputs.size() ? " of " + r.inputs[j].name : "";
+}
+
+std::string window_plots(const ReplayResult& r) {
+  std::string out;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) {
+    bool some = false;
+    for (const AlgorithmResult& a : r.algorithms)
+      some = some || (j < a.inputs.size() && !a.inputs[j].window_rms.empty());
+    if (some)
+      out += plot_figure(
+          "window",
+          j,
+          {"RMS of the error in a window" + of_input(r, j),
+           "window RMS",
+           usual_unit(r.inputs[j].unit),
+           fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
+                       "in each bin of the plot.",
+                       people_seconds(r.window_s))},
+          name_of_scene(r));
+  }
+  return out;
+}
+
+std::string track_plots(const ReplayResult& r) {
+  const std::string name = name_of_scene(r);
+  const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
+  std::string out;
+  if (any(r, [](const AlgorithmResult& a) { return a.weights && a.weights->cols() == 1; }))
+    out += plot_figure(
+        "weights",
+        0,
+        {"Weights", "weight", "", "A line a sensor; band: smallest and largest in each bin."},
+        name);
+  if (any(r, [](const AlgorithmResult& a) { return a.variances.has_value(); }))
+    out += plot_figure(
+        "variances",
+        0,
+        {"Noise variances as estimated",
+         "variance",
+         unit.empty() ? "" : "(" + unit + ")²",
+         r.has_reference
+             ? "Dotted: mean square error of the sensor over the run, its bias included."
+             : "A line a sensor; band: smallest and largest in each bin."},
+        name);
+  if (!r.faults.empty() || any(r, [](const AlgorithmResult& a) { return a.watches_faults; }))
+    out += plot_figure(
+        "faults",
+        0,
+        {"Faults",
+         "sensor",
+         "",
+         "Broad bars: faults that the scene knows. Narrow bars: the sensor was taken out."},
+        name);
+  return out;
+}
+
+std::string time_plots(const ReplayResult& r) {
+  std::string plots = window_plots(r) + track_plots(r);
+  std::string allan;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) {
+    bool some = false;
+    for (const AlgorithmResult& a : r.algorithms)
+      some = some || (j < a.inputs.size() && !a.inputs[j].allan.points.empty());
+    if (some)
+      allan += plot_figure(
+          "error-allan",
+          j,
+          {"Allan deviation of the error" + of_input(r, j),
+           "overlapping Allan deviation",
+           usual_unit(r.inputs[j].unit),
+           "What averaging would remove falls with τ; what stays level or rises is drift."},
+          name_of_scene(r));
+  }
+  if (plots.empty() && allan.empty()) return "";
+  std::string out =
+      "<section class=\"part\" id=\"time\">\n<h2>Over time</h2>\n<div "
+      "id=\"stretch-place\"></div>\n";
+  if (!r.inputs.empty()) out += "<div id=\"shown-place\"></div>\n";
+  out += "<div class=\"plots over-time\">\n" + plots + "</div>\n";
+  if (!plots.empty())
+    out +=
+        "<p class=\"note\">Drag across a plot to look at a stretch; a double click shows the whole "
+        "run.</p>\n";
+  if (!allan.empty()) out += "<div class=\"plots\">\n" + allan + "</div>\n";
+  return out + weights_table(r) + "</section>\n";
+}
+
+std::string faults(const ReplayResult& r) {
+  const std::string table = faults_table(r);
+  return table.empty()
+             ? ""
+             : "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + table + "</section>\n";
+}
+
+std::string sensors(const ReplayResult& r) {
+  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensors_table(r) +
+         blind_table(r) + "</section>\n";
+}
+
+Warnings all_warnings(const ReplayResult& r) {
+  Warnings out = r.warnings;
+  for (const LogInfo& log : r.logs) out.merge(log.warnings);
+  return out;
+}
+
+std::string remarks(const ReplayResult& r) {
+  std::vector<std::string> items;
+  for (const AlgorithmResult& a : r.algorithms)
+    for (const Warning& w : a.remarks.list())
+      items.push_back(a.label + ": " + w.message +
+                      (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
+  return items.empty() ? ""
+                       : "<h3>What the algorithms remark</h3>\n" + bullet_list(items, "cautions");
+}
+
+std::string inputs(const ReplayResult& r) {
+  std::string out = "<h3>Input</h3>\n<table class=\"facts\"><tbody>\n";
+  out += table_row({"Scene", r.scene.file});
+  if (r.scene.simulate)
+    out += table_row({"Simulated", fmt::format("seed {}", r.scene.simulate->seed)});
+  for (const LogInfo& log : r.logs) {
+    out += table_row({"File",
+                      log.file + " (" + log.format + ", " + people_count(log.bytes) + " bytes, " +
+                          people_count(log.rows) + " rows)"});
+    out += "<tr><th scope=\"row\">SHA-256</th><td class=\"hash\">" +
+           html_text(log.sha256.empty() ? "not computed" : log.sha256) + "</td></tr>\n";
+  }
+  if (r.learning)
+    out += table_row({"Learning window", people_stretch(r.learning->from_s, r.learning->to_s)});
+  out += table_row(
+      {"Evaluation",
+       people_stretch(r.start_s, r.start_s + static_cast<double>(r.instants) / r.rate_hz)});
+  out += table_row({"Tool", "sensorchar " + std::string(version())});
+  return out + "<tr><th scope=\"row\">Command</th><td><code>" + html_text(command_line(r.command)) +
+         "</code></td></tr>\n</tbody></table>\n";
+}
+
+std::string provenance(const ReplayResult& r) {
+  std::string out =
+      "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"halves\">\n<div>\n" +
+      inputs(r) + "</div>\n<div>\n" + warnings_part(all_warnings(r)) + remarks(r) +
+      "</div>\n</div>\n";
+  if (!r.plan.empty())
+    out += "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
+           bullet_list(r.plan, "plain") +
+           fmt::format(
+               "<p class=\"note\">Done: {} passes over the samples, {} instants learnt, {} "
+               "fused{}; both "
+               "summed over algorithms.</p>\n",
+               r.work.passes,
+               people_count(r.work.learnt),
+               people_count(r.work.steps),
+               r.work.blind_steps > 0 ? ", " + people_count(r.work.blind_steps) +
+                                            " more for the scores without a reference"
+                                      : "") +
+           "</details>\n";
+  return out + settings_details(r.settings) + "</section>\n";
+}
+
+}  // namespace
+
+std::string replay_html(const ReplayResult& r) {
+  Json document = replay_json(r);
+  document.erase("measured");
+  return html_page({"Sensor fusion",
+                    name_of_scene(r),
+                    std::string(replay_page_js()),
+                    std::string(page_css()) + std::string(replay_page_css())},
+                   overview(r) + cost_plots(r) + time_plots(r) + faults(r) + sensors(r) +
+                       skipped(r) + provenance(r),
+                   json_in_script(document));
 }
 
 }  // namespace libchar

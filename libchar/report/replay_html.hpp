@@ -1,5 +1,5 @@
 #pragma once
-// report.html of a replay: one self-contained page.
+// report.html of a replay.
 
 #include <string>
 
@@ -7,6 +7,8 @@
 
 namespace libchar {
 
+/// One self-contained page: no network, opens from disk, prints. It carries the document of
+/// replay_json but for the time that the whole replay took.
 std::string replay_html(const ReplayResult& result);
 
 }  // namespace libchar

@@ -7,7 +7,9 @@
 #include "libchar/core/text.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
+#include "libchar/report/replay_timeline.hpp"
 #include "libchar/report/replay_verdict.hpp"
+#include "libchar/report/replay_words.hpp"
 
 namespace libchar {
 namespace {
@@ -98,7 +100,8 @@ Json inputs_json(const ReplayResult& result, const AlgorithmResult& algorithm) {
   Json out = Json::array();
   for (std::size_t j = 0; j < algorithm.inputs.size(); ++j) {
     const InputScore& input = algorithm.inputs[j];
-    Json one = {{"name", json_text(result.inputs[j].name)}};
+    Json one = {{"name", json_text(result.inputs[j].name)},
+                {"unit", json_text(result.inputs[j].unit)}};
     one.update(error_json(input.error));
     one["optimum_ratio"] = json_number(input.optimum_ratio);
     one["allan"] = allan_json(input.allan);
@@ -123,28 +126,15 @@ Json options_json(const fusion::Settings& settings) {
   return out;
 }
 
-Json needs_json(const fusion::Needs& needs) {
-  Json out = Json::array();
-  const auto add = [&](bool wanted, const std::string& what) {
-    if (wanted) out.push_back(what);
-  };
-  add(needs.min_channels > 1, "at least " + std::to_string(needs.min_channels) + " sensors");
-  add(needs.more_than_inputs > 0,
-      "more than " + std::to_string(needs.more_than_inputs) + " sensors an input");
-  add(needs.reference, "a reference in a learning window");
-  add(needs.reference_throughout, "the reference of the run itself");
-  add(needs.noise_levels, "noise levels");
-  add(needs.fault_free_start, "a start without faults");
-  add(needs.rate, "the sampling rate");
-  add(needs.tilt, "a gyroscope axis and two accelerometer axes");
-  return out;
+std::string sensor_name(const ReplayResult& result, std::size_t sensor) {
+  return sensor < result.sensors.size() ? json_text(result.sensors[sensor].name) : "";
 }
 
 Json faults_json(const ReplayResult& result, const AlgorithmResult& algorithm) {
   Json out = Json::array();
   for (const FoundFault& fault : algorithm.faults)
-    out.push_back({{"sensor", json_text(result.sensors[fault.sensor].name)},
-                   {"kind", fault.kind},
+    out.push_back({{"sensor", sensor_name(result, fault.sensor)},
+                   {"kind", json_text(fault.kind)},
                    {"from_s", json_number(fault.from_s)},
                    {"to_s", json_number(fault.to_s)}});
   return out;
@@ -163,21 +153,24 @@ Json answers_json(const AlgorithmResult& algorithm) {
 Json warnings_json(const Warnings& warnings) {
   Json out = Json::array();
   for (const Warning& w : warnings.list())
-    out.push_back({{"code", w.code},
+    out.push_back({{"code", json_text(w.code)},
                    {"message", json_text(w.message)},
                    {"count", w.count},
                    {"where", texts(w.places)}});
   return out;
 }
 
-Json algorithm_json(const ReplayResult& result, const AlgorithmResult& a) {
+// `merged`: neighbouring bins of the tracks that become one, for the size of the page.
+Json algorithm_json(const ReplayResult& result, const AlgorithmResult& a, std::size_t merged) {
+  // Without a reference there is no error to take the mean square of: see without_reference.
+  const bool errors = result.has_reference;
   Json out = {{"name", std::string(a.card->name)},
               {"label", json_text(a.label)},
               {"status", a.ran ? "ran" : "skipped"},
               {"why", a.ran ? Json(nullptr) : Json(json_text(a.why))},
               {"bound", a.bound},
-              {"rmse", json_number(a.rmse)},
-              {"rmse_ci95", interval(a.rmse_ci95)},
+              {"rmse", errors ? json_number(a.rmse) : Json(nullptr)},
+              {"rmse_ci95", errors ? interval(a.rmse_ci95) : Json(nullptr)},
               {"regret", json_number(a.regret)},
               {"as_good_as_best", a.as_good_as_best},
               {"ratio_to_best_ci95", a.ratio_to_best ? interval(*a.ratio_to_best) : Json(nullptr)},
@@ -189,18 +182,20 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmResult& a) {
               {"variances", variances_json(a.variances)},
               {"faults", faults_json(result, a)},
               {"faults_not_kept", a.faults_not_kept},
+              {"watches_faults", a.watches_faults},
               {"answers", answers_json(a)},
               {"weight_distance", json_number(a.weight_distance)},
               {"variance_error", json_number(a.variance_error)},
               {"inputs", inputs_json(result, a)},
               {"without_reference", blind_json(a.blind)},
-              {"weight_track", timeline_json(a.weight_track)},
-              {"variance_track", timeline_json(a.variance_track)},
+              {"weight_track", timeline_json(merged_bins(a.weight_track, merged))},
+              {"variance_track", timeline_json(merged_bins(a.variance_track, merged))},
               {"remarks", warnings_json(a.remarks)},
               {"options", options_json(a.settings)}};
   out["card"] = {{"title", std::string(a.card->title)},
                  {"source", std::string(a.card->source)},
-                 {"needs", needs_json(a.card->needs)},
+                 {"needs", texts(needs_in_words(*a.card))},
+                 {"learns_from_reference", a.card->needs.reference},
                  {"accepts_missing", a.card->needs.accepts_missing},
                  {"complexity", std::string(a.card->complexity)},
                  {"learning_complexity", std::string(a.card->learning_complexity)}};
@@ -218,7 +213,7 @@ Json sensors_json(const ReplayResult& result) {
     one["constant"] = s.constant;
     one["offset"] = json_number(s.offset);
     one["noise_variance"] = json_number(s.noise_variance);
-    one["noise_source"] = s.noise_source.empty() ? Json(nullptr) : Json(s.noise_source);
+    one["noise_source"] = s.noise_source.empty() ? Json(nullptr) : Json(json_text(s.noise_source));
     one["h"] = numbers(s.h);
     out.push_back(std::move(one));
   }
@@ -248,7 +243,7 @@ Json scene_json(const ReplayResult& result) {
 Json known_faults_json(const ReplayResult& result) {
   Json out = Json::array();
   for (const SensorFault& fault : result.faults)
-    out.push_back({{"sensor", json_text(result.sensors[fault.sensor].name)},
+    out.push_back({{"sensor", sensor_name(result, fault.sensor)},
                    {"kind", std::string(name_of(fault.kind))},
                    {"value", json_number(fault.value)},
                    {"from_s", json_number(fault.from_s)},
@@ -258,11 +253,48 @@ Json known_faults_json(const ReplayResult& result) {
 
 }  // namespace
 
+namespace {
+
+Json reference_json(const ReplayResult& result) {
+  if (!result.has_reference) return nullptr;
+  Json out = {{"use", json_text(result.reference_use)},
+              {"channels", Json::array()},
+              {"mean", false},
+              {"lag_s", json_number(result.lag_s)},
+              {"lag_estimated", result.lag_estimated}};
+  if (result.scene.reference) {
+    out["channels"] = texts(result.scene.reference->channels);
+    out["mean"] = result.scene.reference->mean;
+  }
+  return out;
+}
+
+void add_run(Json& out, const ReplayResult& result) {
+  out["rate_hz"] = json_number(result.rate_hz);
+  out["instants"] = result.instants;
+  out["start_s"] = json_number(result.start_s);
+  out["learning"] = result.learning ? window(*result.learning) : Json(nullptr);
+  out["evaluation"] = window(result.evaluation);
+  out["window_s"] = json_number(result.window_s);
+  out["reference"] = reference_json(result);
+  out["score"] = result.has_reference ? "rmse" : "leave_one_out_rms";
+  out["optimum_rmse"] =
+      result.inputs.empty() ? Json(nullptr) : json_number(result.inputs[0].optimum_rmse);
+  out["inputs"] = Json::array();
+  for (const InputResult& input : result.inputs)
+    out["inputs"].push_back({{"name", json_text(input.name)},
+                             {"unit", json_text(input.unit)},
+                             {"optimum_rmse", json_number(input.optimum_rmse)}});
+}
+
+}  // namespace
+
 Json replay_json_without_times(const ReplayResult& result) {
   Json out = replay_json(result);
-  out.erase("measured");
+  for (const char* key : {"measured", "command", "verdict_with_costs"}) out.erase(key);
   for (Json& algorithm : out["algorithms"])
-    for (const char* key : {"ns_per_sample", "learning_s", "peak_bytes"}) algorithm.erase(key);
+    for (const char* key : {"ns_per_sample", "learning_s", "peak_bytes", "on_front"})
+      algorithm.erase(key);
   return out;
 }
 
@@ -273,30 +305,21 @@ Json replay_json(const ReplayResult& result) {
   out["config"] = result.settings.is_null() ? Json::object() : result.settings;
   out["scene"] = scene_json(result);
   out["verdict"] = json_text(replay_verdict(result, false));
+  out["verdict_with_costs"] = json_text(replay_verdict(result, true));
   out["plan"] = texts(result.plan);
-  out["rate_hz"] = json_number(result.rate_hz);
-  out["instants"] = result.instants;
-  out["start_s"] = json_number(result.start_s);
-  out["learning"] = result.learning ? window(*result.learning) : Json(nullptr);
-  out["evaluation"] = window(result.evaluation);
-  out["window_s"] = json_number(result.window_s);
-  out["reference"] = result.has_reference ? Json{{"use", json_text(result.reference_use)},
-                                                 {"lag_s", json_number(result.lag_s)},
-                                                 {"lag_estimated", result.lag_estimated}}
-                                          : Json(nullptr);
-  out["optimum_rmse"] = json_number(result.inputs.at(0).optimum_rmse);
-  out["inputs"] = Json::array();
-  for (const InputResult& input : result.inputs)
-    out["inputs"].push_back({{"name", json_text(input.name)},
-                             {"unit", json_text(input.unit)},
-                             {"optimum_rmse", json_number(input.optimum_rmse)}});
+  add_run(out, result);
   out["sensors"] = sensors_json(result);
   out["faults"] = known_faults_json(result);
   out["best"] =
       result.best ? Json(json_text(result.algorithms[*result.best].label)) : Json(nullptr);
+  const std::size_t merged = track_divisor(result);
+  const ParetoFront front = pareto_front(result);
   out["algorithms"] = Json::array();
-  for (const AlgorithmResult& algorithm : result.algorithms)
-    out["algorithms"].push_back(algorithm_json(result, algorithm));
+  for (std::size_t i = 0; i < result.algorithms.size(); ++i) {
+    Json algorithm = algorithm_json(result, result.algorithms[i], merged);
+    algorithm["on_front"] = {{"time", bool(front.time[i])}, {"memory", bool(front.memory[i])}};
+    out["algorithms"].push_back(std::move(algorithm));
+  }
   out["measured"] = {{"seconds", json_number(result.seconds)},
                      {"passes", result.work.passes},
                      {"instants_learnt", result.work.learnt},

@@ -10,7 +10,8 @@ namespace libchar {
 /// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
 Json replay_json(const ReplayResult& result);
 
-/// The same with those keys null or absent: the same bytes for the same scene and options.
+/// The same without those keys, the fronts and the verdict that follow from them, and the command:
+/// the same bytes for the same scene and options.
 Json replay_json_without_times(const ReplayResult& result);
 
 }  // namespace libchar

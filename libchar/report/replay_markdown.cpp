@@ -11,16 +11,6 @@
 namespace libchar {
 namespace {
 
-// Names and paths are anybody's: no mark of theirs may become one of the page's.
-std::string plain(const std::string& text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 std::string number(double value, int digits = 4) {
   return std::isfinite(value) ? significant(value, digits) : "–";
 }
@@ -42,7 +32,7 @@ std::string with_reference(const ReplayResult& r) {
   for (const AlgorithmResult* a : ranked(r)) {
     const bool scored = !a->inputs.empty();
     out += fmt::format("| {}{}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       plain(a->label),
+                       markdown_text(a->label),
                        a->bound ? " (bound)" : "",
                        a->as_good_as_best && !a->bound ? " \\*" : "",
                        number(a->rmse),
@@ -64,7 +54,7 @@ std::string without_reference(const ReplayResult& r) {
       "|---|---|---|---|---|---|---|\n";
   for (const AlgorithmResult* a : ranked(r))
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
-                       plain(a->label),
+                       markdown_text(a->label),
                        a->as_good_as_best ? " \\*" : "",
                        number(a->rmse),
                        between(a->rmse_ci95),
@@ -82,14 +72,16 @@ std::string several_inputs(const ReplayResult& r) {
     out += fmt::format(
         "\n### {}\nOptimum {}.\n\n| algorithm | RMSE | 95 % | of the optimum "
         "|\n|---|---|---|---|\n",
-        plain(r.inputs[j].name),
-        people_error(r.inputs[j].optimum_rmse, plain(r.inputs[j].unit)));
-    for (const AlgorithmResult* a : ranked(r))
+        markdown_text(r.inputs[j].name),
+        people_error(r.inputs[j].optimum_rmse, markdown_text(r.inputs[j].unit)));
+    for (const AlgorithmResult* a : ranked(r)) {
+      if (j >= a->inputs.size()) continue;
       out += fmt::format("| {} | {} | {} | {} |\n",
-                         plain(a->label),
+                         markdown_text(a->label),
                          number(a->inputs[j].error.rmse),
                          between(a->inputs[j].error.rmse_ci95),
                          number(a->inputs[j].optimum_ratio));
+    }
   }
   return out;
 }
@@ -100,9 +92,9 @@ std::string sensors(const ReplayResult& r) {
       "|\n|---|---|---|---|---|---|---|\n";
   for (const SensorResult& s : r.sensors)
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
-                       plain(s.name),
+                       markdown_text(s.name),
                        s.constant ? " (constant)" : "",
-                       plain(s.unit),
+                       markdown_text(s.unit),
                        number(s.error.rmse),
                        number(s.error.bias, 2),
                        percent(s.missing),
@@ -123,14 +115,14 @@ std::string faults(const ReplayResult& r) {
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && a.watches_faults) {
       watching.push_back(&a);
-      out += fmt::format(" {}: found after | used again after |", plain(a.label));
+      out += fmt::format(" {}: found after | used again after |", markdown_text(a.label));
       line += "---|---|";
     }
   for (std::size_t f = 0; f < r.faults.size(); ++f) {
     const SensorFault& fault = r.faults[f];
     rows += fmt::format(
         "| {} {} {} from {} s{} |",
-        plain(r.sensors[fault.sensor].name),
+        markdown_text(r.sensors[fault.sensor].name),
         name_of(fault.kind),
         fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout ? ""
                                                                            : number(fault.value),
@@ -150,12 +142,46 @@ std::string faults(const ReplayResult& r) {
   return out + line + "\n" + rows;
 }
 
+std::string remarks(const ReplayResult& r) {
+  std::string out;
+  const auto add = [&](const Warnings& list, const std::string& of) {
+    for (const Warning& w : list.list())
+      out += fmt::format("- {}{}{}\n",
+                         of.empty() ? "" : markdown_text(of) + ": ",
+                         markdown_text(w.message),
+                         w.count > 1 ? fmt::format(" ({} ×)", w.count) : "");
+  };
+  add(r.warnings, "");
+  for (const LogInfo& log : r.logs) add(log.warnings, log.file);
+  // The remarks of an algorithm begin with its name.
+  for (const AlgorithmResult& a : r.algorithms) add(a.remarks, "");
+  return out.empty() ? "" : "\n## Warnings\n\n" + out;
+}
+
 }  // namespace
+
+std::string markdown_text(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string markdown_table(const std::vector<std::string>& head,
+                           const std::vector<std::vector<std::string>>& rows) {
+  std::string out = fmt::format("| {} |\n|", fmt::join(head, " | "));
+  for (std::size_t i = 0; i < head.size(); ++i) out += "---|";
+  out += "\n";
+  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
+  return out;
+}
 
 std::string replay_markdown(const ReplayResult& r) {
   std::string out = fmt::format("# {}\n\n{}\n\n",
-                                plain(r.scene.name.empty() ? r.scene.file : r.scene.name),
-                                plain(replay_verdict(r)));
+                                markdown_text(r.scene.name.empty() ? r.scene.file : r.scene.name),
+                                markdown_text(replay_verdict(r)));
   out += fmt::format("{} sensors, {} instants at {} Hz from {} s.",
                      r.sensors.size(),
                      r.instants,
@@ -164,7 +190,7 @@ std::string replay_markdown(const ReplayResult& r) {
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     out += fmt::format(" Optimum of {}: RMSE {}.",
                        optimum_of(r),
-                       people_error(r.inputs[0].optimum_rmse, plain(r.inputs[0].unit)));
+                       people_error(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
   if (r.lag_estimated)
     out +=
         fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
@@ -175,10 +201,11 @@ std::string replay_markdown(const ReplayResult& r) {
   if (const auto skipped = skipped_algorithms(r); !skipped.empty()) {
     out += "\n## Skipped\n\n";
     for (const SkippedAlgorithms& s : skipped)
-      out += fmt::format(
-          "- {}: {}\n", plain(fmt::format("{}", fmt::join(s.labels, ", "))), plain(s.reason));
+      out += fmt::format("- {}: {}\n",
+                         markdown_text(fmt::format("{}", fmt::join(s.labels, ", "))),
+                         markdown_text(s.reason));
   }
-  return out + several_inputs(r) + sensors(r) + faults(r);
+  return out + several_inputs(r) + sensors(r) + faults(r) + remarks(r);
 }
 
 }  // namespace libchar

@@ -1,5 +1,5 @@
 #pragma once
-// A replay in one sentence or two: which algorithm to use, and how sure that is.
+// A replay in a few sentences: which algorithm to use, and how sure that is.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,11 @@
 
 namespace libchar {
 
-/// `costs`: with what a clock measured, which differs from run to run.
+/// The sentences, the first says which to use. Bounds are never recommended; a method that learns
+/// from a reference is named as such, with the best one that does not; unresolved differences are
+/// said to be so. `costs`: with what was measured, which differs from run to run.
+std::vector<std::string> verdict_sentences(const ReplayResult& result, bool costs);
+/// All of them in a row.
 std::string replay_verdict(const ReplayResult& result, bool costs = true);
 
 /// Why algorithms did not run: a reason and the labels it holds for.

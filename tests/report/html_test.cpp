@@ -22,7 +22,7 @@ std::size_t count(const std::string& text, const std::string& word) {
 
 // The page without the parts that are ours byte for byte.
 std::string without_assets(std::string page) {
-  for (const std::string_view asset : {chart_js(), page_js(), page_css()}) {
+  for (const std::string_view asset : {chart_js(), page_common_js(), page_js(), page_css()}) {
     const std::size_t at = page.find(asset);
     REQUIRE(at != std::string::npos);
     page.erase(at, asset.size());

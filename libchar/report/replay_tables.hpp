@@ -1,0 +1,26 @@
+#pragma once
+// The tables of a replay's page (replay_html.cpp puts them together). Every text goes through
+// escape.hpp.
+
+#include <string>
+
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+/// All algorithms that ran, best first: scores, costs.
+std::string ranking_table(const ReplayResult& result);
+/// Card facts of every algorithm, with the sentence of those that did not run.
+std::string needs_table(const ReplayResult& result);
+/// RMSE of each input; "" for one input.
+std::string inputs_table(const ReplayResult& result);
+/// Per sensor: error, noise, quality.
+std::string sensors_table(const ReplayResult& result);
+/// Leave-one-out of each sensor; "" with a reference.
+std::string blind_table(const ReplayResult& result);
+/// Final weights and variances; "" when no algorithm has any.
+std::string weights_table(const ReplayResult& result);
+/// Faults that the scene knows against what each algorithm found; "" without either.
+std::string faults_table(const ReplayResult& result);
+
+}  // namespace libchar
