@@ -105,17 +105,19 @@
   };
 
   // Only what is drawn has an entry; toggling is done by the boxes above the plots.
-  function plainLegend() {
+  function plainLegend(dashed) {
     const all = legend();
     all.onClick = () => {};
     const labels = all.labels.generateLabels;
     all.labels.generateLabels = (chart) => labels(chart).filter((item) => item.text && !item.hidden);
     all.maxHeight = 110;
+    // Long enough to tell the dashes apart.
+    if (dashed) all.labels.pointStyleWidth = 36;
     return all;
   }
   function chart(sets, x, y, plugins) {
     const all = options(x, y);
-    all.plugins.legend = plainLegend();
+    all.plugins.legend = plainLegend(!sets.some((set) => set.marks));
     return { type: "line", data: { datasets: sets }, plugins: [whitePaper].concat(plugins || []), options: all };
   }
 

@@ -178,9 +178,8 @@ std::string input_row(const ReplayResult& r, const AlgorithmResult& a, std::size
 std::string input_table(const ReplayResult& r, std::size_t j) {
   const InputResult& input = r.inputs[j];
   const std::string unit = usual_unit(input.unit);
-  std::string out = "<div>\n<h3>Input " + html_text(input.name) +
-                    "</h3>\n<p class=\"note\">Optimum of " + optimum_of(r) + ": RMSE " +
-                    html_text(with_unit(input.optimum_rmse, 4, unit)) +
+  std::string out = "<h3>Input " + html_text(input.name) + "</h3>\n<p class=\"note\">Optimum of " +
+                    optimum_of(r) + ": RMSE " + html_text(with_unit(input.optimum_rmse, 4, unit)) +
                     "</p>\n<div class=\"wide\"><table class=\"ranking\">\n" +
                     table_head({"Algorithm",
                                 "RMSE" + (unit.empty() ? "" : ", " + unit),
@@ -196,16 +195,16 @@ std::string input_table(const ReplayResult& r, std::size_t j) {
     return std::isfinite(x) && (!std::isfinite(y) || x < y);
   });
   for (const AlgorithmResult* a : scored) out += input_row(r, *a, j);
-  return out + "</tbody></table></div>\n</div>\n";
+  return out + "</tbody></table></div>\n";
 }
 
 }  // namespace
 
 std::string inputs_table(const ReplayResult& r) {
   if (r.inputs.size() < 2 || !r.has_reference) return "";
-  std::string out = "<div class=\"halves\">\n";
+  std::string out;
   for (std::size_t j = 0; j < r.inputs.size(); ++j) out += input_table(r, j);
-  return out + "</div>\n";
+  return out;
 }
 
 std::string sensors_table(const ReplayResult& r) {
