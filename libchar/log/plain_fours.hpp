@@ -45,8 +45,9 @@ LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
   std::uint32_t length[4], sign[4], foreign = 0;
   std::int32_t room = 0;  // negative when a field has more than 16 characters
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::uint32_t from = stop[k * width - 1] + 1;
-    std::uint32_t to = stop[k * width];
+    const std::uint32_t* const end = stop + k * width;
+    const std::uint32_t from = end[-1] + 1;
+    std::uint32_t to = *end;
     foreign |= static_cast<unsigned char>(text[to]) ^ separator;
     if (kLast && column.crlf)
       foreign |= static_cast<unsigned char>(text[--to]) ^ std::uint32_t{'\r'};
