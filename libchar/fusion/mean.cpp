@@ -31,7 +31,7 @@ Estimate Mean::plain(const Sample& y) const {
   }
   if (i < channels_) a += v[i] - base;
   const double sum = a + b;
-  if (std::isfinite(sum))
+  if (std::abs(sum) <= kLargestSample)
     return Estimate::scalar(base + sum / static_cast<double>(channels_), variance_);
   return of_present(y);
 }

@@ -95,9 +95,9 @@ TEST_CASE("tilt-kalman: everything missing is prediction, with a variance that c
     REQUIRE(out.variance(0, k) > out.variance(0, k - 1));
     REQUIRE(std::abs(out.x(0, k) - gap.truth(0, k)) < 3 * std::sqrt(out.variance(0, k)));
   }
-  // Half a second of samples later it is as good as before.
+  // A few seconds of samples later it is as good as before.
   CHECK(std::abs(out.x(0, 1100) - gap.truth(0, 1100)) < 0.02);
-  CHECK(out.variance(0, 1100) < 1.5 * out.variance(0, 990));
+  CHECK(out.variance(0, 1500) < 1.1 * out.variance(0, 990));
 }
 
 TEST_CASE("tilt: silent accelerometers are no update") {
