@@ -82,7 +82,7 @@ class FaultWatch {
     out_[i] = 1;
     calm_[i] = 0;
     ++count_out_;
-    log_.note({sample, static_cast<int>(i), true});
+    log_.note({sample, static_cast<int>(i), true, FaultRule::residual_moment});
   }
   /// What the others have seen was the fault of another: they start anew.
   void forget(std::size_t i) {
@@ -103,7 +103,7 @@ class FaultWatch {
     out_[i] = 0;
     --count_out_;
     forget(i);
-    log_.note({sample, static_cast<int>(i), false});
+    log_.note({sample, static_cast<int>(i), false, FaultRule::residual_moment});
   }
   const FaultLog& log() const { return log_; }
 

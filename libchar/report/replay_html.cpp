@@ -185,7 +185,7 @@ std::string track_plots(const ReplayResult& r) {
                   ? " Dotted: mean square error of the sensor over the run, its bias included."
                   : "")},
         name);
-  if (!r.faults.empty() || any(r, [](const AlgorithmResult& a) { return a.watches_faults; }))
+  if (!r.faults.empty() || any(r, [](const AlgorithmResult& a) { return !a.faults.empty(); }))
     out += plot_figure(
         "faults",
         0,
@@ -218,7 +218,7 @@ std::string time_plots(const ReplayResult& r) {
   std::string out =
       "<section class=\"part\" id=\"time\">\n<h2>Over time</h2>\n<div "
       "id=\"stretch-place\"></div>\n";
-  if (!r.inputs.empty()) out += "<div id=\"shown-place\"></div>\n";
+  if (r.has_reference) out += "<div id=\"shown-place\"></div>\n";
   out += "<div class=\"plots over-time\">\n" + plots + "</div>\n";
   if (!plots.empty())
     out +=
@@ -273,7 +273,7 @@ std::string remarks(const ReplayResult& r) {
   std::vector<std::string> items;
   for (const AlgorithmResult& a : r.algorithms)
     for (const Warning& w : a.remarks.list())
-      items.push_back(a.label + ": " + w.message +
+      items.push_back((w.message.starts_with(a.label) ? "" : a.label + ": ") + w.message +
                       (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
   return items.empty() ? ""
                        : "<h3>What the algorithms remark</h3>\n" + bullet_list(items, "cautions");

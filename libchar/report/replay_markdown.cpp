@@ -99,7 +99,7 @@ std::string sensors(const ReplayResult& r) {
                        number(s.error.bias, 2),
                        percent(s.missing),
                        s.noise_variance ? number(std::sqrt(*s.noise_variance)) : "–",
-                       s.noise_source.empty() ? "–" : s.noise_source);
+                       s.noise_source.empty() ? "–" : markdown_text(s.noise_source));
   return out;
 }
 
@@ -153,8 +153,12 @@ std::string remarks(const ReplayResult& r) {
   };
   add(r.warnings, "");
   for (const LogInfo& log : r.logs) add(log.warnings, log.file);
-  // The remarks of an algorithm begin with its name.
-  for (const AlgorithmResult& a : r.algorithms) add(a.remarks, "");
+  for (const AlgorithmResult& a : r.algorithms)
+    for (const Warning& w : a.remarks.list()) {
+      Warnings one;
+      one.add(w.code, w.message, "", w.count);
+      add(one, w.message.starts_with(a.label) ? "" : a.label);
+    }
   return out.empty() ? "" : "\n## Warnings\n\n" + out;
 }
 

@@ -130,7 +130,7 @@
       chart.data.datasets.forEach((set, index) => {
         if (!set.named) return;
         chart.getDatasetMeta(index).data.forEach((mark, i) => {
-          marks.push({ x: mark.x, y: mark.y, a: set.data[i].a, dim: set.data[i].dim });
+          marks.push({ x: mark.x, y: mark.y, a: set.data[i].a, dim: set.data[i].dim, name: set.data[i].name });
           taken.push([mark.x - 6, mark.y - 6, mark.x + 6, mark.y + 6]);
         });
       });
@@ -141,7 +141,7 @@
       pen.strokeStyle = "rgba(255,255,255,0.9)";
       marks.forEach((p) => {
         pen.font = (p.a.label === report.best ? "700 " : p.dim ? "" : "600 ") + "12px system-ui, 'DejaVu Sans', sans-serif";
-        const w = pen.measureText(p.a.label).width;
+        const w = pen.measureText(p.name).width;
         const places = [[10, 0], [-10 - w, 0], [-w / 2, -15], [-w / 2, 15], [8, -13], [8, 13], [-8 - w, -13], [-8 - w, 13]];
         const free = places.map(([dx, dy]) => [p.x + dx, p.y + dy - 7, p.x + dx + w, p.y + dy + 7]).find((box) =>
           box[0] > area.left && box[2] < area.right && box[1] > area.top && box[3] < area.bottom &&
@@ -149,13 +149,15 @@
         if (!free) return;
         taken.push(free);
         pen.fillStyle = p.dim ? "#8a929b" : INK;
-        pen.strokeText(p.a.label, free[0], (free[1] + free[3]) / 2);
-        pen.fillText(p.a.label, free[0], (free[1] + free[3]) / 2);
+        pen.strokeText(p.name, free[0], (free[1] + free[3]) / 2);
+        pen.fillText(p.name, free[0], (free[1] + free[3]) / 2);
       });
       pen.restore();
     },
   };
 
+  // One method that diverged may not press all others together: beyond a thousand times the best, marks stand on the edge.
+  const LARGEST = 1000;
   // What the best fixed weights (or filter) of this run would have reached.
   const optimumOf = (input) => (report.inputs[input] ? report.inputs[input].optimum_rmse : null);
   function optimumLine(input, from, to, u) {
@@ -164,14 +166,16 @@
     return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: INK, backgroundColor: INK, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", people(y, 5) + " " + u] }];
   }
   function costChart(key, front, title, axis, tipLine) {
-    const points = order.filter((a) => positive(score(a)) && positive(a[key])).map((a) => ({ x: a[key], y: score(a), a, dim: !a.on_front[front] }));
+    const all = order.filter((a) => positive(score(a)) && positive(a[key]));
+    const top = LARGEST * minMax(all.map(score))[0];
+    const points = all.map((a) => ({ x: a[key], y: Math.min(score(a), top), a, dim: !a.on_front[front], name: a.label + (score(a) > top ? " ↑ " + people(score(a), 2) : "") }));
     const kinds = [
       { name: "needs no reference", of: (a) => !a.bound && !a.card.learns_from_reference, mark: "circle" },
       { name: "learns from a reference", of: (a) => !a.bound && a.card.learns_from_reference, mark: "rect" },
       { name: "bound: looks at the reference of the run", of: (a) => a.bound, mark: "triangle" },
     ];
     const tip = (p) => {
-      const out = [p.a.label, scoreName + " " + people(p.y, 5) + " " + unit];
+      const out = [p.a.label, scoreName + " " + people(score(p.a), 5) + " " + unit];
       if (p.a.regret !== null) out.push("regret " + people(100 * p.a.regret, 3) + " %");
       out.push(tipLine(p.x));
       if (p.a.bound) out.push("bound: not a method");
@@ -187,7 +191,8 @@
       };
     }).filter((set) => set.data.length);
     const [xMin, xMax] = padded(points.map((p) => p.x), 2.2);
-    const [yMin, yMax] = padded(points.map((p) => p.y), 1.35);
+    const [low, high] = minMax(points.map((p) => p.y));
+    const [yMin, yMax] = padded(points.map((p) => p.y), Math.max(1.2, Math.pow(high / low, 0.07)));
     // A staircase: what the methods on it do not reach lies below and left of it.
     const line = points.filter((p) => !p.dim).sort((p, q) => p.x - q.x).map(({ x, y }) => ({ x, y }));
     if (report.score === "rmse" && points.length) sets.push(...optimumLine(0, xMin, xMax, unit));

@@ -99,6 +99,11 @@ AlgorithmSummary algorithm(const MapReader& map) {
   out.bound = map.flag_or("bound", false);
   out.rmse = number_or_none(map, "rmse", kNotNegative);
   out.rmse_ci95 = interval_or_none(map, "rmse_ci95");
+  if (map.has("without_reference")) {
+    const MapReader blind = open_map(map, "without_reference");
+    out.rmse = number_or_none(blind, "leave_one_out_rms", kNotNegative);
+    out.rmse_ci95 = interval_or_none(blind, "leave_one_out_ci95");
+  }
   out.regret = number_or_none(map, "regret");
   out.ns_per_sample = map.number_or("ns_per_sample", kNone, kNotNegative);
   out.peak_bytes = map.number_or("peak_bytes", kNone, kNotNegative);

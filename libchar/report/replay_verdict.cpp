@@ -45,8 +45,9 @@ std::string regret_for_people(const ReplayResult& r, double regret) {
 
 // "RMSE 0.0331 rad/s (95 %: 0.0329 to 0.0333), 0.1 % above the optimum of fixed weights"
 std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
-  std::string out = fmt::format("{} {}",
+  std::string out = fmt::format("{} {}{}",
                                 r.has_reference ? "RMSE" : "leave-one-out RMS",
+                                r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "",
                                 people_error(a.rmse, r.inputs[0].unit));
   if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
     out += fmt::format(

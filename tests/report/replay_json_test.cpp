@@ -1,0 +1,134 @@
+#include "libchar/report/replay_json.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/report/replay_timeline.hpp"
+#include "libchar/report/replay_verdict.hpp"
+#include "libchar/report/replay_words.hpp"
+#include "tests/report/synthetic_replay.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+TEST_CASE("replay json: the keys that scripts rely on") {
+  const ReplayResult r = test::synthetic_replay();
+  const Json j = replay_json(r);
+  CHECK(j["format"] == "replay-report");
+  CHECK(j["version"] == 1);
+  CHECK(j["optimum_rmse"] == 0.033);
+  CHECK(j["input"][0]["sha256"] == r.logs[0].sha256);
+  REQUIRE(j["sensors"].size() == 5);
+  CHECK(j["sensors"][2]["name"] == "gyr_2");
+  CHECK(j["sensors"][2]["rmse"] == r.sensors[2].error.rmse);
+  REQUIRE(j["algorithms"].size() == fusion::algorithms().size());
+  const Json& a = j["algorithms"][0];
+  CHECK(a["name"] == "mean");
+  CHECK(a["status"] == "ran");
+  CHECK(a["rmse"] == r.algorithms[0].rmse);
+  CHECK(a["ns_per_sample"] == 3.0);
+  CHECK(a["peak_bytes"] == 200);
+  // One input: a flat list.
+  REQUIRE(a["weights"].size() == 5);
+  CHECK(a["weights"][0] == 0.2);
+  CHECK(a["faults"][0]["sensor"] == "gyr_1");
+  CHECK(a["faults"][0]["from_s"] == 40.02);
+  CHECK(a["faults"][1]["to_s"].is_null());
+  CHECK(a["answers"][1]["found_after_s"].is_null());
+  CHECK(j["faults"][2]["to_s"].is_null());
+  const Json& skipped = j["algorithms"].back();
+  CHECK(skipped["status"] == "skipped");
+  CHECK_THAT(skipped["why"].get<std::string>(), Contains("needs one gyroscope axis"));
+  CHECK(skipped["rmse"].is_null());
+}
+
+TEST_CASE("replay json: several inputs give weights a row a sensor") {
+  const Json j = replay_json(test::synthetic_replay(6, 2));
+  const Json& a = j["algorithms"][0];
+  REQUIRE(a["weights"].size() == 6);
+  CHECK(a["weights"][0].size() == 2);
+  CHECK(a["inputs"].size() == 2);
+  CHECK(a["inputs"][1]["name"] == "axis_1");
+}
+
+TEST_CASE("replay json: without a reference no figure is called RMSE") {
+  const Json j = replay_json(test::without_reference());
+  CHECK(j["score"] == "leave_one_out_rms");
+  CHECK(j["reference"].is_null());
+  const Json& a = j["algorithms"][0];
+  CHECK(a["rmse"].is_null());
+  CHECK(a["without_reference"]["leave_one_out_rms"].get<double>() > 0);
+  CHECK(a["without_reference"]["leave_one_out"][1].is_null());
+  CHECK(a["without_reference"]["split_array_rms"].get<double>() > 0);
+}
+
+TEST_CASE("replay json: what is no number is null, whatever the scene calls itself") {
+  for (const char* kind : {"plain", "nothing", "blind", "hostile", "inputs"}) {
+    INFO(kind);
+    const std::string text = dump_json(replay_json(test::synthetic_replay_of_kind(kind)));
+    CHECK_NOTHROW(parse_json(text, kind));
+  }
+  const Json j = replay_json(test::nothing_scored());
+  CHECK(j["best"].is_null());
+  CHECK(j["algorithms"][0]["rmse"].is_null());
+  CHECK(j["algorithms"][0]["peak_bytes"].is_null());
+}
+
+TEST_CASE("replay json: without times nothing of a clock or heap is left") {
+  ReplayResult a = test::synthetic_replay(), b = a;
+  b.seconds = 99;
+  b.command = {"elsewhere"};
+  for (AlgorithmResult& algorithm : b.algorithms) {
+    algorithm.ns_per_sample *= 1.7;
+    algorithm.learning_s *= 3;
+    if (algorithm.peak_bytes) *algorithm.peak_bytes += 64;
+  }
+  CHECK(replay_json(a) != replay_json(b));
+  CHECK(dump_json(replay_json_without_times(a)) == dump_json(replay_json_without_times(b)));
+}
+
+TEST_CASE("replay json: tracks of any number of algorithms fit a page, and keep their extremes") {
+  ReplayResult r = test::synthetic_replay(12);
+  r.algorithms[3].weight_track.high[4][123] = 7.5;
+  const std::size_t divisor = track_divisor(r);
+  CHECK(divisor > 1);
+  const Timeline merged = merged_bins(r.algorithms[3].weight_track, divisor);
+  CHECK(merged.time_s.size() == (400 + divisor - 1) / divisor);
+  CHECK(*std::max_element(merged.high[4].begin(), merged.high[4].end()) == 7.5);
+  CHECK(dump_json(replay_json(r)).size() < 4'000'000);
+}
+
+TEST_CASE("replay: the front holds exactly what no method beats in both") {
+  const ReplayResult r = test::synthetic_replay();
+  const ParetoFront front = pareto_front(r);
+  for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
+    const AlgorithmResult& a = r.algorithms[i];
+    bool beaten = !a.ran || a.bound;
+    for (const AlgorithmResult& b : r.algorithms)
+      beaten =
+          beaten || (b.ran && !b.bound && b.rmse < a.rmse && b.ns_per_sample < a.ns_per_sample);
+    INFO(a.label);
+    CHECK(front.time[i] == !beaten);
+  }
+}
+
+TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not told apart") {
+  ReplayResult r = test::synthetic_replay();
+  CHECK_THAT(replay_verdict(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
+  CHECK_THAT(replay_verdict(r, true), Contains("3 ns a sample"));
+  CHECK_THAT(replay_verdict(r, false), !Contains("ns a sample"));
+  // A taught method wins: the best untaught one is named as well.
+  for (AlgorithmResult& a : r.algorithms)
+    if (a.label == "least-squares") a.rmse = 0.02;
+  test::judge(r);
+  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
+  CHECK_THAT(replay_verdict(r), Contains("of the methods that need none mean is best"));
+  CHECK_THAT(replay_verdict(r), Contains("Every other method is worse"));
+  // A bound is never recommended, however good.
+  for (AlgorithmResult& a : r.algorithms)
+    if (a.bound) a.rmse = 0.001;
+  test::judge(r);
+  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
+  CHECK_THAT(replay_verdict(test::without_reference()), Contains("all sensors share"));
+  CHECK_THAT(replay_verdict(test::nothing_scored()), Contains("No algorithm has a score"));
+}
