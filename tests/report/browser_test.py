@@ -201,7 +201,7 @@ def check_controls(browser, page):
         browser.run(settled)
         expect(browser.run(ranges) == whole, f"{page}: 'whole run' did not bring it back")
         options = browser.run("return document.querySelectorAll('.controls option').length")
-        for i in range(options):
+        for i in range(min(options, 4)):
             browser.run(f"const s = document.querySelector('.controls select'); s.value = {i}; s.dispatchEvent(new Event('change'))")
             browser.run(settled)
     # Every column once each way: figures rise, then fall, and what has none stays last.
