@@ -304,8 +304,8 @@ std::string inputs(const ReplayResult& r) {
 std::string provenance(const ReplayResult& r) {
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"halves\">\n<div>\n" +
-      inputs(r) + "</div>\n<div>\n" + warnings_part(all_warnings(r)) + remarks(r) +
-      "</div>\n</div>\n";
+      inputs(r) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(all_warnings(r)) +
+      "</div>\n" + remarks(r) + "</div>\n</div>\n";
   if (!r.plan.empty())
     out += "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
            bullet_list(r.plan, "plain") +
