@@ -58,7 +58,9 @@ std::string overview(const ReplayResult& r) {
       r.has_reference
           ? "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
             "Regret: "
-            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1. “× best”: "
+            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1; beyond 100 % "
+            "the "
+            "ratio itself. “× best”: "
             "interval of "
             "the ratio of RMSEs on the same resampled stretches; when it holds 1 the difference is "
             "not "

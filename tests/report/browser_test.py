@@ -260,7 +260,7 @@ def main():
                 check_page(browser, folder / kind / "report.html", plots)
             check_narrow(browser, folder / "imu/report.html")
             check_without_script(browser, folder / "imu/report.html")
-            for kind, plots in {"plain": 7, "large": 7, "inputs": 7, "blind": 5, "nothing": 0, "hostile": 7}.items():
+            for kind, plots in {"plain": 8, "large": 8, "inputs": 8, "blind": 5, "nothing": 1, "hostile": 7, "array": 8}.items():
                 subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)
                 check_page(browser, folder / ("replay-" + kind) / "report.html", plots, replay=True)
             check_narrow(browser, folder / "replay-plain/report.html")

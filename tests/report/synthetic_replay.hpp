@@ -264,6 +264,7 @@ inline ReplayResult hostile_replay() {
 inline ReplayResult synthetic_replay_of_kind(const std::string& kind) {
   if (kind == "plain") return synthetic_replay();
   if (kind == "large") return synthetic_replay(12);
+  if (kind == "array") return synthetic_replay(200);
   if (kind == "inputs") return synthetic_replay(6, 2);
   if (kind == "blind") return without_reference();
   if (kind == "nothing") return nothing_scored();
