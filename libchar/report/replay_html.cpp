@@ -58,7 +58,9 @@ std::string overview(const ReplayResult& r) {
       r.has_reference
           ? "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
             "Regret: "
-            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1. “× best”: "
+            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1; beyond 100 % "
+            "the "
+            "ratio itself. “× best”: "
             "interval of "
             "the ratio of RMSEs on the same resampled stretches; when it holds 1 the difference is "
             "not "
@@ -304,8 +306,8 @@ std::string inputs(const ReplayResult& r) {
 std::string provenance(const ReplayResult& r) {
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"halves\">\n<div>\n" +
-      inputs(r) + "</div>\n<div>\n" + warnings_part(all_warnings(r)) + remarks(r) +
-      "</div>\n</div>\n";
+      inputs(r) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(all_warnings(r)) +
+      "</div>\n" + remarks(r) + "</div>\n</div>\n";
   if (!r.plan.empty())
     out += "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
            bullet_list(r.plan, "plain") +

@@ -32,7 +32,10 @@
   showDefaults();
 
   // ---- a stretch of time ----
-  const whole = [report.start_s, report.start_s + report.instants / report.rate_hz];
+  // In the unit in which one would say how long it took.
+  const lastSecond = report.start_s + report.instants / report.rate_hz;
+  const [TIME, timeUnit] = lastSecond > 4e5 ? [86400, "d"] : lastSecond > 2e4 ? [3600, "h"] : [1, "s"];
+  const whole = [report.start_s / TIME, lastSecond / TIME];
   let stretch = whole.slice();
   const inStretch = (t) => t >= stretch[0] && t <= stretch[1];
 
@@ -56,13 +59,13 @@
     axis.grid = { color: "#edf0f3", borderColor: "#8a929b" };
     return axis;
   }
-  const timeAxis = () => linearAxis("time from the recording's first sample, s", stretch[0], stretch[1]);
+  const timeAxis = () => linearAxis("time from the recording's first sample, " + timeUnit, stretch[0], stretch[1]);
 
   // One bin beyond each end, so that lines reach the frame.
   function window_of(time) {
-    let from = time.findIndex((t) => t >= stretch[0]), to = time.length;
+    let from = time.findIndex((t) => t / TIME >= stretch[0]), to = time.length;
     if (from < 0) from = time.length;
-    while (to > 0 && time[to - 1] > stretch[1]) --to;
+    while (to > 0 && time[to - 1] / TIME > stretch[1]) --to;
     return [Math.max(0, from - 1), Math.min(time.length, to + 1)];
   }
 
@@ -72,7 +75,7 @@
     const value = (v) => (v === null || (logarithmic && !(v > 0)) ? NaN : v);
     const low = [], high = [], middle = [];
     for (let i = from; i < to; ++i) {
-      const x = track.time_s[i], a = value(track.low[series][i]), b = value(track.high[series][i]);
+      const x = track.time_s[i] / TIME, a = value(track.low[series][i]), b = value(track.high[series][i]);
       low.push({ x, y: a });
       high.push({ x, y: b });
       middle.push({ x, y: logarithmic ? Math.sqrt(a * b) : (a + b) / 2, low: a, high: b });
@@ -99,7 +102,7 @@
     return low <= high ? valueAxis(title, low / factor, high * factor) : logAxis(title, 0.1, 10);
   }
   const timeTip = (u) => (name, p) => {
-    const out = [name, "t = " + people(p.x, 6) + " s"];
+    const out = [name, "t = " + people(p.x, 6) + " " + timeUnit];
     out.push(p.low === p.high ? people(p.low, 5) + " " + u : people(p.low, 4) + " … " + people(p.high, 4) + " " + u);
     return out;
   };
@@ -269,9 +272,9 @@
   const MOST_ROWS = 24;
   function faultsChart() {
     const end = whole[1], names = report.sensors.map((s) => s.name);
-    const bar = (f) => ({ x: [Math.max(f.from_s, whole[0]), Math.min(f.to_s === null ? end : f.to_s, end)], y: String(names.indexOf(f.sensor)), f });
-    const span = (f) => people(f.from_s, 6) + " … " + (f.to_s === null ? "the end" : people(f.to_s, 6)) + " s";
-    const known = report.faults.filter((f) => f.from_s < end && (f.to_s === null || f.to_s > whole[0])).map(bar);
+    const bar = (f) => ({ x: [Math.max(f.from_s / TIME, whole[0]), Math.min(f.to_s === null ? end : f.to_s / TIME, end)], y: String(names.indexOf(f.sensor)), f });
+    const span = (f) => people(f.from_s / TIME, 6) + " … " + (f.to_s === null ? "the end" : people(f.to_s / TIME, 6) + " " + timeUnit);
+    const known = report.faults.filter((f) => f.from_s / TIME < end && (f.to_s === null || f.to_s / TIME > whole[0])).map(bar);
     const found = tracked ? tracked.faults.map(bar) : [];
     // Of a large array only the sensors that have something to show.
     const busy = new Set(known.concat(found).map((p) => p.y)), all_rows = names.map((n, i) => String(i));
@@ -468,7 +471,7 @@
     moved = () => {
       from.value = Math.round((steps * (stretch[0] - whole[0])) / length);
       to.value = Math.round((steps * (stretch[1] - whole[0])) / length);
-      said.textContent = people(stretch[0], 6) + " … " + people(stretch[1], 6) + " s";
+      said.textContent = people(stretch[0], 6) + " … " + people(stretch[1], 6) + " " + timeUnit;
     };
     moved();
     const labelled = (text, control) => { const l = element("label", text + " "); l.append(control); return l; };

@@ -1,7 +1,8 @@
 """Opens reports in headless Chromium, as a reader would: no console message, no request, plots drawn, nothing injected.
 
-usage: browser_test.py MAKE_REPORT [REPORT.html…]
-MAKE_REPORT writes reports of synthetic characterizations; reports given beside it are opened as well.
+usage: browser_test.py MAKE_REPORT MAKE_REPLAY_REPORT [REPORT.html…]
+MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT those of synthetic replays; reports given
+beside them are opened as well.
 The browser is driven over plain HTTP (the WebDriver protocol), with Python's standard library only.
 """
 import contextlib
@@ -81,11 +82,14 @@ class Browser:
 
 
 # A drawn plot has ink in the colours of the measurement, not just a white sheet.
+BLUE = "pixels[i] < 90 && pixels[i + 2] > 110"
+# Replays draw in eight colours; grids, axes and text are grey.
+COLOURED = "Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40"
 INKED = """
 return Array.from(document.querySelectorAll('figure.plot canvas')).map((canvas) => {
   const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
   let blue = 0;
-  for (let i = 0; i < pixels.length; i += 4) if (pixels[i] < 90 && pixels[i + 2] > 110 && pixels[i + 3] > 200) ++blue;
+  for (let i = 0; i < pixels.length; i += 4) if (INK && pixels[i + 3] > 200) ++blue;
   return blue;
 });"""
 INJECTED = "return document.querySelectorAll('img, svg, iframe, object, embed, link, base, form, [onerror], [onload], [onmouseover], [onfocus]').length"
@@ -102,7 +106,7 @@ def expect(condition, sentence):
         print("FAILED:", sentence)
 
 
-def check_page(browser, page, plots=None):
+def check_page(browser, page, plots=None, replay=False):
     address = page.resolve().as_uri()
     browser.requests()
     browser.open(address)
@@ -115,14 +119,17 @@ def check_page(browser, page, plots=None):
     if count > 30:
         expect(first < count / 3, f"{page}: {first} of {count} plots were drawn at once")
     expect(browser.run(DRAW_ALL) == count, f"{page}: printing does not draw every plot")
-    ink = browser.run(INKED)
+    ink = browser.run(INKED.replace("INK", COLOURED if replay else BLUE))
     expect(all(blue > 50 for blue in ink), f"{page}: empty plots, ink {ink}")
     expect(browser.run("return document.querySelectorAll('script').length") == 3, f"{page}: a script was added")
     expect(browser.run(INJECTED) == 0, f"{page}: an element or handler came from the input")
     expect(browser.run("return window.broken === undefined"), f"{page}: injected code ran")
     expect(browser.run("return performance.getEntriesByType('resource').length") == 0, f"{page}: resources were loaded")
     check_axes(browser, page)
-    check_scales(browser, page)
+    if replay:
+        check_controls(browser, page)
+    else:
+        check_scales(browser, page)
     check_download(browser, page)
     # chrome:// and a one-pixel image that our page does not hold are the browser's own empty tab.
     source = page.read_text()
@@ -139,7 +146,8 @@ def check_axes(browser, page):
     spectra = [t for t in titles if "Hz" in t]
     expect(all("ne-sided" in t or "wo-sided" in t for t in spectra), f"{page}: a spectrum without its sides: {spectra}")
     bad = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic')
-      .flatMap((c) => c.data.datasets.flatMap((d) => d.data)).filter((p) => !(p.x > 0) || !(p.y > 0)).length""")
+      .flatMap((c) => c.data.datasets.flatMap((d) => d.data.map((p) => [c.options.scales.x.type === 'logarithmic' ? p.x : 1, p.y])))
+      .filter(([x, y]) => x <= 0 || y <= 0).length""")
     expect(bad == 0, f"{page}: {bad} points at or below zero on logarithmic axes")
 
 
@@ -161,6 +169,50 @@ def check_scales(browser, page):
           || sets[0].data.some((p) => Math.abs(p.y) > top);
       }).length""")
     expect(lost == 0, f"{page}: {lost} residual plots that hide points")
+
+
+def check_controls(browser, page):
+    """The boxes choose the lines, the sliders and the pointer the stretch, a click on a head the order of the table."""
+    settled = "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    lines = """return Array.from(document.querySelectorAll('figure[data-kind=window]')).map((f) => Chart.getChart(f.querySelector('canvas')).data.datasets.filter((d) => d.label && d.label !== 'optimum of this scene').length)"""
+    if browser.run("return document.querySelectorAll('.shown input').length && document.querySelectorAll('figure[data-kind=window]').length"):
+        count = browser.run("return document.querySelectorAll('.shown input').length")
+        few = browser.run(lines)
+        expect(all(0 < n <= 6 for n in few), f"{page}: {few} lines at first")
+        browser.run("Array.from(document.querySelectorAll('.shown button')).find((b) => b.textContent === 'all').click()")
+        browser.run(settled)
+        many = browser.run(lines)
+        expect(all(n == count for n in many), f"{page}: {many} lines instead of {count} after 'all'")
+    ranges = """return Object.values(Chart.instances).filter((c) => c.canvas.closest('.over-time')).map((c) => [c.scales.x.min, c.scales.x.max])"""
+    whole = browser.run(ranges)
+    if whole:
+        browser.run("const s = document.querySelectorAll('.controls input[type=range]'); s[0].value = 250; s[0].dispatchEvent(new Event('input'))")
+        browser.run(settled)
+        part = browser.run(ranges)
+        expect(all(abs(p[0] - (w[0] + 0.25 * (w[1] - w[0]))) < 1e-6 * w[1] for p, w in zip(part, whole)), f"{page}: the slider left {part}")
+        browser.run("""const canvas = document.querySelector('.over-time canvas'), area = Chart.getChart(canvas).chartArea, box = canvas.getBoundingClientRect();
+          canvas.setPointerCapture = () => {};
+          const at = (type, share) => canvas.dispatchEvent(new PointerEvent(type, { button: 0, clientX: box.left + area.left + share * (area.right - area.left), clientY: box.top + area.top + 20, bubbles: true }));
+          at('pointerdown', 0.4); at('pointermove', 0.5); at('pointerup', 0.6);""")
+        browser.run(settled)
+        closer = browser.run(ranges)
+        expect(all(p[0] > q[0] and p[1] < q[1] and p[1] > p[0] for p, q in zip(closer, part)), f"{page}: dragging left {closer}")
+        browser.run("Array.from(document.querySelectorAll('.controls button')).find((b) => b.textContent === 'whole run').click()")
+        browser.run(settled)
+        expect(browser.run(ranges) == whole, f"{page}: 'whole run' did not bring it back")
+        options = browser.run("return document.querySelectorAll('.controls option').length")
+        for i in range(min(options, 4)):
+            browser.run(f"const s = document.querySelector('.controls select'); s.value = {i}; s.dispatchEvent(new Event('change'))")
+            browser.run(settled)
+    # Every column once each way: figures rise, then fall, and what has none stays last.
+    wrong = browser.run("""const table = document.querySelector('table.ranking'), head = table.tHead.rows[0].cells, wrong = [];
+      const values = (column) => Array.from(table.tBodies[0].rows).map((r) => r.cells[column].dataset.value).filter((v) => v).map(Number);
+      for (let c = 1; c < head.length; ++c) for (const way of [1, -1]) {
+        head[c].click();
+        if (values(c).some((v, i, all) => i && way * (v - all[i - 1]) < 0)) wrong.push(head[c].textContent);
+      }
+      return wrong;""")
+    expect(not wrong, f"{page}: columns {wrong} are not sorted")
 
 
 def check_download(browser, page):
@@ -208,8 +260,14 @@ def main():
                 check_page(browser, folder / kind / "report.html", plots)
             check_narrow(browser, folder / "imu/report.html")
             check_without_script(browser, folder / "imu/report.html")
-            for given in sys.argv[2:]:
-                check_page(browser, pathlib.Path(given))
+            for kind, plots in {"plain": 8, "large": 8, "inputs": 8, "blind": 5, "nothing": 1, "hostile": 7}.items():
+                subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)
+                check_page(browser, folder / ("replay-" + kind) / "report.html", plots, replay=True)
+            check_narrow(browser, folder / "replay-plain/report.html")
+            check_narrow(browser, folder / "replay-hostile/report.html")
+            check_without_script(browser, folder / "replay-plain/report.html")
+            for given in sys.argv[3:]:
+                check_page(browser, pathlib.Path(given), replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
         finally:
             browser.close()
     return 1 if faults else 0

@@ -110,7 +110,7 @@ inline void judge(ReplayResult& r) {
 }
 
 /// `sensors` sensors, `inputs` true inputs, all algorithms; a third of them with moving weights and
-/// variances, the last three skipped.
+/// variances, three tilt filters skipped.
 inline ReplayResult synthetic_replay(std::size_t sensors = 5, std::size_t inputs = 1) {
   std::mt19937_64 random(20201);
   ReplayResult r;
@@ -152,8 +152,8 @@ inline ReplayResult synthetic_replay(std::size_t sensors = 5, std::size_t inputs
   r.faults = {{1, FaultKind::bias, 0.5, 40, 50},
               {2, FaultKind::scale, 1.2, 60, 62.5},
               {0, FaultKind::dropout, 0, 90, std::numeric_limits<double>::infinity()}};
-  const std::size_t count = fusion::algorithms().size();
-  for (std::size_t i = 0; i < count; ++i) {
+  std::size_t skipped = 0;
+  for (std::size_t i = 0; i < fusion::algorithms().size(); ++i) {
     AlgorithmResult a = synthetic_algorithm(r, i, random);
     if (i % 3 == 0 && inputs == 1) {
       a.weight_track = synthetic_track(sensors, 400, 0.1, 100, random);
@@ -166,7 +166,7 @@ inline ReplayResult synthetic_replay(std::size_t sensors = 5, std::size_t inputs
           {1, "variance", 40.02, 50.5}, {0, "variance", 90.1, {}}, {2, "variance", 10, 10.5}};
       a.answers = {{0, 0.02, 0.5}, {1, {}, {}}, {2, 0.1, {}}};
     }
-    if (i + 3 >= count) {
+    if (fusion::algorithms()[i].card->needs.tilt && skipped++ < 3) {
       a = AlgorithmResult();
       a.label = std::string(fusion::algorithms()[i].card->name);
       a.card = fusion::algorithms()[i].card;
@@ -254,7 +254,8 @@ inline ReplayResult hostile_replay() {
   r.scene.file = r.logs[0].file = hostile_names()[0];
   r.inputs[0].name = r.inputs[0].unit = r.reference_use = hostile_names()[2];
   r.settings["note"] = hostile_names()[1];
-  r.algorithms.back().why = hostile_names()[0];
+  for (AlgorithmResult& a : r.algorithms)
+    if (!a.ran) a.why = hostile_names()[0];
   r.algorithms[0].label = hostile_names()[1];
   r.algorithms[0].faults = {{0, hostile_names()[0], 3, {}}};
   return r;
@@ -263,6 +264,7 @@ inline ReplayResult hostile_replay() {
 inline ReplayResult synthetic_replay_of_kind(const std::string& kind) {
   if (kind == "plain") return synthetic_replay();
   if (kind == "large") return synthetic_replay(12);
+  if (kind == "array") return synthetic_replay(200);
   if (kind == "inputs") return synthetic_replay(6, 2);
   if (kind == "blind") return without_reference();
   if (kind == "nothing") return nothing_scored();
