@@ -1,7 +1,8 @@
-// sensorchar compare A.json B.json: two replay reports side by side, for people and for continuous
-// integration.
+// compare A B: two reports of one scene side by side, and checks for build servers.
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <cmath>
 #include <memory>
 
 #include "libchar/core/error.hpp"
@@ -9,6 +10,9 @@
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/report/comparison.hpp"
+#include "libchar/report/comparison_check.hpp"
+#include "libchar/report/comparison_text.hpp"
+#include "libchar/report/replay_verdict.hpp"
 #include "verbs.hpp"
 
 namespace sensorchar {
@@ -22,71 +26,88 @@ struct CompareVerb {
   bool unlike = false, json = false, markdown = false;
 };
 
-LogInfo as_input(const std::string& file, const std::string& text) {
-  LogInfo out;
-  out.file = file;
-  Sha256 hash;
-  hash.update(text);
-  out.sha256 = hash.finish();
-  out.bytes = text.size();
-  return out;
+std::string number(const AlgorithmSummary* one, double AlgorithmSummary::*member, int digits) {
+  const double value = one != nullptr && one->ran ? one->*member : std::nan("");
+  return std::isfinite(value) ? significant(value, digits) : "–";
 }
 
-void refuse_unlike(const Comparison& c) {
-  if (c.differences.empty()) return;
-  const std::size_t more = c.differences.size() - 1;
-  throw Error(
-      {ErrorKind::input,
-       "E0923",
-       c.b.file,
-       c.differences[0] + (more == 0 ? "" : " (and " + std::to_string(more) + " more differences)"),
-       "",
-       "errors of unlike scenes say nothing about algorithms; --unlike compares them all the "
-       "same"});
+std::string bytes(const AlgorithmSummary* one) {
+  return one != nullptr && one->ran && std::isfinite(one->peak_bytes)
+             ? people_bytes(static_cast<std::uint64_t>(one->peak_bytes))
+             : "–";
 }
 
 std::string text_for_people(const Comparison& c) {
-  std::string out = "A: " + printable(c.a.file) + " (" + printable(c.a.scene) +
-                    ")\nB: " + printable(c.b.file) + " (" + printable(c.b.scene) + ")\n";
-  for (const std::string& sentence : c.differences) out += "unlike: " + printable(sentence) + "\n";
-  auto rows = comparison_table(c);
-  for (auto& row : rows)
-    for (std::string& cell : row) cell = printable(cell);
-  out += "\n" + table(rows);
-  const auto add = [&](const auto& list, const char* where) {
-    for (const auto& [label, why] : list)
-      out += printable(label) + " ran in " + where + " only" +
-             (why.empty() ? "" : ": " + printable(why)) + "\n";
-  };
-  add(c.only_a, "A");
-  add(c.only_b, "B");
+  std::string out =
+      fmt::format("A: {}: {}\nB: {}: {}\n",
+                  printable(c.a.file),
+                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
+                  printable(c.b.file),
+                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
+  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
+  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
+  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
+  std::vector<std::vector<std::string>> rows = {{"algorithm",
+                                                 score + " A",
+                                                 score + " B",
+                                                 "change",
+                                                 "ns/sample A",
+                                                 "B",
+                                                 "change",
+                                                 "memory A",
+                                                 "B",
+                                                 "error of B"}};
+  for (const ComparedAlgorithm& row : c.algorithms) {
+    const std::string where = side_of(row);
+    if (where == "skipped in both") continue;
+    rows.push_back({printable(row.label),
+                    number(row.a, &AlgorithmSummary::rmse, 5),
+                    number(row.b, &AlgorithmSummary::rmse, 5),
+                    people_change(row.rmse_change),
+                    number(row.a, &AlgorithmSummary::ns_per_sample, 3),
+                    number(row.b, &AlgorithmSummary::ns_per_sample, 3),
+                    people_change(row.ns_change),
+                    bytes(row.a),
+                    bytes(row.b),
+                    where.empty() ? std::string(name_of(row.difference)) : where});
+  }
+  return out + "\n" + table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
+}
+
+Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
+  std::vector<LogInfo> files(2);
+  const std::string* paths[] = {&c.a.file, &c.b.file};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string text = read_document_text(*paths[i]);
+    Sha256 hash;
+    hash.update(text);
+    files[i].file = *paths[i];
+    files[i].sha256 = hash.finish();
+    files[i].bytes = text.size();
+  }
+  Json out = document_head(session, "replay-comparison", {&files[0], &files[1]});
+  out.update(comparison_json(c));
+  out["failed"] = Json::array();
+  for (const std::string& sentence : failed) out["failed"].push_back(printable(sentence));
   return out;
 }
 
 void run_compare(Session& session, const CompareVerb& verb) {
-  std::vector<Check> checks;
-  for (const std::string& text : verb.checks) checks.push_back(check_from_words(text));
-  if (verb.json && verb.markdown)
-    throw Error(
-        {ErrorKind::usage, "E0205", "--markdown", "does not go with --json", "", "choose one"});
-  const std::string text_a = read_document_text(verb.a), text_b = read_document_text(verb.b);
+  std::vector<ComparisonCheck> checks;
+  for (const std::string& text : verb.checks) checks.push_back(parse_comparison_check(text));
   const Comparison comparison =
-      compare_replays(read_reported_replay(text_a, verb.a), read_reported_replay(text_b, verb.b));
+      compare_replays(read_replay_report(verb.a), read_replay_report(verb.b));
   if (!verb.unlike) refuse_unlike(comparison);
-  if (verb.json) {
-    const LogInfo a = as_input(verb.a, text_a), b = as_input(verb.b, text_b);
-    Json out = document_head(session, "replay-comparison", {&a, &b});
-    out.update(comparison_json(comparison, checks));
-    print(dump_json(out));
-  } else {
-    print(verb.markdown ? comparison_markdown(comparison, checks) : text_for_people(comparison));
-  }
-  std::vector<std::string> all;
-  for (const Check& check : checks)
-    for (const std::string& sentence : breaches(comparison, check)) all.push_back(sentence);
-  if (all.empty()) return;
-  for (std::size_t i = 1; i < all.size(); ++i) say("sensorchar: " + printable(all[i]));
-  throw Error({ErrorKind::check, "E0925", "--fail-if", all[0], "", ""});
+  std::vector<std::string> failed;
+  for (const ComparisonCheck& check : checks)
+    for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
+  print(verb.json       ? dump_json(document(session, comparison, failed))
+        : verb.markdown ? comparison_markdown(comparison)
+                        : text_for_people(comparison));
+  if (failed.empty()) return;
+  std::string what = failed[0];
+  for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];
+  throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
 }
 
 }  // namespace
@@ -96,20 +117,21 @@ void add_compare(CLI::App& app, Session& session) {
   CLI::App* sub = add_verb(app,
                            session,
                            "compare",
-                           "Two reports of replay side by side; refuses unlike scenes",
+                           "Two reports of replay side by side; refuses those of unlike scenes",
                            [&session, verb] { run_compare(session, *verb); });
-  sub->add_option("A", verb->a, "report.json of a replay, the baseline")->required();
-  sub->add_option("B", verb->b, "report.json of a replay, what is compared with it")->required();
-  sub->add_option(
-         "--fail-if",
-         verb->checks,
-         "exit with 6 when B exceeds A by more: [LABEL:]METRIC+LIMIT, METRIC one of rmse, "
-         "regret, ns_per_sample, peak_bytes, LIMIT in % or absolute (\"rmse+5%\"); may be repeated")
-      ->type_name("CHECK")
+  sub->add_option("A", verb->a, "report.json of a replay, or the folder that holds it")->required();
+  sub->add_option("B", verb->b, "the same of the replay that is held against it")->required();
+  sub->add_option("--fail-if",
+                  verb->checks,
+                  "exit code 6 when B is worse than A by more: rmse+5%, ns_per_sample+20%, "
+                  "peak_bytes+10%, regret+0.5% (points); minque:rmse+5% for one algorithm; "
+                  "several times")
+      ->type_name("[LABEL:]METRIC+N%")
       ->allow_extra_args(false);
-  sub->add_flag("--unlike", verb->unlike, "compare unlike scenes all the same");
-  sub->add_flag("--json", verb->json, "print one JSON document instead of the table");
-  sub->add_flag("--markdown", verb->markdown, "print Markdown, for a pull request");
+  sub->add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
+  CLI::Option* json = sub->add_flag("--json", verb->json, "one JSON document instead of the table");
+  sub->add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table")
+      ->excludes(json);
 }
 
 }  // namespace sensorchar

@@ -266,7 +266,7 @@ Scene replay_scene(const ArraySimulation& simulation,
     for (SceneSensor& sensor : scene.sensors)
       sensor.h = rows_of(*scene.reference, sensor.h, simulation);
   }
-  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults};
+  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults, simulation.oversampling};
   return scene;
 }
 

@@ -5,7 +5,10 @@
 
 namespace libchar {
 
-/// SHA-256 of a stream of bytes (the same digest as sha256sum prints), by OpenSSL.
+struct Sha256Blocks;
+
+/// SHA-256 of a stream of bytes (the same digest as sha256sum prints): by the SHA instructions of
+/// the processor, where it has them, else by OpenSSL.
 class Sha256 {
  public:
   Sha256();
@@ -13,6 +16,13 @@ class Sha256 {
   Sha256(Sha256&&) noexcept;
   Sha256& operator=(Sha256&&) noexcept;
   void update(std::string_view bytes);
+  /// Can another loop hash blocks beside its own work (sha256_blocks.hpp)?
+  bool goes_along() const;
+  /// The stream's next bytes, for such a loop: it takes as many of the whole blocks as it likes,
+  /// and `settle` the rest. The bytes must stay where they are until then. Only where
+  /// `goes_along()`.
+  Sha256Blocks* along(std::string_view bytes);
+  void settle();
   /// 64 lower-case hexadecimal digits. Ends the stream.
   std::string finish();
 

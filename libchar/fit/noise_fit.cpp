@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/fit/allan_fit.hpp"
 #include "libchar/fit/coefficients.hpp"
 #include "libchar/fit/contradiction.hpp"
@@ -345,9 +346,8 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   binner.push(data);
-  const auto missing = static_cast<std::uint64_t>(
-      std::count_if(record.begin(), record.end(), [](double x) { return std::isnan(x); }));
-  NoiseFit fit = fit_binned(binner, rate_hz, record.size() - missing, allan, options);
+  NoiseFit fit =
+      fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options);
   fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
   return fit;
 }

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/fit/dct_means.hpp"
 #include "libchar/fit/line_clip.hpp"
 #include "libchar/fit/noise_fit.hpp"
@@ -186,7 +187,7 @@ struct PowerBinner::State {
         continue;
       }
       begin_run(values[0]);
-      const std::size_t run = length_of_run(values.first(std::min<std::size_t>(
+      const std::size_t run = present_run(values.first(std::min<std::size_t>(
           values.size(), std::min(per_mean - partial_count, block + 1 - pending.size()))));
       push_run(values.first(run));
       values = values.subspan(run);
@@ -211,12 +212,6 @@ struct PowerBinner::State {
     ++blocks;
     ++segment_blocks;
     return true;
-  }
-
-  static std::size_t length_of_run(std::span<const double> samples) {
-    std::size_t n = 1;
-    while (n < samples.size() && !std::isnan(samples[n])) ++n;
-    return n;
   }
 
   // Samples without a missing one, at most up to the end of the mean and one beyond the end of the

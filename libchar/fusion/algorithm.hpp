@@ -9,13 +9,20 @@
 //   };
 //
 // It may also have
-//   static constexpr std::array options{Option{…}…};  and the constructor Mean(const Given&, const
-//   Settings&) void learn(const Sample& y, const Sample& truth);  one instant of the learning
-//   window (card.needs says so) void finish_learning();                            after the last
-//   one; throws Error(numeric) when nothing can be learnt Eigen::MatrixXd weights() const; n x r,
-//   as they stand now Eigen::VectorXd variances() const;                 of a sample's noise,
-//   channel by channel, as estimated now const FaultLog& faults() const; void remarks(Warnings&)
-//   const;                     what the reader of the result must know
+//   static constexpr std::array options{Option{…}…};   and the constructor A(const Given&, const
+//                                                      Settings&)
+//   void learn(const Sample& y, const Sample& truth);  one instant of the learning window
+//                                                      (card.needs says so)
+//   void skip(const Sample& y);                        instead of it where the truth is missing (or
+//                                                      a sample, unless the card accepts that):
+//                                                      for those that count instants or follow time
+//   void finish_learning();                            after the last one; throws Error(numeric)
+//                                                      when nothing can be learnt
+//   Eigen::MatrixXd weights() const;                   n x r, as they stand now
+//   Eigen::VectorXd variances() const;                 of a sample's noise, channel by channel, as
+//                                                      estimated now
+//   const FaultLog& faults() const;
+//   void remarks(Warnings&) const;                     what the reader of the result must know
 // and is known to the engine by one line in registry.cpp.
 
 #include <Eigen/Core>
@@ -116,6 +123,10 @@ concept Algorithm = HasCard<A> && Steps<A> && Made<A>;
 template <class A>
 concept Learns = requires(A a, const Sample& y, const Sample& truth) {
   a.learn(y, truth);
+};
+template <class A>
+concept Skips = requires(A a, const Sample& y) {
+  a.skip(y);
 };
 template <class A>
 concept FinishesLearning = requires(A a) {

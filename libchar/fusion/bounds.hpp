@@ -52,8 +52,8 @@ struct OptimalWeights {
   LearntMean mean_;
 };
 
-/// Learns on instants 0, 1, … of the run and runs on the same: the k-th instant learnt is the k-th
-/// instant run.
+/// Learns on instants 0, 1, … of the run and runs on the same: the k-th instant learnt or skipped
+/// is the k-th instant run.
 struct SectionedLeastSquares {
   static constexpr Card card{.name = "sectioned-least-squares",
                              .title = "Least squares, section by section (bound)",
@@ -65,6 +65,7 @@ struct SectionedLeastSquares {
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
   SectionedLeastSquares(const Given& given, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);
+  void skip(const Sample&) { ++learnt_; }
   void finish_learning();
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const;

@@ -3,14 +3,25 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace libchar::fusion {
+
+/// Which rule took the channel out.
+enum class FaultRule {
+  variance,         ///< its estimated variance is beyond a threshold [RV 4.34]
+  residual_moment,  ///< the second moment of its residual about zero is: noise, bias or gain
+};
+constexpr std::string_view name(FaultRule rule) {
+  return rule == FaultRule::variance ? "variance" : "residual_moment";
+}
 
 struct FaultEvent {
   std::int64_t sample = 0;  ///< instant of the run, 0 = first
   int channel = 0;
   bool faulty = false;  ///< true: taken out from here on; false: in again
+  FaultRule rule = FaultRule::variance;
 };
 
 /// Room is made once, so that noting an event inside `step` does not allocate; events beyond it are

@@ -26,30 +26,74 @@ struct FaultWatchOptions {
 class FaultWatch {
  public:
   FaultWatch(std::size_t n, const FaultWatchOptions& options)
-      : options_(options), gain_(1 - options.gamma), moment_(n, -1), out_(n, 0), calm_(n, 0) {}
+      : options_(options),
+        gain_(1 - options.gamma),
+        moment_(n, -1),
+        out_(n, 0),
+        calm_(n, 0),
+        not_begun_(static_cast<int>(n)) {}
 
   bool out(std::size_t i) const { return out_[i] != 0; }
   int count_out() const { return count_out_; }
 
-  /// Takes in a residual; true when the moment is beyond the threshold.
-  bool beyond(std::size_t i, double residual, double expectation) {
-    double& m = moment_[i];
-    m = m < 0 ? expectation : m;
-    m += gain_ * (residual * residual - m);
-    return m > options_.threshold * expectation;
+  /// Takes in the residuals of the m channels named in `index`; true when a moment is beyond its
+  /// threshold. `expected`: of the squares, by channel, never taken for less than `least`.
+  bool beyond(
+      const double* residuals, const double* expected, double least, const int* index, int m) {
+    for (int k = 0; not_begun_ > 0 && k < m; ++k)
+      begin(index[k], std::max(expected[index[k]], least));
+    const double* __restrict const r = residuals;
+    const double* __restrict const e = expected;
+    double* __restrict const moment = moment_.data();
+    const double gain = gain_, threshold = options_.threshold;
+    // Two at a time, without branches.
+    double over[2] = {-1, -1};
+    const auto take_in = [&](int i, int lane) {
+      const double expectation = e[i] > least ? e[i] : least;
+      moment[i] += gain * (r[i] * r[i] - moment[i]);
+      const double beyond = moment[i] - threshold * expectation;
+      over[lane] = beyond > over[lane] ? beyond : over[lane];
+    };
+    if (m == static_cast<int>(moment_.size())) {
+      int i = 0;
+      for (; i + 2 <= m; i += 2)
+        for (int lane = 0; lane < 2; ++lane) take_in(i + lane, lane);
+      if (i < m) take_in(i, 0);
+    } else {
+      for (int k = 0; k < m; ++k) take_in(index[k], 0);
+    }
+    return over[0] > 0 || over[1] > 0;
   }
-  double moment(std::size_t i) const { return moment_[i]; }
+  /// The channel whose moment is the largest multiple of what is expected.
+  int worst(const double* expected, double least, const int* index, int m) const {
+    double largest = 0;
+    int where = index[0];
+    for (int k = 0; k < m; ++k) {
+      const double ratio =
+          moment_[static_cast<std::size_t>(index[k])] / std::max(expected[index[k]], least);
+      if (ratio > largest) {
+        largest = ratio;
+        where = index[k];
+      }
+    }
+    return where;
+  }
   void take_out(std::size_t i, std::int64_t sample) {
     out_[i] = 1;
     calm_[i] = 0;
     ++count_out_;
-    log_.note({sample, static_cast<int>(i), true});
+    log_.note({sample, static_cast<int>(i), true, FaultRule::residual_moment});
   }
   /// What the others have seen was the fault of another: they start anew.
-  void forget(std::size_t i) { moment_[i] = -1; }
+  void forget(std::size_t i) {
+    if (!(moment_[i] < 0)) ++not_begun_;
+    moment_[i] = -1;
+  }
   /// A channel that is out: true when it may come in again.
   bool calmed(std::size_t i, double residual, double expectation) {
-    const bool calm = !beyond(i, residual, expectation);
+    begin(static_cast<int>(i), expectation);
+    moment_[i] += gain_ * (residual * residual - moment_[i]);
+    const bool calm = !(moment_[i] > options_.threshold * expectation);
     // However bad it has been: what counts is how long ago.
     moment_[i] = std::min(moment_[i], 2 * options_.threshold * expectation);
     calm_[i] = calm ? calm_[i] + 1 : 0;
@@ -59,17 +103,25 @@ class FaultWatch {
     out_[i] = 0;
     --count_out_;
     forget(i);
-    log_.note({sample, static_cast<int>(i), false});
+    log_.note({sample, static_cast<int>(i), false, FaultRule::residual_moment});
   }
   const FaultLog& log() const { return log_; }
 
  private:
+  void begin(int i, double expectation) {
+    double& moment = moment_[static_cast<std::size_t>(i)];
+    if (!(moment < 0)) return;
+    moment = expectation;
+    --not_begun_;
+  }
+
   FaultWatchOptions options_;
   double gain_;
   std::vector<double> moment_;  // negative: not begun
   std::vector<char> out_;
   std::vector<std::int64_t> calm_;
   int count_out_ = 0;
+  int not_begun_;
   FaultLog log_;
 };
 

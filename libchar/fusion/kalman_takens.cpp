@@ -58,13 +58,19 @@ void KalmanTakensFilter::widen_spread(double z) {
 }
 
 void KalmanTakensFilter::teach(double truth) {
+  // One NaN parts the stretches; more would only push known ones out.
+  if (std::isnan(truth) && last_ > first_ && std::isnan(series_[last_ - 1])) return;
   append(truth);
-  widen_spread(truth);
+  if (!std::isnan(truth)) widen_spread(truth);
 }
 
 std::size_t KalmanTakensFilter::taught_stretches() const {
-  const std::size_t length = last_ - first_;
-  return length > dimension_ ? length - dimension_ : 0;
+  std::size_t stretches = 0, length = 0;  // values without a gap so far
+  for (std::size_t k = first_; k < last_; ++k) {
+    length = std::isnan(series_[k]) ? 0 : length + 1;
+    if (length > dimension_) ++stretches;
+  }
+  return stretches;
 }
 
 /// NaN while the past is too short: a few stretches would always find the same neighbours.

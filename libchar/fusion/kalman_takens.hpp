@@ -93,6 +93,8 @@ struct KalmanTakensTaught {
   KalmanTakensTaught(const Given& given, const Settings& settings)
       : filter_(given, settings, true) {}
   void learn(const Sample&, const Sample& truth) { filter_.teach(truth[0]); }
+  /// No stretch of the past reaches over a gap.
+  void skip(const Sample&) { filter_.teach(std::nan("")); }
   /// Throws Error(numeric): the learning window is too short for M neighbours.
   void finish_learning();
   Estimate step(const Sample& y) { return filter_.step(y); }

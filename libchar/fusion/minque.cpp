@@ -40,11 +40,10 @@ Minque::Minque(const Given& given, const Settings& settings)
           given.fault_free_samples,
           static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
       inputs_(given.inputs()),
-      everybody_(static_cast<std::size_t>(given.channels)),
-      present_(everybody_.size()) {
-  std::iota(everybody_.begin(), everybody_.end(), 0);
+      present_(static_cast<std::size_t>(given.channels)),
+      m_(static_cast<int>(given.channels)) {
+  std::iota(present_.begin(), present_.end(), 0);
   if (!given.plain()) general_.emplace(given.observation_matrix, reweighting(settings));
-  use_all();
 }
 
 Estimate Minque::step(const Sample& y) {
@@ -53,15 +52,16 @@ Estimate Minque::step(const Sample& y) {
 
 template <class Variances>
 Estimate Minque::step_with(Variances& variances, const Sample& y) {
-  if (watch_.count_out() == 0)
-    use_all();
-  else
-    use_present(y);
-  const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), in_use_, m_) : std::nan(""); };
+  // Where the last instant was complete, this one is taken to be, and looked at when it shows that
+  // it is not.
+  if (!all_in_use()) use_present(y);
+  const auto fuse = [&] {
+    return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan("");
+  };
   // Written so that NaN fails.
   const auto good = [](double x) { return std::abs(x) <= kLargestSample; };
   double x = fuse();
-  if (!good(x)) {
+  if (!good(x) && all_in_use()) {
     use_present(y);
     x = fuse();
   }
@@ -81,9 +81,8 @@ Estimate Minque::step_with(Variances& variances, const Sample& y) {
   return estimate;
 }
 
-void Minque::use_all() {
-  in_use_ = everybody_.data();
-  m_ = static_cast<int>(everybody_.size());
+bool Minque::all_in_use() const {
+  return m_ == static_cast<int>(present_.size()) && watch_.count_out() == 0;
 }
 
 void Minque::use_present(const Sample& y) {
@@ -91,7 +90,6 @@ void Minque::use_present(const Sample& y) {
   for (int i = 0; i < static_cast<int>(y.size()); ++i)
     if (usable(y[i]) && !watch_.out(static_cast<std::size_t>(i)))
       present_[static_cast<std::size_t>(m_++)] = i;
-  in_use_ = present_.data();
 }
 
 /// Takes out the worst channel, if one is beyond its threshold.
@@ -99,26 +97,12 @@ template <class Variances>
 bool Minque::found_fault(const Variances& variances) {
   if (!variances.started() || m_ < inputs_ + 2) return false;
   const double least = kRounding * variances.rounding();
-  const auto expectation = [&](std::size_t i) {
-    return std::max(variances.residual_variance(i), least);
-  };
-  bool beyond = false;
-  for (int k = 0; k < m_; ++k) {
-    const auto i = static_cast<std::size_t>(in_use_[k]);
-    beyond |= watch_.beyond(i, variances.residual(i), expectation(i));
-  }
-  if (!beyond || now_ < armed_from_) return false;
-  double worst = 0;
-  int where = in_use_[0];
-  for (int k = 0; k < m_; ++k) {
-    const auto i = static_cast<std::size_t>(in_use_[k]);
-    const double ratio = watch_.moment(i) / expectation(i);
-    if (ratio > worst) {
-      worst = ratio;
-      where = in_use_[k];
-    }
-  }
-  for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use_[k]));
+  const double* const expected = variances.residual_variances();
+  const int* const all = present_.data();
+  if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_)
+    return false;
+  const int where = watch_.worst(expected, least, all, m_);
+  for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use(k)));
   watch_.take_out(static_cast<std::size_t>(where), now_);
   return true;
 }

@@ -75,7 +75,8 @@ struct Minque {
   bool found_fault(const Variances& variances);
   template <class Variances>
   void check_recovery(const Variances& variances, const Sample& y);
-  void use_all();
+  bool all_in_use() const;
+  int in_use(int k) const { return present_[static_cast<std::size_t>(k)]; }
   void use_present(const Sample& y);
 
   ReweightedVariances scalar_;               // one input seen by all alike
@@ -84,8 +85,7 @@ struct Minque {
   bool asked_, detection_;
   std::int64_t armed_from_, now_ = 0;
   Eigen::Index inputs_;
-  std::vector<int> everybody_, present_;
-  const int* in_use_ = nullptr;  // channels of this instant: one of the two lists
+  std::vector<int> present_;  // channels of this instant, rising: the first m_
   int m_ = 0;
 };
 

@@ -70,7 +70,7 @@ void MinquePublished::judge(const Sample& y) {
   if (worst >= 0 && m_ > 2) {
     out_[static_cast<std::size_t>(worst)] = 1;
     out_since_[static_cast<std::size_t>(worst)] = now_;
-    log_.note({now_, worst, true});
+    log_.note({now_, worst, true, FaultRule::variance});
     choose(y, false);
     if (m_ >= 3) moments_.variances(in_use_.data(), m_, variances_.data());
   }
@@ -81,7 +81,7 @@ void MinquePublished::judge(const Sample& y) {
     v = moments_.variance_beside(static_cast<int>(i), in_use_.data(), m_);
     if (v < threshold_[static_cast<Eigen::Index>(i)] && now_ - out_since_[i] >= recovery_) {
       out_[i] = 0;
-      log_.note({now_, static_cast<int>(i), false});
+      log_.note({now_, static_cast<int>(i), false, FaultRule::variance});
       changed = true;
     }
   }

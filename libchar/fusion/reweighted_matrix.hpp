@@ -30,8 +30,8 @@ class ReweightedMatrix {
 
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
-  double residual(std::size_t i) const { return r_[static_cast<Eigen::Index>(i)]; }
-  double residual_variance(std::size_t i) const { return residual_variance_[i]; }
+  const double* residuals() const { return r_.data(); }
+  const double* residual_variances() const { return residual_variance_.data(); }
   /// Of a channel that was not in use: sample less what the others say, and its variance.
   double innovation(std::size_t i, double sample) const;
   double innovation_variance(std::size_t i) const;

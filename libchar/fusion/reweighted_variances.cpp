@@ -24,34 +24,66 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
       v_(n, options.start_variance > 0 ? options.start_variance : 1),
       inverse_(n, 1 / v_[0]),
       r_(n, 0),
-      p_(n),
+      p_(n, 0),
+      shown_(n, 1),
+      gathered_(n, 0),
       b_(n),
       e_(n),
-      everybody_(n),
+      index_(n, -1),
       first_(options.start_variance > 0 ? 0 : n * kFirstInstants),
-      started_(options.start_variance > 0) {
-  std::iota(everybody_.begin(), everybody_.end(), 0);
+      last_gain_(1 - options.gamma),
+      started_(options.start_variance > 0) {}
+
+// Loops over the channels in use are compiled twice: for all channels, where the positions are the
+// channels and loops over elements become vectors, and for some. Element for element both do the
+// same, sums run in the same order: the bits agree.
+
+template <bool kAll>
+double ReweightedVariances::fuse_in_use(const double* y) {
+  const int m = m_;
+  const int* const index = index_.data();
+  const auto at = [index](int k) { return kAll ? k : index[k]; };
+  const double* const p = p_.data();
+  double* __restrict const r = r_.data();
+  const double base = y[at(0)];
+  double lanes[4] = {0, 0, 0, 0};
+  int k = 0;
+  for (; k + 4 <= m; k += 4)
+    for (int lane = 0; lane < 4; ++lane) lanes[lane] += p[at(k + lane)] * (y[at(k + lane)] - base);
+  for (int lane = 0; k < m; ++k, ++lane) lanes[lane] += p[at(k)] * (y[at(k)] - base);
+  const double shift = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+  for (k = 0; k < m; ++k) r[at(k)] = (y[at(k)] - base) - shift;
+  return base + shift;
 }
 
 double ReweightedVariances::fuse(const double* y, const int* index, int m) {
-  index_ = index != nullptr ? index : everybody_.data();
-  m_ = m;
+  if (index == nullptr ? !all()
+                       : m != m_ || (!all() && !std::equal(index, index + m, index_.data())))
+    use(index, m);
   y_ = y;
-  const double base = y[index_[0]];
-  double sum = 0, weighted = 0;
-  for (int k = 0; k < m; ++k) {
-    const int i = index_[k];
-    sum += inverse_[i];
-    weighted += inverse_[i] * (y[i] - base);
-  }
-  fused_ = 1 / sum;
-  const double shift = weighted * fused_;
-  for (int k = 0; k < m; ++k) r_[index_[k]] = (y[index_[k]] - base) - shift;
-  const double x = base + shift;
-  x_ = x;
-  const double ulp = std::numeric_limits<double>::epsilon() * x;
+  x_ = all() ? fuse_in_use<true>(y) : fuse_in_use<false>(y);
+  const double ulp = std::numeric_limits<double>::epsilon() * x_;
   rounding_ = std::max(ulp * ulp, kTiny);
-  return x;
+  return x_;
+}
+
+void ReweightedVariances::use(const int* index, int m) {
+  if (gathered_gain_ > 0) renew(last_gain_);
+  m_ = m;
+  if (index != nullptr)
+    std::copy(index, index + m, index_.data());
+  else
+    std::iota(index_.begin(), index_.end(), 0);
+  std::fill(p_.begin(), p_.end(), 0);
+  weigh();
+}
+
+void ReweightedVariances::weigh() {
+  double sum = 0;
+  for (int k = 0; k < m_; ++k) sum += inverse_[index_[k]];
+  fused_ = 1 / sum;
+  for (int k = 0; k < m_; ++k) p_[index_[k]] = inverse_[index_[k]] * fused_;
+  for (int k = 0; k < m_; ++k) shown_[index_[k]] = v_[index_[k]] - fused_;
 }
 
 void ReweightedVariances::start(const double* y) {
@@ -95,76 +127,101 @@ void ReweightedVariances::start_from_pairs() {
   }
   instants_ = kFirstInstants;
   started_ = true;
+  weigh();
 }
 
 double ReweightedVariances::gain() {
   const double lasting = 1 - options_.gamma;
-  if (options_.start_variance > 0) return lasting;
+  if (options_.start_variance > 0 || instants_ * lasting > 1) return lasting;
   instants_ += 1;
   return std::max(lasting, 1 / (instants_ + kStart));
 }
 
-// The two below are compiled twice: for all channels, where the positions are the channels and
-// loops over elements become vectors, and for some. Element for element both do the same, sums run
-// in the same order: the bits agree.
+void ReweightedVariances::gather(double a) {
+  gathered_gain_ += a;
+  last_gain_ = a;
+  gathered_rounding_ = rounding_;
+  double* __restrict const sum = gathered_.data();
+  const double* const r = r_.data();
+  if (all())
+    for (int i = 0; i < m_; ++i) sum[i] += a * (r[i] * r[i]);
+  else
+    for (int k = 0; k < m_; ++k) sum[index_[k]] += a * (r[index_[k]] * r[index_[k]]);
+}
+
+void ReweightedVariances::renew(double a) {
+  const double lambda = options_.damping * a;
+  if (all()) {
+    solve<true>(lambda);
+    apply<true>();
+  } else {
+    solve<false>(lambda);
+    apply<false>();
+  }
+  std::fill(gathered_.begin(), gathered_.end(), 0);
+  gathered_gain_ = 0;
+  gathered_instants_ = 0;
+  weigh();
+}
 
 template <bool kAll>
-void ReweightedVariances::solve(double a, double lambda) {
+void ReweightedVariances::solve(double lambda) {
   const int m = m_;
-  const int* const index = index_;
+  const int* const index = index_.data();
   const auto at = [index](int k) { return kAll ? k : index[k]; };
-  double* __restrict const p = p_.data();
   double* __restrict const b = b_.data();
   double* __restrict const e = e_.data();
+  const double* const p = p_.data();
   const double* const inverse = inverse_.data();
-  const double* const r = r_.data();
-  const double fused = fused_;
-  for (int k = 0; k < m; ++k) {
-    const int i = at(k);
-    p[k] = inverse[i] * fused;
-    b[k] = r[i] * r[i] * inverse[i] - (1 - p[k]);
-  }
+  const double* const sum = gathered_.data();
+  const double g = gathered_gain_;
   // Without a ridge, two channels of weight one half each would divide by zero.
   const double smallest = std::max(1e-12, lambda);
   for (int k = 0; k < m; ++k) {
-    const double information = 1 - 2 * p[k] + lambda;
-    e[k] = 1 / (information > smallest ? information : smallest);
+    const int i = at(k);
+    b[i] = sum[i] * inverse[i] - g * (1 - p[i]);
+    const double information = 1 - 2 * p[i] + lambda;
+    e[i] = 1 / (information > smallest ? information : smallest);
   }
-  int heaviest = 0;
-  for (int k = 1; k < m; ++k) heaviest = p[k] > p[heaviest] ? k : heaviest;
+  int heaviest = at(0);
+  for (int k = 1; k < m; ++k) heaviest = p[at(k)] > p[heaviest] ? at(k) : heaviest;
   heaviest_ = heaviest;
   double s1 = 0, s2 = 0;
   for (int k = 0; k < m; ++k) {
-    const double pe = k == heaviest ? 0 : p[k] * e[k];
-    s1 += pe * b[k];
-    s2 += pe * p[k];
+    const int i = at(k);
+    const double pe = i == heaviest ? 0 : p[i] * e[i];
+    s1 += pe * b[i];
+    s2 += pe * p[i];
   }
   const double pm = p[heaviest], scale = (1 + s2) / pm;
   const double um = (b[heaviest] * scale - s1) / (pm + (1 - 2 * pm + lambda) * scale);
   const double t = (pm * um + s1) / (1 + s2);
-  for (int k = 0; k < m; ++k) e[k] = 1 + a * (b[k] - p[k] * t) * e[k];
-  e[heaviest] = 1 + a * um;
+  for (int k = 0; k < m; ++k) {
+    const int i = at(k);
+    e[i] = 1 + (b[i] - p[i] * t) * e[i];
+  }
+  e[heaviest] = 1 + um;
 }
 
 template <bool kAll>
 void ReweightedVariances::apply() {
   const int m = m_;
-  const int* const index = index_;
+  const int* const index = index_.data();
   const auto at = [index](int k) { return kAll ? k : index[k]; };
   double* __restrict const v = v_.data();
   double* __restrict const inverse = inverse_.data();
   const double* __restrict const e = e_.data();
   double largest = 0, others = 0;
-  for (int k = 0; k < m; ++k) v[at(k)] *= e[k];
+  for (int k = 0; k < m; ++k) v[at(k)] *= e[at(k)];
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
     // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
-    others += k == heaviest_ ? 0 : inverse[i];
+    others += i == heaviest_ ? 0 : inverse[i];
     largest = v[i] > largest ? v[i] : largest;
   }
   const double lowest = std::max({options_.floor / others,
                                   largest * std::max(options_.floor_largest, kSmallestRatio),
-                                  rounding_});
+                                  gathered_rounding_});
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
     const double kept = v[i] > lowest ? v[i] : lowest;
@@ -173,26 +230,8 @@ void ReweightedVariances::apply() {
   }
 }
 
-void ReweightedVariances::update() {
-  if (m_ < 3) return;  // two channels tell the sum of their variances only
-  if (!started_) {
-    start(y_);
-    return;
-  }
-  const double a = gain();
-  if (m_ == static_cast<int>(v_.size())) {  // index rises: nobody is left out
-    solve<true>(a, options_.damping * a);
-    apply<true>();
-  } else {
-    solve<false>(a, options_.damping * a);
-    apply<false>();
-  }
-}
-
 Eigen::MatrixXd ReweightedVariances::weights() const {
-  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(v_.size()), 1);
-  for (int k = 0; k < m_; ++k) weights(index_[k], 0) = inverse_[index_[k]];
-  return m_ > 0 ? Eigen::MatrixXd(weights / weights.sum()) : weights;
+  return Eigen::Map<const Eigen::VectorXd>(p_.data(), static_cast<Eigen::Index>(p_.size()));
 }
 
 double ReweightedVariances::blindness(std::vector<double>& direction) const {

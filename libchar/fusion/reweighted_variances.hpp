@@ -11,6 +11,11 @@
 // v; it is diagonal plus rank one, so it is solved by elimination, the channel with the largest p
 // first.
 //
+// With a long memory the variances hardly move in an instant. The squares r_i^2 are then gathered,
+// each with its gain a, and one step is taken for all of them when the gains sum to kRenewal (or
+// another set of channels is in use): between two steps weights stand, and an instant costs little
+// more than a weighted mean. At gamma <= 0.99 every instant is a step.
+//
 // lambda: where two channels carry all the weight, only the sum of their variances shows in the
 // data and the matrix is nearly singular. The ridge leaves the fixed point where it is (E u = 0 at
 // the true v) and makes the poorly seen directions slow instead of noisy: their relative standard
@@ -42,8 +47,17 @@ class ReweightedVariances {
   /// Fused value of the m channels named in `index`, rising (nullptr: all); residuals stand in
   /// `residual()` until the next call. The samples must be finite.
   double fuse(const double* y, const int* index, int m);
-  /// Improves the variances of the channels of the last `fuse` by its residuals.
-  void update();
+  /// Learns from the residuals of the last `fuse`.
+  void update() {
+    if (m_ < 3) return;  // two channels tell the sum of their variances only
+    if (!started_) {
+      start(y_);
+      return;
+    }
+    const double a = gain();
+    gather(a);
+    if (gathered_gain_ >= kRenewal || ++gathered_instants_ >= kMostGathered) renew(a);
+  }
 
   /// Of the last `fuse`.
   Estimate estimate() const {
@@ -55,9 +69,10 @@ class ReweightedVariances {
   double innovation_variance(std::size_t i) const { return v_[i] + fused_; }
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
-  /// Part of the variance of channel i in the last `fuse` that shows in its residual.
-  double residual_variance(std::size_t i) const { return v_[i] - fused_; }
-  double residual(std::size_t i) const { return r_[i]; }
+  /// By channel, of those in use in the last `fuse`.
+  const double* residuals() const { return r_.data(); }
+  /// Part of the variance of each channel in use that shows in its residual.
+  const double* residual_variances() const { return shown_.data(); }
   /// A level below which a variance is rounding error.
   double rounding() const { return rounding_; }
   bool started() const { return started_; }
@@ -70,29 +85,45 @@ class ReweightedVariances {
   /// All channels; for reports, not for every instant.
   double blindness(std::vector<double>& direction) const;
 
+  /// Gain that is gathered before the variances are renewed: a hundredth of what they know.
+  static constexpr double kRenewal = 0.0079;
+  static constexpr int kMostGathered = 16;
+
  private:
   void start(const double* y);
   void start_from_pairs();
+  bool all() const { return m_ == static_cast<int>(v_.size()); }
+  /// Another set of channels: what was gathered belongs to the old one.
+  void use(const int* index, int m);
+  void weigh();
   double gain();
+  void gather(double a);
+  void renew(double a);
   template <bool kAll>
-  void solve(double a, double lambda);
+  double fuse_in_use(const double* y);
+  template <bool kAll>
+  void solve(double lambda);
   template <bool kAll>
   void apply();
 
   ReweightingOptions options_;
+  // All by channel.
   std::vector<double> v_, inverse_, r_;
-  std::vector<double> p_, b_,
-      e_;  // of the channels in use, in their order: weight, right side, 1 / (1 - 2p + lambda)
-  std::vector<int> everybody_;
+  std::vector<double> p_;         // weights; zero where a channel is not in use
+  std::vector<double> shown_;     // v - fused variance, where in use
+  std::vector<double> gathered_;  // sum of gain x r^2 since the variances were renewed
+  std::vector<double> b_, e_;     // right side, 1 / (1 - 2p + lambda)
+  std::vector<int> index_;        // channels in use, rising: the first m_
   std::vector<double> first_;  // samples of the first instants, NaN where a channel was not in use
-  const int* index_ = nullptr;
   int m_ = 0;
   double fused_ = 1;  // 1 / sum of the inverse variances in use
   double x_ = 0, rounding_ = 0;
   double instants_ = 0;
+  double gathered_gain_ = 0, last_gain_ = 0, gathered_rounding_ = 0;
+  int gathered_instants_ = 0;
   int first_instants_ = 0;
   const double* y_ = nullptr;  // of the last `fuse`
-  int heaviest_ = 0;           // position of the largest p
+  int heaviest_ = 0;           // channel of the largest p
   bool started_ = false;
 };
 

@@ -21,8 +21,8 @@ class Runner {
  public:
   virtual ~Runner() = default;
   virtual const Card& card() const = 0;
-  /// Instants of the learning window with the true inputs (r rows). Instants whose truth is NaN are
-  /// passed over.
+  /// Consecutive instants of the learning window with the true inputs (r rows). Instants whose
+  /// truth is NaN teach nothing, but their time has passed: leave none out.
   virtual void learn(const Block& samples, const Block& truth) = 0;
   virtual void finish_learning() = 0;
   /// Estimates and their variances, a column for each column of samples.
@@ -69,7 +69,10 @@ class RunnerOf final : public Runner {
       for (Eigen::Index k = 0; k < samples.cols(); ++k) {
         const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
         const Sample x(truth.data() + k * truth.outerStride(), truth.rows());
-        if (complete(x) && (A::card.needs.accepts_missing || complete(y))) algorithm_.learn(y, x);
+        if (complete(x) && (A::card.needs.accepts_missing || complete(y)))
+          algorithm_.learn(y, x);
+        else if constexpr (Skips<A>)
+          algorithm_.skip(y);
       }
     }
   }

@@ -1,5 +1,7 @@
 #include "libchar/fusion/tilt_kalman.hpp"
 
+#include <algorithm>
+
 namespace libchar::fusion {
 
 TiltKalmanFilter::TiltKalmanFilter(const TiltNoise& noise,
@@ -13,8 +15,29 @@ TiltKalmanFilter::TiltKalmanFilter(const TiltNoise& noise,
       angle_(at_zero ? 0 : std::nan("")),
       e_(at_zero ? 0 : start_bias_variance) {}
 
+void TiltKalmanFilter::hear(double rate) {
+  constexpr double kMemory = 100;
+  if (std::isnan(rate)) {
+    held_ += 1;
+    return;
+  }
+  if (held_ == 0 && !std::isnan(rate_)) {
+    changes_ = std::min(changes_ + 1, kMemory);
+    change_square_ += ((rate - rate_) * (rate - rate_) - change_square_) / changes_;
+  }
+  rate_ = rate;
+  held_ = 0;
+}
+
+/// Variance of the angle from rates that were held.
+double TiltKalmanFilter::held_error() const {
+  const double sum = held_ * (held_ + 1) / 2 * dt_, before = held_ * (held_ - 1) / 2 * dt_;
+  return change_square_ * (sum - before) * (sum + before);
+}
+
 void TiltKalmanFilter::predict() {
-  angle_ = wrapped(angle_ + (rate_ - bias_) * dt_);
+  // No rate ever: none is assumed.
+  angle_ = wrapped(angle_ + (std::isnan(rate_) ? 0 : rate_ - bias_) * dt_);
   c_ -= dt_;
   const double grown = e_ + q_bias_;
   if (grown > 0) {
@@ -25,6 +48,7 @@ void TiltKalmanFilter::predict() {
     c_ = 0;
   }
   e_ = grown;
+  if (held_ > 0) d_ += held_error();
 }
 
 void TiltKalmanFilter::update(double gravity) {
@@ -41,7 +65,7 @@ void TiltKalmanFilter::update(double gravity) {
 
 double TiltKalmanFilter::step(const TiltSample& sample) {
   normalised_square_ = std::nan("");
-  if (!std::isnan(sample.rate)) rate_ = sample.rate;
+  hear(sample.rate);
   if (std::isnan(angle_)) {
     d_ = r_;
     return angle_ = sample.angle;

@@ -4,6 +4,10 @@
 // The covariance is kept as P = U diag(d, e) U' with U = [1 c; 0 1] (Bierman 1977): d is the
 // variance of the angle if the bias were known, e that of the bias, c what the angle owes to it:
 //   P_00 = d + c^2 e,  P_01 = c e,  P_11 = e.
+// A missing sample of the gyroscope holds the last rate. After j of them the rate may be off by j
+// times what it usually changes in an instant, the angle by h(j) = dt s j (j + 1) / 2 with s^2 the
+// running mean square of the changes: d grows by h(j)^2 - h(j-1)^2, so gravity is believed more.
+//
 // Then prediction is c -= dt and sums of positive terms, and the update multiplies d and e by
 // numbers in (0, 1]: nothing is subtracted, so P stays symmetric and positive for ever.
 
@@ -40,7 +44,12 @@ class TiltKalmanFilter {
   double dt_, q_angle_, q_bias_, r_;
   double angle_, bias_ = 0;
   double c_ = 0, d_ = 0, e_;
-  double rate_ = 0;  // the last one there was: a missing sample of the gyroscope holds it
+  void hear(double rate);
+  double held_error() const;
+
+  double rate_ = std::numeric_limits<double>::quiet_NaN();  // the last one there was
+  double change_square_ = 0, changes_ = 0;                  // of the rate, from instant to instant
+  double held_ = 0;                                         // instants since then
   double normalised_square_ = 0;
 };
 

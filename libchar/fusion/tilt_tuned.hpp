@@ -21,7 +21,8 @@ inline constexpr Needs kTiltTunedNeeds{.min_channels = 3,
                                        .rate = true,
                                        .tilt = true};
 
-/// The learning window, at most kMost instants of it.
+/// The learning window, at most kMost instants of it. An instant without a truth (NaN) is not
+/// judged, but the filters run through it.
 class TiltWindow {
  public:
   static constexpr std::size_t kMost = 50000;
@@ -49,6 +50,7 @@ struct TiltComplementaryTuned {
   void learn(const Sample& y, const Sample& truth) {
     window_.add(tilt_sample(channels_, y), truth[0]);
   }
+  void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
   Estimate step(const Sample& y);
   void remarks(Warnings& warnings) const;
@@ -71,6 +73,7 @@ struct TiltKalmanTuned {
   void learn(const Sample& y, const Sample& truth) {
     window_.add(tilt_sample(channels_, y), truth[0]);
   }
+  void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
   Estimate step(const Sample& y);
   void remarks(Warnings& warnings) const;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/sha256_blocks.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/csv_dialect.hpp"
 #include "libchar/log/csv_feed.hpp"
@@ -40,6 +41,7 @@ class CsvSource final : public RowSource {
     words_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
+    info_.rows = expected_rows(head);
     feed_.start_at(dialect_.data_offset);
     next_line_ = dialect_.first_data_line;
     info_.bytes = feed_.size();
@@ -49,6 +51,7 @@ class CsvSource final : public RowSource {
     const bool small =
         feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
+    goes_along_ = feed_.hashes_along();
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
   }
@@ -145,6 +148,17 @@ class CsvSource final : public RowSource {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
   }
 
+  // As many rows as there would be if all were as long as those in the head.
+  std::uint64_t expected_rows(std::string_view head) const {
+    const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
+    const auto lines = static_cast<std::uint64_t>(
+        std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (body.empty() || feed_.size() <= dialect_.data_offset) return 0;
+    return static_cast<std::uint64_t>(static_cast<double>(feed_.size() - dialect_.data_offset) /
+                                      static_cast<double>(body.size()) *
+                                      static_cast<double>(lines));
+  }
+
   // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
   // this reader.
   void check_account() const {
@@ -189,9 +203,10 @@ class CsvSource final : public RowSource {
                    place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
     }
     if (chunk.unended)
-      warnings.add("no_final_newline",
-                   "the last line has no line end: if the file was cut, its last number may be cut too",
-                   place_name(next_line_ + chunk.unended->line, chunk.unended->column));
+      warnings.add(
+          "no_final_newline",
+          "the last line has no line end: if the file was cut, its last number may be cut too",
+          place_name(next_line_ + chunk.unended->line, chunk.unended->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       words_per_channel_[c] += chunk.words_per_channel[c];
@@ -223,8 +238,8 @@ class CsvSource final : public RowSource {
       raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
       return false;
     }
-    parse_rows(raw_.text(), plan_, chunk);
-    feed_.hash(raw_);
+    parse_rows(raw_.text(), plan_, chunk, feed_.begin_hash(raw_));
+    feed_.end_hash(raw_);
     raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
     current_offset_ = raw_.offset;
     return true;
@@ -263,11 +278,16 @@ class CsvSource final : public RowSource {
         std::unique_lock lock(mutex_);
         // Neither the parsed chunks nor those that wait for their hash may pile up.
         room_changed_.wait(lock, [&] {
-          return stop_ || exhausted_ || (!reading_ && read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_);
+          const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
+          // A chunk can be hashed along with its parsing only when its turn has come, and what
+          // others have parsed by then costs its hash on top.
+          const bool turn = !goes_along_ || parsing_ == 0;
+          return stop_ || exhausted_ || (!reading_ && room && turn);
         });
         if (stop_ || exhausted_) return;
         reading_ = true;  // one reader at a time, in file order
         sequence = read_++;
+        ++parsing_;
         if (!spare_raws_.empty()) {
           raw = std::move(spare_raws_.back());
           spare_raws_.pop_back();
@@ -283,24 +303,38 @@ class CsvSource final : public RowSource {
         item.failure = std::current_exception();
       }
       item.offset = raw.offset;
+      bool hashing = false;  // along with the parsing
       {
         const std::lock_guard lock(mutex_);
         reading_ = false;
         exhausted_ = exhausted_ || item.end || item.failure;
+        hashing = feed_.hashes_along() && !hashing_ && hashed_ == sequence;
+        hashing_ = hashing_ || hashing;
         room_changed_.notify_all();
       }
+      Sha256Blocks* const along = hashing ? feed_.begin_hash(raw) : nullptr;
       if (!item.end && !item.failure) {
         try {
-          parse_rows(raw.text(), plan_, item.chunk);
+          parse_rows(raw.text(), plan_, item.chunk, along);
         } catch (...) {
           item.failure = std::current_exception();
         }
       }
+      // Rows that are not plain take no hash along: then all workers parse at once.
+      const bool along_enough =
+          hashing && 2 * (along->end - along->next) <= static_cast<std::ptrdiff_t>(raw.size);
+      if (hashing) feed_.end_hash(raw);
       {
         const std::lock_guard lock(mutex_);
+        if (hashing) goes_along_ = along_enough;
         done_.emplace(sequence, std::move(item));
-        unhashed_.emplace(sequence, std::move(raw));
+        if (hashing)
+          note_hashed(std::move(raw));
+        else
+          unhashed_.emplace(sequence, std::move(raw));
+        --parsing_;
         done_changed_.notify_one();
+        room_changed_.notify_one();
       }
       hash_in_order();
     }
@@ -318,13 +352,18 @@ class CsvSource final : public RowSource {
         unhashed_.erase(unhashed_.begin());
       }
       feed_.hash(raw);
-      raw.hash_from = raw.hash_to = raw.nuls_after = 0;
       const std::lock_guard lock(mutex_);
-      spare_raws_.push_back(std::move(raw));
-      ++hashed_;
-      hashing_ = false;
-      room_changed_.notify_one();
+      note_hashed(std::move(raw));
     }
+  }
+
+  // Under the lock.
+  void note_hashed(RawChunk raw) {
+    raw.hash_from = raw.hash_to = raw.nuls_after = 0;
+    spare_raws_.push_back(std::move(raw));
+    ++hashed_;
+    hashing_ = false;
+    room_changed_.notify_one();
   }
 
   void stop() {
@@ -364,7 +403,8 @@ class CsvSource final : public RowSource {
   std::vector<ParsedChunk> spare_chunks_;
   std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
   std::size_t room_ = 2;
-  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false;
+  int parsing_ = 0;  // workers between their read and their rows
+  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, goes_along_ = false;
 };
 
 }  // namespace

@@ -52,7 +52,8 @@ Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
   }
   regular_ = known && S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
-  if (size_ > 0) block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
+  if (size_ > 0)
+    block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
 }
 
 Feed::~Feed() {
@@ -157,15 +158,28 @@ void Feed::drop_nul_tail(RawChunk& chunk) {
   chunk.size = line;
 }
 
-void Feed::hash(const RawChunk& chunk) {
+Sha256Blocks* Feed::begin_hash(const RawChunk& chunk) {
+  const std::string_view fresh(chunk.bytes.data() + chunk.hash_from,
+                               chunk.hash_to - chunk.hash_from);
+  if (hashes_along()) return sha_.along(fresh);
+  if (hashing_) sha_.update(fresh);
+  return nullptr;
+}
+
+void Feed::end_hash(const RawChunk& chunk) {
   if (!hashing_) return;
-  sha_.update({chunk.bytes.data() + chunk.hash_from, chunk.hash_to - chunk.hash_from});
+  if (hashes_along()) sha_.settle();
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
     const std::size_t n = std::min<std::uint64_t>(left, sizeof kZeros);
     sha_.update({kZeros, n});
     left -= n;
   }
+}
+
+void Feed::hash(const RawChunk& chunk) {
+  begin_hash(chunk);
+  end_hash(chunk);
 }
 
 std::string Feed::finish_hash() {

@@ -43,6 +43,11 @@ class Feed {
   /// The next chunk; false when there is none.
   bool next(RawChunk& chunk);
   void hash(const RawChunk& chunk);
+  /// The same in two steps, for a parser that hashes along between them; nullptr where that cannot
+  /// be.
+  bool hashes_along() const { return hashing_ && sha_.goes_along(); }
+  Sha256Blocks* begin_hash(const RawChunk& chunk);
+  void end_hash(const RawChunk& chunk);
   /// Reads on to the end of a regular file for its hash; "" when a pipe was not read to its end or
   /// no hash was asked for.
   std::string finish_hash();

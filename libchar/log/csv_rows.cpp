@@ -13,12 +13,13 @@ namespace {
 
 class RowParser {
  public:
-  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out)
+  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* along)
       : begin_(text.data()),
         end_(text.data() + text.size()),
         plan_(plan),
         dialect_(*plan.dialect),
-        out_(out) {
+        out_(out),
+        along_(along) {
     reset();
   }
 
@@ -29,7 +30,8 @@ class RowParser {
       const char* const start = p;
       if (p >= try_plain) {
         p = plain_rows(p);
-        // Each try looks some way ahead: a file whose rows are mostly not plain must not pay for that at every one of them.
+        // Each try looks some way ahead: a file whose rows are mostly not plain must not pay for
+        // that at every one of them.
         try_plain = p + kPatience;
       }
       p = quick_rows(p, std::min(end_, try_plain));
@@ -101,14 +103,16 @@ class RowParser {
       out_.rows.line_offset[i] = static_cast<std::uint32_t>(i);
   }
 
-  static constexpr std::size_t kPlainRows = 1024;  // at a time: their text fits the second-level cache
+  static constexpr std::size_t kPlainRows =
+      1024;  // at a time: their text fits the second-level cache
   static constexpr std::ptrdiff_t kPatience = std::ptrdiff_t{1} << 18U;
 
   // The fast way of plain_rows.hpp, from p to the first row that it does not take.
   const char* plain_rows(const char* p) {
     const bool crlf = dialect_.line_end == LineEnd::crlf;
     const bool timed = dialect_.time_column >= 0;
-    if (dialect_.delimiter == ' ' || dialect_.decimal != '.' || (!crlf && dialect_.line_end != LineEnd::lf) || (timed && stamp_digits_ < 0))
+    if (dialect_.delimiter == ' ' || dialect_.decimal != '.' ||
+        (!crlf && dialect_.line_end != LineEnd::lf) || (timed && stamp_digits_ < 0))
       return p;
     std::vector<PlainColumn> columns(plan_.target.size());
     std::vector<char> fractional(plan_.channels, 0);
@@ -118,22 +122,34 @@ class RowParser {
         const int target = plan_.target[c];
         if (target >= 0) {
           const auto channel = static_cast<std::size_t>(target);
-          columns[c] = {.use = PlainColumn::Use::value, .values = pointers_[channel] + rows_, .fractional = &fractional[channel]};
+          columns[c] = {.use = PlainColumn::Use::value,
+                        .values = pointers_[channel] + rows_,
+                        .fractional = &fractional[channel]};
         } else if (target == Plan::kTime) {
-          columns[c] = {.use = PlainColumn::Use::stamp, .stamps = out_.rows.time_ns.data() + rows_, .stamp_digits = stamp_digits_};
+          columns[c] = {.use = PlainColumn::Use::stamp,
+                        .stamps = out_.rows.time_ns.data() + rows_,
+                        .stamp_digits = stamp_digits_};
         }
       }
       const std::size_t wanted = std::min(kPlainRows, capacity_ - rows_);
-      const PlainRows taken = parse_plain_rows({p, static_cast<std::size_t>(end_ - p)}, dialect_.delimiter, crlf, columns, wanted, separators_);
+      const PlainRows taken = parse_plain_rows({p, static_cast<std::size_t>(end_ - p)},
+                                               dialect_.delimiter,
+                                               crlf,
+                                               columns,
+                                               wanted,
+                                               separators_,
+                                               along_);
       p += taken.consumed;
       if (lines_listed_)
-        for (std::size_t i = 0; i < taken.rows; ++i) out_.rows.line_offset.push_back(static_cast<std::uint32_t>(line_ + i));
+        for (std::size_t i = 0; i < taken.rows; ++i)
+          out_.rows.line_offset.push_back(static_cast<std::uint32_t>(line_ + i));
       rows_ += taken.rows;
       line_ += taken.rows;
       quick_rows_ += taken.rows;
       if (taken.rows < wanted) break;
     }
-    for (std::size_t c = 0; c < plan_.channels; ++c) out_.fractional[c] |= static_cast<std::uint32_t>(fractional[c]);
+    for (std::size_t c = 0; c < plan_.channels; ++c)
+      out_.fractional[c] |= static_cast<std::uint32_t>(fractional[c]);
     return p;
   }
 
@@ -219,8 +235,13 @@ class RowParser {
     const std::string_view line(start, static_cast<std::size_t>(stop - start));
     const auto bytes = static_cast<std::uint64_t>(after - start);
     line_start_ = start;
-    if (const std::size_t nul = line.find('\0'); line.size() > kMaxLine && nul != std::string_view::npos) {
-      fail("E0308", "NUL bytes between the rows", "", "a damaged file: copy it again, or read the part before with --to", nul);
+    if (const std::size_t nul = line.find('\0');
+        line.size() > kMaxLine && nul != std::string_view::npos) {
+      fail("E0308",
+           "NUL bytes between the rows",
+           "",
+           "a damaged file: copy it again, or read the part before with --to",
+           nul);
       return after;
     }
     if (line.size() > kMaxLine) {
@@ -500,6 +521,7 @@ class RowParser {
   const Plan& plan_;
   const Dialect& dialect_;
   ParsedChunk& out_;
+  Sha256Blocks* along_;
   std::vector<double*> pointers_;
   std::size_t rows_ = 0, capacity_ = 0;
   int stamp_digits_ = -1;  // the time unit is 10^this ns
@@ -525,8 +547,8 @@ void Account::add(const Account& o) {
   stamps += o.stamps;
 }
 
-void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out) {
-  RowParser(text, plan, out).run();
+void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* along) {
+  RowParser(text, plan, out, along).run();
 }
 
 }  // namespace libchar::csv

@@ -11,6 +11,10 @@
 #include "libchar/log/csv_dialect.hpp"
 #include "libchar/log/raw_rows.hpp"
 
+namespace libchar {
+struct Sha256Blocks;
+}
+
 namespace libchar::csv {
 
 inline constexpr std::size_t kPadding = 64;  // readable bytes behind a chunk's text
@@ -64,7 +68,8 @@ struct ParsedChunk {
   RowBlock rows;
   std::uint64_t lines = 0;  ///< line ends in the chunk (a last line without one counts)
   std::optional<RowFault> fault;
-  std::optional<Spot> unended;  ///< end of a last row that has no line end and may have been cut in its last cell
+  std::optional<Spot>
+      unended;  ///< end of a last row that has no line end and may have been cut in its last cell
   Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
   std::vector<std::uint64_t> missing_per_channel;
   std::vector<std::uint64_t>
@@ -76,7 +81,10 @@ struct ParsedChunk {
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).
 /// `text` must be readable for kPadding bytes past its end. After a fault the rows before it are
-/// kept and the rest is not looked at.
-void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out);
+/// kept and the rest is not looked at. Blocks of `along` may be hashed on the way.
+void parse_rows(std::string_view text,
+                const Plan& plan,
+                ParsedChunk& out,
+                Sha256Blocks* along = nullptr);
 
 }  // namespace libchar::csv

@@ -68,18 +68,24 @@ struct Extreme {
   }
 };
 
-double fold(Four lane) { return (lane[0] + lane[2]) + (lane[1] + lane[3]); }
+double fold(Four lane) {
+  return (lane[0] + lane[2]) + (lane[1] + lane[3]);
+}
 
 /// What one look at a block gives.
 struct BlockSums {
-  double sum = 0;                       // of x - shift
-  double low = 0, high = 0;             // extremes
+  double sum = 0;                         // of x - shift
+  double low = 0, high = 0;               // extremes
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
-  bool repeats = false;                 // some difference is zero
+  bool repeats = false;                   // some difference is zero
 };
 
-/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width.
-LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x, const double* before, std::size_t n, double shift) {
+/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
+/// vector width.
+LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
+                                     const double* before,
+                                     std::size_t n,
+                                     double shift) {
   Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
@@ -107,12 +113,21 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x, const double* before, std:
     a3[k] += q * d;
     a4[k] += q * q;
   }
-  return {fold(sum), std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]}),
-          fold(a1), fold(a2), fold(a3), fold(a4), (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0};
+  return {fold(sum),
+          std::min({low[0], low[1], low[2], low[3]}),
+          std::max({high[0], high[1], high[2], high[3]}),
+          fold(a1),
+          fold(a2),
+          fold(a3),
+          fold(a4),
+          (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0};
 }
 
 /// Sum of squares of (x - shift) - offset.
-LIBCHAR_WIDE_LANES double squares_about(const double* x, std::size_t n, double shift, double offset) {
+LIBCHAR_WIDE_LANES double squares_about(const double* x,
+                                        std::size_t n,
+                                        double shift,
+                                        double offset) {
   Four sum[2] = {};
   const std::size_t whole = n - n % 8;
   for (std::size_t i = 0; i < whole; i += 8)
@@ -144,14 +159,16 @@ LIBCHAR_WIDE_LANES bool any_missing(const double* x, std::size_t n) {
 // (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
 // sample need not pay).
 struct MeanAndSpread {
-  double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
+  double origin =
+      0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
 
   void block(const double* x, std::size_t count, double sum_about_first) {
     const double shift = x[0];
     if (n == 0) origin = shift;
     const double offset = sum_about_first / static_cast<double>(count);
-    const double other = static_cast<double>(count), total = n + other, d = (shift - origin) + offset - mean;
+    const double other = static_cast<double>(count), total = n + other,
+                 d = (shift - origin) + offset - mean;
     m2 += squares_about(x, count, shift, offset) + d * d * n * other / total;
     mean += d * other / total;
     n = total;
@@ -247,7 +264,7 @@ struct QualityMeter::State {
   bool float32 = true;
   bool any_fraction = false;
   double held[1 + kBlock];  // the sample before the block, then samples until the block is full
-  bool starts[kBlock];      // sample i does not follow sample i-1 directly (missing samples between)
+  bool starts[kBlock];  // sample i does not follow sample i-1 directly (missing samples between)
   std::size_t used = 0;
   bool any_start = false;
 
@@ -263,13 +280,18 @@ void QualityMeter::State::push(std::span<const double> samples) {
   const double* const end = x + samples.size();
   while (x != end) {
     const std::size_t n = std::min<std::size_t>(kBlock - used, static_cast<std::size_t>(end - x));
-    const bool missing_here = any_missing(x, n);
-    // A whole block is looked at where it lies, but for its first sample, whose neighbour may be elsewhere.
-    if (n == kBlock && joined && !missing_here && x != samples.data()) {
+    // A whole block is looked at where it lies, but for its first sample, whose neighbour may be
+    // elsewhere. A missing sample makes its sum no number.
+    if (n == kBlock && joined && x != samples.data()) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
-      runs(x, x - 1, n, sums.repeats);
-      process(x, sums, n, 0);
-    } else if (!missing_here) {
+      if (!std::isnan(sums.sum)) {
+        runs(x, x - 1, n, sums.repeats);
+        process(x, sums, n, 0);
+        x += n;
+        continue;
+      }
+    }
+    if (!any_missing(x, n)) {
       std::memcpy(held + 1 + used, x, n * sizeof(double));
       std::memset(starts + used, 0, n);
       starts[used] = !joined;
@@ -322,7 +344,10 @@ void QualityMeter::State::process_held() {
   any_start = false;
 }
 
-void QualityMeter::State::process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks) {
+void QualityMeter::State::process(const double* x,
+                                  const BlockSums& sums,
+                                  std::size_t n,
+                                  std::size_t breaks) {
   values.block(x, n, sums.sum);
   minimum = std::min(minimum, sums.low);
   maximum = std::max(maximum, sums.high);
@@ -332,7 +357,8 @@ void QualityMeter::State::process(const double* x, const BlockSums& sums, std::s
   bottom.block(x, n, sums.low);
   if (float32) {
     int wide = 0;
-    for (std::size_t i = 0; i < n; ++i) wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
+    for (std::size_t i = 0; i < n; ++i)
+      wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
     float32 = wide == 0;
   }
   for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(x[i]);

@@ -29,7 +29,7 @@ struct ReadOptions {
   std::uint64_t skip_rows = 0;        ///< lines to skip before the header (CSV)
   bool overflow_as_missing = false;   ///< a number out of double's range counts as missing instead of ending the reading
   bool skip_repeated_header = false;  ///< header lines inside the data (concatenated logs) are counted and skipped
-  std::size_t block_bytes = std::size_t{1} << 20U;  ///< bytes of file per block; results never depend on it (tests use 1…70000)
+  std::size_t block_bytes = std::size_t{1} << 22U;  ///< bytes of file per block; results never depend on it (tests use 1…70000)
   int threads = 0;                    ///< 0 = all cores; results never depend on it
   bool hash = true;                   ///< compute LogInfo::sha256
 };

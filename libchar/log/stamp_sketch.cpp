@@ -15,27 +15,12 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-void StampSketch::add(std::int64_t index, std::int64_t stamp) {
-  const Pair pair{index, stamp};
-  if (in_cell_ == 0 || cells_.empty()) {
-    if (cells_.size() == kCells) {
-      thin();
-    }
-    cells_.push_back({pair, pair, pair});
-    in_cell_ = per_cell_ - 1;
-    return;
-  }
-  --in_cell_;
-  Cell& cell = cells_.back();
-  const double r = residual(pair);
-  if (r < residual(cell.low)) cell.low = pair;
-  if (r > residual(cell.high)) cell.high = pair;
-}
-
-double StampSketch::residual(const Pair& pair) const {
-  const Pair& origin = cells_.front().first;
-  return static_cast<double>(pair.stamp - origin.stamp) -
-         slope_ * static_cast<double>(pair.index - origin.index);
+void StampSketch::begin_cell(const Pair& pair) {
+  if (cells_.empty()) origin_ = pair;
+  if (cells_.size() == kCells) thin();
+  cells_.push_back({pair, pair, pair});
+  in_cell_ = per_cell_ - 1;
+  low_ = high_ = residual(pair);
 }
 
 void StampSketch::thin() {

@@ -15,7 +15,19 @@ namespace libchar {
 /// pair of every stretch.
 class StampSketch {
  public:
-  void add(std::int64_t index, std::int64_t stamp);
+  void add(std::int64_t index, std::int64_t stamp) {
+    if (in_cell_ == 0) return begin_cell({index, stamp});
+    --in_cell_;
+    const double r = residual({index, stamp});
+    if (r < low_) {
+      low_ = r;
+      cells_.back().low = {index, stamp};
+    }
+    if (r > high_) {
+      high_ = r;
+      cells_.back().high = {index, stamp};
+    }
+  }
   /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
   double interval_ns() const;
   /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.
@@ -31,9 +43,15 @@ class StampSketch {
   struct Cell {
     Pair first, low, high;
   };
-  double residual(const Pair& pair) const;
+  double residual(const Pair& pair) const {
+    return static_cast<double>(pair.stamp - origin_.stamp) -
+           slope_ * static_cast<double>(pair.index - origin_.index);
+  }
+  void begin_cell(const Pair& pair);
   void thin();
   std::vector<Cell> cells_;
+  Pair origin_;                // the very first
+  double low_ = 0, high_ = 0;  // residuals in the cell under way
   std::uint64_t per_cell_ = 1, in_cell_ = 0;
   double slope_ = 0;  // provisional, to tell which pair of a cell deviates most
   static constexpr std::size_t kCells = 4096;

@@ -215,11 +215,11 @@ LagEstimate estimate_lag(std::span<const double> sensor,
   const Curve curve = correlate(s, x, from - kLobes, to + kLobes, fewest);
   const auto highest = largest(curve);
   if (!highest) return result;
-  result.correlation = curve.r[*highest];
-  const std::vector<Top> all = tops(curve, most, result.correlation);
+  const double largest_sampled = curve.r[*highest];
+  const std::vector<Top> all = tops(curve, most, largest_sampled);
   double best = 0;
   for (const Top& top : all) best = std::max(best, top.correlation);
-  if (best < result.correlation - kTie) return result;  // it grows towards the end of the range
+  if (best < largest_sampled - kTie) return result;  // it grows towards the end of the range
   const Top* chosen = nullptr;
   for (const Top& top : all)
     if (top.correlation >= best - kTie && (!chosen || std::abs(top.lag) < std::abs(chosen->lag)))

@@ -9,8 +9,8 @@ namespace libchar {
 struct LagEstimate {
   /// The sensor is later by this; NaN: no lag within the range fits better than its neighbours.
   double lag_s = std::numeric_limits<double>::quiet_NaN();
-  /// Coefficient there, or the largest of the range when there is no lag; NaN: nothing to compare
-  /// (constants, hardly any common samples). Below some 0.3 a lag means little.
+  /// Coefficient there; NaN when there is no lag, or nothing to compare (constants, hardly any
+  /// common samples). Below some 0.3 a lag means little.
   double correlation = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -56,6 +56,7 @@ struct SceneAlgorithm {
 struct SimulatedFrom {
   std::uint64_t seed = 1;
   std::vector<SensorFault> faults;
+  std::uint64_t oversampling = 1;  ///< says how much noise its models gave a sample
 };
 
 struct Scene {

@@ -354,9 +354,12 @@ class SceneReader {
   void simulated() {
     if (scene_.simulate)
       refuse_scene("E0735", top_, "simulated", "tells what a recording holds; this scene has none");
-    const MapReader at = top_.map("simulated", {"seed", "faults"});
+    const MapReader at = top_.map("simulated", {"seed", "oversampling", "faults"});
     SimulatedFrom from;
     from.seed = at.count_or("seed", 1);
+    from.oversampling = at.count_or("oversampling", 1);
+    if (from.oversampling < 1 || from.oversampling > 1024)
+      at.refuse("oversampling", "expected a whole number from 1 to 1024");
     if (at.has("faults")) from.faults = faults(at);
     scene_.simulated = std::move(from);
   }

@@ -242,6 +242,8 @@ std::string scene_yaml(const Scene& scene) {
     out += fmt::format(
         "simulated:  # what the recording is known to hold; not injected again\n  seed: {}\n",
         scene.simulated->seed);
+    if (scene.simulated->oversampling > 1)
+      out += fmt::format("  oversampling: {}\n", scene.simulated->oversampling);
     if (!scene.simulated->faults.empty()) out += faults_block(scene.simulated->faults, scene, "  ");
   }
   if (!scene.algorithms.empty()) out += algorithms_block(scene);

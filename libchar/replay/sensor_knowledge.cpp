@@ -60,7 +60,9 @@ SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& pro
       out.noise_sources[i] = "the scene";
     } else if (sensor.model) {
       const double scale = sensor.scale * sensor.scale;
-      const std::uint64_t oversampling = scene.simulate ? scene.simulate->oversampling : 1;
+      const std::uint64_t oversampling = scene.simulate    ? scene.simulate->oversampling
+                                         : scene.simulated ? scene.simulated->oversampling
+                                                           : 1;
       const double variance =
           sample_noise_variance(*sensor.model, feed.source().info().rate_hz, oversampling);
       if (variance > 0) {

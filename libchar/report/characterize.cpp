@@ -24,6 +24,10 @@ class Stages : public BlockSink {
   void begin(const LogInfo& so_far) override {
     const std::size_t channels = so_far.channels.size();
     for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_);
+    if (surely_too_long(so_far)) {
+      for (ChannelStage& stage : stages_) stage.stop_keeping();
+      return;
+    }
     // No value takes less than a byte of the file, and no more than the budget is kept.
     const std::uint64_t most = std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
     for (ChannelStage& stage : stages_) stage.reserve(most);
@@ -75,6 +79,15 @@ class Stages : public BlockSink {
   }
 
  private:
+  // Samples that will not be kept in the end need not be kept in the beginning. What is expected may be wrong by a factor; a log
+  // that would just fit must not be streamed for that.
+  bool surely_too_long(const LogInfo& so_far) const {
+    constexpr double kDoubt = 4;
+    const bool window = options_.reading.from_s || options_.reading.to_s;
+    const double bytes = static_cast<double>(so_far.rows) * static_cast<double>(so_far.channels.size()) * sizeof(double);
+    return !window && options_.data != SampleKind::phase && bytes > kDoubt * static_cast<double>(budget_);
+  }
+
   const CharacterizeOptions& options_;
   std::uint64_t budget_ = 0, kept_bytes_ = 0;
   std::vector<ChannelStage> stages_;

@@ -1,82 +1,61 @@
 #pragma once
-// Two replay reports side by side: what a change of code or options did to errors and costs.
+// Two replay reports side by side: A, the older or the accepted one, and B.
 
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/report/replay_summary.hpp"
 
 namespace libchar {
 
-/// One algorithm of a report.
-struct ReportedAlgorithm {
-  std::string label;
-  bool ran = false, bound = false;
-  std::string why;  ///< why it did not run
-  /// RMSE, or leave-one-out RMS without a reference.
-  std::optional<double> score;
-  std::optional<Interval> score_ci95;
-  std::optional<double> regret, ns_per_sample, peak_bytes;
+/// What the intervals of two RMSE say of their difference.
+enum class Difference {
+  equal,         ///< the same number
+  not_resolved,  ///< the 95 % intervals overlap
+  better,        ///< B's interval is wholly below A's
+  worse,         ///< B's interval is wholly above A's
+  unknown,       ///< one of them has no RMSE or no interval
 };
 
-/// What a comparison takes from a report.json of `replay`.
-struct ReportedReplay {
-  std::string file;
-  std::string scene;  ///< name, or file
-  std::string score;  ///< "rmse" or "leave_one_out_rms"
-  std::string unit;   ///< of the score
-  /// What makes two scenes alike: a phrase and its value, in the order in which differences are
-  /// told.
-  std::vector<std::pair<std::string, std::string>> identity;
-  std::vector<ReportedAlgorithm> algorithms;
-};
+/// "equal", "not resolved", "better", "worse", "unknown".
+std::string_view name_of(Difference difference);
 
-/// Throws Error(input): no JSON, another format, a newer version, a key that is missing or of
-/// another type, with its place.
-ReportedReplay read_reported_replay(std::string_view text, const std::string& file);
-
-/// "the recordings differ: A has …, B has …"; empty: the same scene.
-std::vector<std::string> scene_differences(const ReportedReplay& a, const ReportedReplay& b);
-
+/// One label; a side that does not have it is null.
 struct ComparedAlgorithm {
-  ReportedAlgorithm a, b;                                       ///< of one label
-  std::optional<double> score_change, ns_change, bytes_change;  ///< B / A - 1
-  std::optional<double> regret_change;                          ///< B - A
-  std::optional<bool> resolved;  ///< the 95 % intervals are apart; none: an interval is not known
+  std::string label;
+  const AlgorithmSummary *a = nullptr, *b = nullptr;
+  Difference difference = Difference::unknown;
+  double rmse_change = 0;   ///< B / A - 1; NaN: one side has none
+  double ns_change = 0;     ///< B / A - 1 of ns per sample
+  double bytes_change = 0;  ///< B / A - 1 of the peak memory
+  /// Both ran.
+  bool both_ran() const { return a != nullptr && b != nullptr && a->ran && b->ran; }
 };
 
 struct Comparison {
-  ReportedReplay a, b;
-  std::vector<std::string> differences;  ///< of the scenes
-  std::vector<ComparedAlgorithm> both;   ///< that ran in both, in A's order
-  /// Labels, with the reason where the other report gives one.
-  std::vector<std::pair<std::string, std::string>> only_a, only_b;
+  ReplaySummary a, b;
+  /// Why these are not two replays of one scene; empty: they are.
+  std::vector<std::string> unlike;
+  /// What differs and makes no other scene of it: learning window, options, noise levels, program.
+  std::vector<std::string> remarks;
+  /// By RMSE of B; then those without one in B, by A's. Points into `a` and `b`.
+  std::vector<ComparedAlgorithm> algorithms;
+
+  Comparison() = default;
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
+  Comparison(Comparison&&) = default;
+  Comparison& operator=(Comparison&&) = default;
 };
 
-Comparison compare_replays(const ReportedReplay& a, const ReportedReplay& b);
+/// Puts them side by side, like or unlike.
+Comparison compare_replays(ReplaySummary a, ReplaySummary b);
 
-/// "[LABEL:]METRIC+LIMIT" with METRIC rmse, regret, ns_per_sample or peak_bytes, LIMIT "5%" or an
-/// absolute number: B may exceed A by so much. For regret, 5% are five percentage points.
-struct Check {
-  std::string text, label, metric;
-  double limit = 0;
-  bool relative = false;
-};
-/// Throws Error(usage).
-Check check_from_words(const std::string& text);
+/// Throws Error(input) that names the differences when the two are not of one scene.
+void refuse_unlike(const Comparison& comparison);
 
-/// Sentences, one a breach: also for an algorithm that ran in A and not in B, and for a check that
-/// finds nothing to compare.
-std::vector<std::string> breaches(const Comparison& comparison, const Check& check);
-
-/// {"format":"replay-comparison","version":1,…}
-Json comparison_json(const Comparison& comparison, const std::vector<Check>& checks);
-std::string comparison_markdown(const Comparison& comparison, const std::vector<Check>& checks);
-/// Head and rows for a table, cells unescaped.
-std::vector<std::vector<std::string>> comparison_table(const Comparison& comparison);
+/// "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each.
+std::string comparison_verdict(const Comparison& comparison);
 
 }  // namespace libchar

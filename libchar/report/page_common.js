@@ -108,8 +108,9 @@ const reportPage = (function () {
     };
   }
 
-  // `makers`: a function a kind of figure that gives its chart's configuration; `heightOnPaper`: in pixels at a width of 690.
-  function start(makers, heightOnPaper) {
+  // `makers`: a function a kind of figure that gives its chart's configuration; `heightOnPaper`: in pixels at a width of 690;
+  // `openOnPaper`: which details are printed unfolded.
+  function start(makers, heightOnPaper, openOnPaper) {
     // ---- drawing when needed ----
     const figures = Array.from(document.querySelectorAll("figure.plot"));
     const charts = new Map();
@@ -132,7 +133,7 @@ const reportPage = (function () {
     window.addEventListener("beforeprint", () => {
       figures.forEach(draw);
       charts.forEach((chart, figure) => chart.resize(690, heightOnPaper(figure.dataset.kind)));
-      opened = Array.from(document.querySelectorAll("#provenance details:not([open])"));
+      opened = Array.from(document.querySelectorAll(openOnPaper || "#provenance details:not([open])"));
       opened.forEach((details) => { details.open = true; });
     });
     window.addEventListener("afterprint", () => {

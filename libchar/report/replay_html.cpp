@@ -152,16 +152,27 @@ std::string window_plots(const ReplayResult& r) {
   return out;
 }
 
+// As many lines as replay_page.js draws of a large array.
+constexpr std::size_t kMostLines = 24;
+
+std::string lines_drawn(const ReplayResult& r, const char* which) {
+  return r.sensors.size() <= kMostLines
+             ? "A line a sensor; band: smallest and largest in each bin."
+             : fmt::format(
+                   "A line a sensor, of {} sensors the {} with the {} at the end; band: "
+                   "smallest and largest in each bin.",
+                   r.sensors.size(),
+                   kMostLines,
+                   which);
+}
+
 std::string track_plots(const ReplayResult& r) {
   const std::string name = name_of_scene(r);
   const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
   std::string out;
   if (any(r, [](const AlgorithmResult& a) { return a.weights && a.weights->cols() == 1; }))
     out += plot_figure(
-        "weights",
-        0,
-        {"Weights", "weight", "", "A line a sensor; band: smallest and largest in each bin."},
-        name);
+        "weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
   if (any(r, [](const AlgorithmResult& a) { return a.variances.has_value(); }))
     out += plot_figure(
         "variances",
@@ -169,9 +180,10 @@ std::string track_plots(const ReplayResult& r) {
         {"Noise variances as estimated",
          "variance",
          unit.empty() ? "" : "(" + unit + ")²",
-         r.has_reference
-             ? "Dotted: mean square error of the sensor over the run, its bias included."
-             : "A line a sensor; band: smallest and largest in each bin."},
+         lines_drawn(r, "smallest variances") +
+             (r.has_reference
+                  ? " Dotted: mean square error of the sensor over the run, its bias included."
+                  : "")},
         name);
   if (!r.faults.empty() || any(r, [](const AlgorithmResult& a) { return !a.faults.empty(); }))
     out += plot_figure(
@@ -223,9 +235,32 @@ std::string faults(const ReplayResult& r) {
              : "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + table + "</section>\n";
 }
 
+// Each sensor beside what fusing them gives: is it worth it?
+std::string sensor_plot(const ReplayResult& r) {
+  const bool some = std::any_of(
+      r.sensors.begin(), r.sensors.end(), [](const SensorResult& s) { return s.error.rmse > 0; });
+  // Sensors in different units have no axis in common.
+  const bool alike = std::all_of(r.sensors.begin(), r.sensors.end(), [&](const SensorResult& s) {
+    return s.unit == r.sensors[0].unit;
+  });
+  if (!some || !alike) return "";
+  const std::string unit = usual_unit(r.sensors[0].unit);
+  return "<div class=\"plots\">\n" +
+         plot_figure("sensors",
+                     0,
+                     {"Error of each sensor",
+                      "RMSE",
+                      unit,
+                      "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: "
+                      "noise of a sample as the algorithms were told. A sensor far above its noise "
+                      "failed, saturated or is not calibrated."},
+                     name_of_scene(r)) +
+         "</div>\n";
+}
+
 std::string sensors(const ReplayResult& r) {
-  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensors_table(r) +
-         blind_table(r) + "</section>\n";
+  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensor_plot(r) +
+         sensors_table(r) + blind_table(r) + "</section>\n";
 }
 
 Warnings all_warnings(const ReplayResult& r) {

@@ -26,7 +26,7 @@
     shown.clear();
     const best = order.find((a) => a.label === report.best);
     const free = order.find((a) => !a.bound && !a.card.learns_from_reference);
-    [best, free, order.find((a) => a.name === "mean"), order.find((a) => a.bound)].forEach((a) => { if (a) shown.add(a); });
+    [best, free, order.find((a) => a.name === "mean")].concat(order.filter((a) => a.bound)).forEach((a) => { if (a) shown.add(a); });
     if (!shown.size) order.slice(0, 3).forEach((a) => shown.add(a));
   }
   showDefaults();
@@ -105,16 +105,19 @@
   };
 
   // Only what is drawn has an entry; toggling is done by the boxes above the plots.
-  function plainLegend() {
+  function plainLegend(dashed) {
     const all = legend();
     all.onClick = () => {};
     const labels = all.labels.generateLabels;
     all.labels.generateLabels = (chart) => labels(chart).filter((item) => item.text && !item.hidden);
+    all.maxHeight = 110;
+    // Long enough to tell the dashes apart.
+    if (dashed) all.labels.pointStyleWidth = 36;
     return all;
   }
   function chart(sets, x, y, plugins) {
     const all = options(x, y);
-    all.plugins.legend = plainLegend();
+    all.plugins.legend = plainLegend(!sets.some((set) => set.marks));
     return { type: "line", data: { datasets: sets }, plugins: [whitePaper].concat(plugins || []), options: all };
   }
 
@@ -155,6 +158,13 @@
 
   // One method that diverged may not press all others together: beyond a thousand times the best, marks stand on the edge.
   const LARGEST = 1000;
+  // What the best fixed weights (or filter) of this run would have reached.
+  const optimumOf = (input) => (report.inputs[input] ? report.inputs[input].optimum_rmse : null);
+  function optimumLine(input, from, to, u) {
+    const y = optimumOf(input);
+    if (!positive(y)) return [];
+    return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: INK, backgroundColor: INK, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", people(y, 5) + " " + u] }];
+  }
   function costChart(key, front, title, axis, tipLine) {
     const all = order.filter((a) => positive(score(a)) && positive(a[key]));
     const top = LARGEST * minMax(all.map(score))[0];
@@ -185,6 +195,7 @@
     const [yMin, yMax] = padded(points.map((p) => p.y), Math.max(1.2, Math.pow(high / low, 0.07)));
     // A staircase: what the methods on it do not reach lies below and left of it.
     const line = points.filter((p) => !p.dim).sort((p, q) => p.x - q.x).map(({ x, y }) => ({ x, y }));
+    if (report.score === "rmse" && points.length) sets.push(...optimumLine(0, xMin, xMax, unit));
     if (line.length) {
       line.unshift({ x: line[0].x, y: yMax });
       line.push({ x: xMax, y: line[line.length - 1].y });
@@ -200,6 +211,7 @@
       const track = a.inputs[input] && a.inputs[input].window_rms;
       if (track) sets.push(...bandLine(a.label, track, 0, styleOf(a), true, timeTip(u)));
     });
+    if (sets.length) sets.push(...optimumLine(input, whole[0], whole[1], u));
     return chart(sets, timeAxis(), logFor(withUnit(axis, u), sets, 1.2), [dragging]);
   }
 
@@ -209,9 +221,18 @@
   tracked = [(a) => a.label === report.best && a.weight_track, (a) => a.weight_track && a.watches_faults, (a) => a.weight_track || a.watches_faults, (a) => a.label === report.best, () => true]
     .map((wish) => trackable.find(wish)).find(Boolean) || null;
 
+  // More lines than this nobody tells apart: those of the largest weights (smallest variances) are drawn, and the rest are counted.
+  const MOST_LINES = 24;
+  function drawnSensors(values, logarithmic) {
+    const all = report.sensors.map((s, i) => i);
+    if (all.length <= MOST_LINES) return all;
+    const rank = (i) => (!values || values[i] === null || Array.isArray(values[i]) ? -Infinity : logarithmic ? -values[i] : Math.abs(values[i]));
+    return all.sort((a, b) => rank(b) - rank(a) || a - b).slice(0, MOST_LINES).sort((a, b) => a - b);
+  }
   function sensorSets(track, values, logarithmic, u) {
     const sets = [];
-    report.sensors.forEach((s, i) => {
+    drawnSensors(values, logarithmic).forEach((i) => {
+      const s = report.sensors[i];
       if (track) sets.push(...bandLine(s.name, track, i, style(i), logarithmic, timeTip(u)));
       else if (values && values.length && values[i] !== null && (!logarithmic || values[i] > 0)) sets.push(flat(s.name, values[i], style(i), timeTip(u)));
     });
@@ -237,32 +258,38 @@
     const sets = tracked ? sensorSets(tracked.variance_track, tracked.variances, true, u) : [];
     const estimated = sets.length > 0;
     if (estimated) {
-      report.sensors.forEach((s, i) => {
+      drawnSensors(tracked.variances, true).forEach((i) => {
+        const s = report.sensors[i];
         if (positive(s.rmse)) sets.push(Object.assign(flat("", s.rmse * s.rmse, { colour: faint(style(i).colour, 0.55), dash: [1, 3] }), { order: 6, borderWidth: 1.3 }));
       });
     }
     return chart(sets, timeAxis(), logFor(axis + (u ? ", " + u : ""), sets, 1.3), [dragging].concat(estimated ? [] : [nothing((tracked ? tracked.label : "This method") + " estimates no variances")]));
   }
 
+  const MOST_ROWS = 24;
   function faultsChart() {
-    const end = whole[1], names = report.sensors.map((s) => s.name), rows = names.map((n, i) => String(i));
+    const end = whole[1], names = report.sensors.map((s) => s.name);
     const bar = (f) => ({ x: [Math.max(f.from_s, whole[0]), Math.min(f.to_s === null ? end : f.to_s, end)], y: String(names.indexOf(f.sensor)), f });
     const span = (f) => people(f.from_s, 6) + " … " + (f.to_s === null ? "the end" : people(f.to_s, 6)) + " s";
     const known = report.faults.filter((f) => f.from_s < end && (f.to_s === null || f.to_s > whole[0])).map(bar);
     const found = tracked ? tracked.faults.map(bar) : [];
+    // Of a large array only the sensors that have something to show.
+    const busy = new Set(known.concat(found).map((p) => p.y)), all_rows = names.map((n, i) => String(i));
+    const rows = names.length <= MOST_ROWS ? all_rows : all_rows.filter((i) => busy.has(i)).slice(0, MOST_ROWS);
+    const silent = known.length + found.length ? [] : [nothing("No fault is known, and none was found")];
     const plain = { grouped: false, minBarLength: 3, borderSkipped: false };
     const sets = [
-      Object.assign({ label: "found by " + (tracked ? tracked.label : "–"), data: found, backgroundColor: COLOURS[1], swatch: COLOURS[1], barPercentage: 0.36, order: 1, tip: (p) => [names[p.y] + ": out", span(p.f)] }, plain),
-      Object.assign({ label: "known to the scene", data: known, backgroundColor: "#9fb9da", swatch: "#9fb9da", barPercentage: 0.85, order: 2, tip: (p) => [names[p.y] + ": " + p.f.kind + (p.f.value === null ? "" : " " + people(p.f.value)), span(p.f)] }, plain),
+      Object.assign({ label: "found by " + (tracked ? tracked.label : "–"), data: found.filter((p) => rows.includes(p.y)), backgroundColor: COLOURS[1], swatch: COLOURS[1], barPercentage: 0.36, order: 1, tip: (p) => [names[p.y] + ": out", span(p.f)] }, plain),
+      Object.assign({ label: "known to the scene", data: known.filter((p) => rows.includes(p.y)), backgroundColor: "#9fb9da", swatch: "#9fb9da", barPercentage: 0.85, order: 2, tip: (p) => [names[p.y] + ": " + p.f.kind + (p.f.value === null ? "" : " " + people(p.f.value)), span(p.f)] }, plain),
     ];
-    const y = { type: "category", labels: rows, offset: true, ticks: { color: INK, autoSkip: false, callback: (v) => { const n = names[v] || ""; return n.length > 18 ? n.slice(0, 17) + "…" : n; } }, grid: { color: "#edf0f3", borderColor: "#8a929b" } };
+    const y = { type: "category", labels: rows, offset: true, ticks: { color: INK, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "") }, grid: { color: "#edf0f3", borderColor: "#8a929b" } };
     const all = options(timeAxis(), y);
     all.parsing = true;
     all.normalized = false;
     all.indexAxis = "y";
     all.plugins.legend = plainLegend();
     all.plugins.tooltip.callbacks.label = (item) => item.dataset.tip(item.raw);
-    return { type: "bar", data: { labels: rows, datasets: sets }, plugins: [whitePaper, dragging], options: all };
+    return { type: "bar", data: { labels: rows, datasets: sets }, plugins: [whitePaper, dragging].concat(silent), options: all };
   }
 
   // ---- Allan deviation of the errors ----
@@ -278,6 +305,57 @@
     const points = sets.flatMap((set) => set.data), [xMin, xMax] = padded(points.map((p) => p.x), 1.4), [yMin, yMax] = padded(points.map((p) => p.y), 1.5);
     return chart(sets, logAxis("averaging time τ, s", xMin, xMax), valueAxis(withUnit(axis, u), yMin, yMax));
   }
+
+  // ---- the sensors, beside the best that was made of them ----
+  function sensorsChart(index, axis, u) {
+    const all = report.sensors, last = all.length - 0.5, told = [], measured = [], low = [], high = [];
+    all.forEach((s, i) => {
+      if (positive(s.noise_variance)) told.push({ x: i, y: Math.sqrt(s.noise_variance), s });
+      if (!positive(s.rmse)) return;
+      measured.push({ x: i, y: s.rmse, s });
+      if (s.rmse_ci95 && positive(s.rmse_ci95[0])) { low.push(s.rmse_ci95[0]); high.push(s.rmse_ci95[1]); }
+    });
+    const tip = (p) => [p.s.name, "RMSE " + people(p.s.rmse, 5) + " " + u].concat(p.s.rmse_ci95 ? ["95 %: " + people(p.s.rmse_ci95[0]) + " … " + people(p.s.rmse_ci95[1])] : [], positive(p.s.noise_variance) ? ["noise of a sample " + people(Math.sqrt(p.s.noise_variance), 4)] : []);
+    const sets = [
+      { label: "sensor", data: measured, showLine: false, marks: true, intervals: true, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 5, pointHoverRadius: 7, fill: false, order: 1, tip },
+      { label: "noise it was said to have", data: told, showLine: false, marks: true, borderColor: MEASURED, backgroundColor: "#fff", pointStyle: "rectRot", pointRadius: 6, pointBorderWidth: 1.6, fill: false, order: 2, tip },
+    ].filter((set) => set.data.length);
+    const best = order.find((a) => a.label === report.best), mean = order.find((a) => a.name === "mean");
+    const level = (name, y, look) => sets.push(Object.assign(flat(name, y, look, () => [name, "RMSE " + people(y, 5) + " " + u]), { data: [{ x: -0.5, y }, { x: last, y }], order: 5 }));
+    if (report.inputs.length === 1 && report.inputs[0].unit === all[0].unit && report.score === "rmse") {
+      if (best && positive(best.rmse)) level("fused by " + best.label, best.rmse, styleOf(best));
+      if (mean && mean !== best && positive(mean.rmse)) level("fused by mean", mean.rmse, styleOf(mean));
+    }
+    const [yMin, yMax] = padded(sets.flatMap((set) => set.data.map((p) => p.y)).concat(low, high), 1.2);
+    const x = linearAxis("sensor", -0.5, last);
+    x.ticks = { color: INK, autoSkip: true, maxRotation: 60, callback: (v) => (all[v] ? shortened(all[v].name) : "") };
+    x.afterBuildTicks = (a) => { a.ticks = all.map((s, i) => ({ value: i })); };
+    return chart(sets, x, valueAxis(withUnit(axis, u), yMin, yMax), [intervalBars]);
+  }
+  const shortened = (name) => (name.length > 18 ? name.slice(0, 17) + "…" : name);
+  // Upright lines from end to end of a point's 95 % interval.
+  const intervalBars = {
+    id: "intervalBars",
+    beforeDatasetsDraw(chart) {
+      const pen = chart.ctx, y = chart.scales.y;
+      chart.data.datasets.forEach((set, index) => {
+        if (!set.intervals) return;
+        pen.save();
+        pen.strokeStyle = set.borderColor;
+        pen.lineWidth = 1.6;
+        chart.getDatasetMeta(index).data.forEach((mark, i) => {
+          const pair = set.data[i].s.rmse_ci95;
+          if (!pair || !positive(pair[0])) return;
+          pen.beginPath();
+          pair.forEach((v) => { pen.moveTo(mark.x - 4, y.getPixelForValue(v)); pen.lineTo(mark.x + 4, y.getPixelForValue(v)); });
+          pen.moveTo(mark.x, y.getPixelForValue(pair[0]));
+          pen.lineTo(mark.x, y.getPixelForValue(pair[1]));
+          pen.stroke();
+        });
+        pen.restore();
+      });
+    },
+  };
 
   // ---- dragging out a stretch ----
   let drag = null;
@@ -320,10 +398,10 @@
   const MAKERS = {
     "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => people(x, 3) + " ns a sample"),
     "cost-memory": (i, axis, u) => costChart("peak_bytes", "memory", "peak memory, bytes", withUnit(axis, u), onMemory),
-    window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, "error-allan": allanChart,
+    window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, "error-allan": allanChart, sensors: sensorsChart,
   };
-  const HEIGHTS = { faults: 220, "cost-time": 340, "cost-memory": 340 };
-  const { figures, charts } = start(MAKERS, (kind) => HEIGHTS[kind] || 300);
+  const HEIGHTS = { faults: 220, sensors: 220, "cost-time": 340, "cost-memory": 340 };
+  const { figures, charts } = start(MAKERS, (kind) => HEIGHTS[kind] || 300, "details:not([open])");
 
   // ---- what is shown ----
   let waiting = false;
@@ -409,6 +487,8 @@
     const head = Array.from(table.tHead.rows[0].cells), body = table.tBodies[0];
     head.forEach((cell, column) => {
       cell.dataset.sorts = "";
+      cell.tabIndex = 0;
+      cell.addEventListener("keydown", (event) => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); cell.click(); } });
       cell.addEventListener("click", () => {
         const up = cell.getAttribute("aria-sort") !== "ascending";
         head.forEach((other) => other.removeAttribute("aria-sort"));

@@ -17,6 +17,9 @@ namespace {
 
 constexpr std::size_t kMostFaultRows = 60;
 
+/// From here on a regret is easier to read as a multiple of the optimum.
+constexpr double kLargeRegret = 1;
+
 // A cell with the number that the column is sorted by; empty: none.
 std::string cell(const std::string& shown, double value, const std::string& below = "") {
   return fmt::format("<td class=\"n\" data-value=\"{}\">{}{}</td>",
@@ -51,6 +54,14 @@ std::string name_cell(const ReplayResult& r, std::size_t index) {
          "</th>";
 }
 
+std::string regret_in_words(double regret) {
+  return regret > kLargeRegret ? people(1 + regret, 3) + " × optimum" : people_percent(regret);
+}
+
+std::string plain_number(double value) {
+  return std::isfinite(value) ? significant(value, 4) : "–";
+}
+
 std::string with_reference_cells(const AlgorithmResult& a) {
   const ErrorScore none;
   const bool any = !a.inputs.empty();
@@ -59,7 +70,7 @@ std::string with_reference_cells(const AlgorithmResult& a) {
   const std::string ratio = a.ratio_to_best && std::isfinite(a.ratio_to_best->low)
                                 ? "× best: " + people_interval(*a.ratio_to_best)
                                 : "";
-  std::string out = cell(people_percent(a.regret), a.regret, ratio);
+  std::string out = cell(regret_in_words(a.regret), a.regret, ratio);
   out += cell(people(any ? e.bias : nan, 3),
               any ? std::fabs(e.bias) : nan,
               any && std::isfinite(e.bias_ci95.low) ? people_interval(e.bias_ci95, 2) : "");
@@ -106,7 +117,17 @@ std::string ranking_table(const ReplayResult& r) {
   for (const char* name : {"Available", "ns a sample", "Memory", "Learning"})
     head.emplace_back(name);
   std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + table_head(head);
-  for (const AlgorithmResult* a : ranked(r)) out += ranking_row(r, index_of(r, *a));
+  std::string bounds;
+  for (const AlgorithmResult* a : ranked(r))
+    (a->bound ? bounds : out) += ranking_row(r, index_of(r, *a));
+  // Their own body, so that sorting keeps them apart from what one could use.
+  if (!bounds.empty())
+    out +=
+        fmt::format(
+            "</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">Bounds: they look at the "
+            "reference of the run itself, and nobody could use them</th></tr>\n",
+            head.size()) +
+        bounds;
   return out + "</tbody></table></div>\n";
 }
 
@@ -133,28 +154,57 @@ std::string needs_table(const ReplayResult& r) {
   return out + "</tbody></table></div>\n";
 }
 
+namespace {
+
+std::string input_row(const ReplayResult& r, const AlgorithmResult& a, std::size_t j) {
+  const InputScore& input = a.inputs[j];
+  const ErrorScore& e = input.error;
+  const auto interval = [](const Interval& i) {
+    return std::isfinite(i.low) ? people_interval(i, 3) : "";
+  };
+  return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>",
+                     r.best == index_of(r, a) ? "best"
+                     : a.bound                ? "bound"
+                                              : "",
+                     html_text(a.label)) +
+         cell(people(e.rmse), e.rmse, interval(e.rmse_ci95)) +
+         cell(regret_in_words(input.optimum_ratio - 1), input.optimum_ratio) +
+         cell(people(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
+         cell(people(e.maximum, 3), e.maximum) +
+         cell(people_seconds(e.converged_s), e.converged_s) +
+         cell(people_percent(e.availability, 1), e.availability) + "</tr>\n";
+}
+
+std::string input_table(const ReplayResult& r, std::size_t j) {
+  const InputResult& input = r.inputs[j];
+  const std::string unit = usual_unit(input.unit);
+  std::string out = "<h3>Input " + html_text(input.name) + "</h3>\n<p class=\"note\">Optimum of " +
+                    optimum_of(r) + ": RMSE " + html_text(with_unit(input.optimum_rmse, 4, unit)) +
+                    "</p>\n<div class=\"wide\"><table class=\"ranking\">\n" +
+                    table_head({"Algorithm",
+                                "RMSE" + (unit.empty() ? "" : ", " + unit),
+                                "Above the optimum",
+                                "Bias",
+                                "Maximum",
+                                "Converged",
+                                "Available"});
+  std::vector<const AlgorithmResult*> scored = ranked(r);
+  std::erase_if(scored, [&](const AlgorithmResult* a) { return j >= a->inputs.size(); });
+  std::stable_sort(scored.begin(), scored.end(), [&](const auto* a, const auto* b) {
+    const double x = a->inputs[j].error.rmse, y = b->inputs[j].error.rmse;
+    return std::isfinite(x) && (!std::isfinite(y) || x < y);
+  });
+  for (const AlgorithmResult* a : scored) out += input_row(r, *a, j);
+  return out + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
 std::string inputs_table(const ReplayResult& r) {
   if (r.inputs.size() < 2 || !r.has_reference) return "";
-  std::vector<std::string> head = {"RMSE (ratio to the optimum)"};
-  std::vector<std::string> optimum = {"optimum of this scene"};
-  for (const InputResult& input : r.inputs) {
-    head.push_back(input.name + (input.unit.empty() ? "" : ", " + usual_unit(input.unit)));
-    optimum.push_back(people(input.optimum_rmse));
-  }
-  std::string out =
-      "<h3>Each input</h3>\n<div class=\"wide\"><table>\n" + table_head(head) + table_row(optimum);
-  for (const AlgorithmResult* a : ranked(r)) {
-    std::vector<std::string> row = {a->label};
-    for (const InputScore& input : a->inputs)
-      row.push_back(fmt::format("{} ({}; bias {}, maximum {})",
-                                people(input.error.rmse),
-                                people(input.optimum_ratio, 5),
-                                people(input.error.bias, 2),
-                                people(input.error.maximum, 3)));
-    row.resize(head.size(), "–");
-    out += table_row(row);
-  }
-  return out + "</tbody></table></div>\n";
+  std::string out;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) out += input_table(r, j);
+  return out;
 }
 
 std::string sensors_table(const ReplayResult& r) {
@@ -179,7 +229,7 @@ std::string sensors_table(const ReplayResult& r) {
     row.push_back(s.offset == 0 ? "–" : people(s.offset, 4));
     row.push_back(s.missing > 0 ? people_percent(s.missing) : "none");
     std::string h;
-    for (const double v : s.h) h += (h.empty() ? "" : ", ") + people(v, 4);
+    for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
     row.push_back(h);
     row.push_back(s.constant ? "never changed" : "");
     out += table_row(row);
@@ -284,7 +334,7 @@ std::string faults_table(const ReplayResult& r) {
         std::string(name_of(fault.kind)) +
             (fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout
                  ? ""
-                 : " " + people(fault.value, 4)),
+                 : " " + plain_number(fault.value)),
         fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
         people_instant(fault.from_s),
         std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};

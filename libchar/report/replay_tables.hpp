@@ -8,11 +8,11 @@
 
 namespace libchar {
 
-/// All algorithms that ran, best first: scores, costs.
+/// All algorithms that ran, best first, bounds behind them: scores, costs.
 std::string ranking_table(const ReplayResult& result);
 /// Card facts of every algorithm, with the sentence of those that did not run.
 std::string needs_table(const ReplayResult& result);
-/// RMSE of each input; "" for one input.
+/// A table of scores for each input; "" for one input.
 std::string inputs_table(const ReplayResult& result);
 /// Per sensor: error, noise, quality.
 std::string sensors_table(const ReplayResult& result);

@@ -32,7 +32,7 @@ std::vector<bool> front(const ReplayResult& result,
 }  // namespace
 
 std::string score_name(const ReplayResult& result) {
-  return result.has_reference ? "RMSE" : "leave-one-out RMS";
+  return result.has_reference ? "RMSE" : "Leave-one-out RMS";
 }
 
 std::string usual_unit(const std::string& unit) {

@@ -31,7 +31,8 @@ class RealFft {
 
 /// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
 /// stands at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
-/// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes.
+/// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes. An
+/// object serves one thread at a time.
 class ComplexFft {
  public:
   ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);

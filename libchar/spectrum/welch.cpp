@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/spectrum/half_segments.hpp"
 #include "libchar/spectrum/segments.hpp"
 
@@ -31,7 +32,7 @@ std::vector<Run> present_runs(std::span<const double> record) {
   for (std::uint64_t i = 0; i < n;) {
     while (i < n && !std::isfinite(record[i])) ++i;
     const std::uint64_t begin = i;
-    while (i < n && std::isfinite(record[i])) ++i;
+    i += finite_run(record.subspan(i));
     if (i > begin) runs.push_back({begin, i});
   }
   return runs;

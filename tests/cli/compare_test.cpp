@@ -4,105 +4,172 @@
 
 #include "libchar/core/json.hpp"
 #include "tests/support/run.hpp"
-#include "tests/support/shared.hpp"
 
-using namespace libchar;
 using Catch::Contains;
 
 namespace {
 
-// Two replays of one small scene; the second is changed by `change`.
-struct Reports {
+constexpr const char* kScene = R"(format: scene
+version: 1
+name: three
+simulate:
+  rate_hz: 100
+  samples: 6000
+  seed: SEED
+  truth: {kind: sine, amplitude: 2, frequency_hz: 0.1}
+sensors:
+  - {name: a, model: {unit: m, white_noise: {value: 0.01}, density: two-sided}}
+  - {name: b, model: {unit: m, white_noise: {value: 0.02}, density: two-sided}}
+  - {name: c, model: {unit: m, white_noise: {value: 0.03}, density: two-sided}}
+)";
+
+// Two or more replays of a small scene, each in a folder of its own.
+struct Replays {
   test::TemporaryFolder folder;
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::string file(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-    return path(name);
-  }
-  std::string replayed(const std::string& name, const std::string& seed = "1") const {
-    const std::string scene =
-        file(name + ".yaml",
-             "format: scene\nversion: 1\nsimulate: {rate_hz: 100, samples: 4000, seed: " + seed +
-                 ", truth: {kind: sine, amplitude: 1, frequency_hz: 0.2}}\n"
-                 "sensors:\n  - {name: a, noise: 0.1}\n  - {name: b, noise: 0.2}\n"
-                 "  - {name: c, noise: 0.3}\nreference: truth\n");
-    const auto ran =
-        test::run({"replay", scene, "-o", path(name), "--algorithms", "mean,inverse-variance"});
+  void make(const std::string& name,
+            std::vector<std::string> more,
+            const std::string& seed = "1") const {
+    std::string text = kScene;
+    text.replace(text.find("SEED"), 4, seed);
+    std::ofstream(path(name + ".yaml")) << text;
+    std::vector<std::string> words = {"replay", path(name + ".yaml"), "-o", path(name)};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto ran = test::run(words);
     INFO(ran.err);
     REQUIRE(ran.code == 0);
-    return path(name) + "/report.json";
+  }
+  test::Ran compare(const std::string& a,
+                    const std::string& b,
+                    std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {"compare", path(a), path(b)};
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run(words);
   }
 };
 
-Json read(const std::string& path) {
-  return parse_json(test::slurp(path), path);
-}
-
 }  // namespace
 
-TEST_CASE("compare: a report against itself has no change and passes every check") {
-  const Reports reports;
-  const std::string a = reports.replayed("a");
-  const auto ran =
-      test::run({"compare", a, a, "--fail-if", "rmse+0%", "--fail-if", "peak_bytes+0%"});
-  INFO(ran.err);
-  CHECK(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("inverse-variance"));
-  CHECK_THAT(ran.out, Contains("0 %"));
-  const auto json = test::run({"compare", a, a, "--json"});
-  const Json j = parse_json(json.out, "stdout");
-  CHECK(j["format"] == "replay-comparison");
-  CHECK(j["alike"] == true);
-  CHECK(j["input"].size() == 2);
-  CHECK(j["algorithms"].size() == 2);
-  const auto markdown = test::run({"compare", a, a, "--markdown"});
-  CHECK_THAT(markdown.out, Contains("| inverse\\-variance |") || Contains("| inverse-variance |"));
+TEST_CASE("compare: two replays of one scene side by side") {
+  const Replays replays;
+  replays.make("a", {"--algorithms", "mean,minque,median"});
+  replays.make("b", {"--algorithms", "mean,minque,inverse-variance", "--set", "minque.gamma=0.9"});
+  const auto ran = replays.compare("a", "b/report.json");
+  INFO(ran.out + ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("differs: minque.gamma: 0.999 in A, 0.9 in B"));
+  CHECK_THAT(ran.out, Contains("only in A") && Contains("only in B"));
+  CHECK_THAT(ran.out, Contains("RMSE of 2 algorithms that ran in both: 1 not resolved, 1 equal."));
+  CHECK_THAT(ran.out, Contains("Best: minque (") && Contains("inverse-variance ("));
+  const auto document = replays.compare("a", "b", {"--json"});
+  REQUIRE(document.code == 0);
+  const auto json = libchar::parse_json(document.out, "stdout");
+  CHECK(json["format"] == "replay-comparison");
+  CHECK(json["input"].size() == 2);
+  CHECK(json["input"][0]["sha256"].get<std::string>().size() == 64);
+  CHECK(json["algorithms"].size() == 4);
+  CHECK(json["unlike"].empty());
+  CHECK(json["failed"].empty());
+  const auto page = replays.compare("a", "b", {"--markdown"});
+  CHECK(page.code == 0);
+  CHECK_THAT(page.out, Contains("| mean |") && Contains("# three"));
 }
 
-TEST_CASE("compare: a breach ends with 6, after the table") {
-  const Reports reports;
-  const std::string a = reports.replayed("a");
-  Json worse = read(a);
-  worse["algorithms"][0]["rmse"] = worse["algorithms"][0]["rmse"].get<double>() * 1.06;
-  const std::string b = reports.file("b.json", dump_json(worse));
-  const auto ran = test::run({"compare", "--fail-if", "rmse+5%", a, b});
-  CHECK(ran.code == 6);
-  CHECK_THAT(ran.out, Contains("+6.00 %"));
-  CHECK_THAT(ran.err, Contains("E0925") && Contains("mean: rmse went from"));
-  CHECK(test::run({"compare", a, b, "--fail-if", "inverse-variance:rmse+5%"}).code == 0);
-  const auto json = test::run({"compare", a, b, "--json", "--fail-if", "rmse+5%"});
-  CHECK(json.code == 6);
-  CHECK(parse_json(json.out, "stdout")["checks"][0]["passed"] == false);
+TEST_CASE("compare: checks end with exit code 6 behind the result") {
+  const Replays replays;
+  replays.make("a", {"--algorithms", "mean,minque"});
+  replays.make("b", {"--algorithms", "mean,minque", "--set", "minque.gamma=0.9"});
+  CHECK(replays.compare("a", "b", {"--fail-if", "mean:rmse+0%"}).code == 0);
+  const auto failed = replays.compare("a", "b", {"--fail-if", "rmse+0.1%"});
+  CHECK(failed.code == 6);
+  CHECK_THAT(failed.err,
+             Contains("E0924") && Contains("minque: rmse") && Contains("0.1 % is allowed"));
+  CHECK_THAT(failed.out, Contains("minque"));  // the table stands all the same
+  const auto several = replays.compare(
+      "a", "b", {"--json", "--fail-if", "rmse+0.1%", "--fail-if", "minque:regret+0.1%"});
+  CHECK(several.code == 6);
+  CHECK(libchar::parse_json(several.out, "stdout")["failed"].size() == 2);
+  // Better is never a failure.
+  CHECK(replays.compare("b", "a", {"--fail-if", "rmse+0%"}).code == 0);
+  CHECK(replays.compare("a", "b", {"--fail-if", "rmse"}).code == 2);
+  CHECK(replays.compare("a", "b", {"--fail-if", "means:rmse+1%"}).code == 2);
+  CHECK(replays.compare("a", "b", {"--json", "--markdown"}).code == 2);
 }
 
-TEST_CASE("compare: unlike scenes are refused, and compared when asked") {
-  const Reports reports;
-  const std::string a = reports.replayed("a"), b = reports.replayed("b", "2");
-  const auto ran = test::run({"compare", a, b});
-  CHECK(ran.code == 3);
-  CHECK(ran.out.empty());
-  CHECK_THAT(ran.err,
-             Contains("E0923") && Contains("the seed of the simulation differs: 1 in A, 2 in B"));
-  const auto forced = test::run({"compare", a, b, "--unlike"});
-  CHECK(forced.code == 0);
-  CHECK_THAT(forced.out, Contains("unlike: the seed"));
+TEST_CASE("compare: unlike scenes are refused unless --unlike") {
+  const Replays replays;
+  replays.make("a", {"--algorithms", "mean"});
+  replays.make("seed", {"--algorithms", "mean"}, "2");
+  replays.make("window", {"--algorithms", "mean", "--evaluation", "10..50"});
+  replays.make("fault", {"--algorithms", "mean", "--fault", "b:bias=1@10..20"});
+  const auto refused = replays.compare("a", "seed");
+  CHECK(refused.code == 3);
+  CHECK(refused.out.empty());
+  CHECK_THAT(refused.err,
+             Contains("E0921") && Contains("seed of the simulation: 1 in A, 2 in B") &&
+                 Contains("--unlike"));
+  CHECK_THAT(replays.compare("a", "window").err,
+             Contains("evaluation: 0 s to 60 s in A, 10 s to 50 s in B"));
+  CHECK_THAT(replays.compare("a", "fault").err, Contains("number of faults: 0 in A, 1 in B"));
+  const auto all_the_same = replays.compare("a", "seed", {"--unlike"});
+  CHECK(all_the_same.code == 0);
+  CHECK_THAT(all_the_same.out, Contains("unlike: seed of the simulation"));
 }
 
-TEST_CASE("compare: what is no report is one sentence with its place") {
-  const Reports reports;
-  const std::string a = reports.replayed("a");
-  const auto refused = [&](const std::string& b, const std::string& word) {
-    const auto ran = test::run({"compare", a, b});
-    INFO(ran.err);
-    CHECK(ran.code == 3);
-    CHECK_THAT(ran.err, Contains(word));
-  };
-  refused(reports.path("absent.json"), "absent.json");
-  refused(reports.file("no.json", "not json"), "no.json:1:1");
-  refused(reports.file("other.json", "{\"format\":\"fit\",\"version\":1}"), "E0920");
-  refused(reports.file("new.json", "{\"format\":\"replay-report\",\"version\":7}"), "E0921");
-  refused(reports.file("cut.json", "{\"format\":\"replay-report\",\"version\":1}"), "E0922");
-  CHECK(test::run({"compare", a}).code == 2);
-  CHECK(test::run({"compare", a, a, "--fail-if", "rsme+5%"}).code == 2);
-  CHECK(test::run({"compare", a, a, "--json", "--markdown"}).code == 2);
+TEST_CASE("compare: recordings are known by their content, wherever they stand") {
+  const test::TemporaryFolder folder;
+  const auto path = [&](const std::string& name) { return (folder / name).string(); };
+  for (const std::string name : {"one", "two"}) {
+    std::filesystem::create_directory(folder / name);
+    std::string log = "t,x,y,z\n";
+    for (int k = 0; k < 500; ++k)
+      log += std::to_string(k) + "," + std::to_string(k % 7) + "," + std::to_string(k % 5) + "," +
+             std::to_string(k % 3) + "\n";
+    std::ofstream(path(name + "/log.csv")) << log;
+    std::ofstream(path(name + "/scene.yaml"))
+        << "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n";
+    REQUIRE(test::run({"replay",
+                       path(name + "/scene.yaml"),
+                       "-o",
+                       path(name + "/out"),
+                       "--algorithms",
+                       "mean"})
+                .code == 0);
+  }
+  const auto like = test::run({"compare", path("one/out"), path("two/out")});
+  INFO(like.err);
+  CHECK(like.code == 0);
+  CHECK_THAT(like.out, Contains("leave-one-out"));
+  std::ofstream(path("two/log.csv"), std::ios::app) << "500,1,1,1\n";
+  REQUIRE(test::run({"replay",
+                     path("two/scene.yaml"),
+                     "-o",
+                     path("two/out"),
+                     "--algorithms",
+                     "mean",
+                     "--force"})
+              .code == 0);
+  const auto unlike = test::run({"compare", path("one/out"), path("two/out")});
+  CHECK(unlike.code == 3);
+  CHECK_THAT(unlike.err, Contains("contents of the log") && Contains("sha256"));
+}
+
+TEST_CASE("compare: bad input is one sentence with its place") {
+  const Replays replays;
+  replays.make("a", {"--algorithms", "mean"});
+  CHECK(replays.compare("a", "nothing").code == 3);
+  std::ofstream(replays.path("x.json")) << "{\"format\": \"characterization\", \"version\": 1}\n";
+  const auto other = replays.compare("x.json", "a");
+  CHECK(other.code == 3);
+  CHECK_THAT(other.err, Contains("x.json:1:12") && Contains("E0920"));
+  std::ofstream(replays.path("y.json")) << "{\"format\": ";
+  CHECK(replays.compare("a", "y.json").code == 3);
+  std::string text = test::slurp(replays.folder / "a/report.json");
+  text.replace(text.find("\"rate_hz\""), 9, "\"rate\"");
+  std::ofstream(replays.path("z.json")) << text;
+  const auto missing = replays.compare("a", "z.json");
+  CHECK(missing.code == 3);
+  CHECK_THAT(missing.err, Contains("z.json:1:1") && Contains("rate_hz is missing"));
+  CHECK(test::run({"compare", replays.path("a")}).code == 2);
+  CHECK_THAT(test::run({"compare", "--help"}).out, Contains("--fail-if") && Contains("--unlike"));
 }

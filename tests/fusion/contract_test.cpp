@@ -97,6 +97,11 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   CHECK_FALSE(why_not(needing({}), two).empty());
 }
 
+TEST_CASE("fault rules have names") {
+  CHECK(name(FaultRule::variance) == "variance");
+  CHECK(name(FaultRule::residual_moment) == "residual_moment");
+}
+
 TEST_CASE("what cannot run is refused with the same sentence") {
   for (const Entry& entry : algorithms()) {
     INFO(entry.card->name);

@@ -56,6 +56,7 @@ TEST_CASE("minque-published: the flags of three faults") {
     CHECK(events[i].sample + 1 == changes[i][0].get<std::int64_t>());
     CHECK(events[i].channel + 1 == changes[i][1].get<int>());
     CHECK(events[i].faulty == (changes[i][2].get<int>() == 1));
+    CHECK(events[i].rule == FaultRule::variance);
   }
   const Eigen::VectorXd variances = *minque->variances();
   for (Eigen::Index i = 0; i < 6; ++i)

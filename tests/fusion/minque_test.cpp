@@ -64,6 +64,7 @@ TEST_CASE("minque: faults are found, kept out and let in again") {
     CHECK(events[i].sample <= expected[i].to);
     CHECK(events[i].channel == expected[i].channel);
     CHECK(events[i].faulty == expected[i].faulty);
+    CHECK(events[i].rule == FaultRule::residual_moment);
   }
   const auto error = [&](Eigen::Index from) {
     return std::sqrt((out.x.row(0).transpose() - inputs["x"]).tail(6000 - from).squaredNorm() /

@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <thread>
 
 #include "libchar/core/sha256.hpp"
@@ -85,6 +86,61 @@ TEST_CASE("the hash is that of the whole file") {
   }
   options.hash = false;
   CHECK(test::read_text(text, options).info.sha256.empty());
+}
+
+TEST_CASE("the hash that goes along with parsing is that of the file, whatever its rows are like") {
+  // Plain rows, seventeen digits, quotes, comments, blank lines, words: in stretches of each, so
+  // that blocks are hashed along, alone, and in part.
+  std::string text = "t,x,y\n";
+  for (int i = 0; i < 20000; ++i) {
+    const std::string stamp = std::to_string(i);
+    const int kind = i / 1500 % 5;
+    text += kind == 0   ? stamp + ",-0.5," + stamp + ".25\n"
+            : kind == 1 ? stamp + ",0.12345678901234567,1e-3\n"
+            : kind == 2 ? stamp + ",\"1\",2\n"
+            : kind == 3 ? stamp + ",,nan\n# a comment\n\n"
+                        : stamp + ",1,2\n";
+  }
+  Sha256 sha;
+  for (const char c : text) sha.update({&c, 1});
+  const std::string expected = sha.finish();
+  ReadOptions options;
+  const Recording alone = [&] {
+    options.threads = 1;
+    return test::read_text(text, options);
+  }();
+  CHECK(alone.info.sha256 == expected);
+  for (const int threads : {1, 2, 4})
+    for (const std::size_t block :
+         {std::size_t{1000}, std::size_t{4097}, std::size_t{70000}, std::size_t{1} << 22U}) {
+      options.threads = threads;
+      options.block_bytes = block;
+      const Recording r = test::read_text(text, options);
+      CHECK(r.info.sha256 == expected);
+      REQUIRE(r.samples[0].size() == alone.samples[0].size());
+      CHECK(std::memcmp(r.samples[0].data(), alone.samples[0].data(), 8 * r.samples[0].size()) ==
+            0);
+      CHECK(std::memcmp(r.samples[1].data(), alone.samples[1].data(), 8 * r.samples[1].size()) ==
+            0);
+    }
+}
+
+TEST_CASE("before its end a log says how many rows its first ones let expect") {
+  struct First final : BlockSink {
+    void begin(const LogInfo& so_far) override { expected = so_far.rows; }
+    void block(const SampleBlock&) override {}
+    std::uint64_t expected = 0;
+  } sink;
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.csv").string();
+  {
+    std::ofstream out(path);
+    out << "t_ms,x\n";
+    for (int i = 100000; i < 400000; ++i) out << i << "," << i << "\n";
+  }
+  const LogInfo info = read_log(path, {}, sink);
+  CHECK(info.rows == 300000);
+  CHECK(std::abs(static_cast<double>(sink.expected) - 300000.0) < 3);
 }
 
 TEST_CASE("the sink sees blocks in order without holes") {

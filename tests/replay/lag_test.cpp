@@ -110,7 +110,7 @@ TEST_CASE("nothing to find is said", "[lag]") {
   std::vector<double> a(2000), b(2000);
   for (double& v : a) v = normal(random);
   for (double& v : b) v = normal(random);
-  CHECK(estimate_lag(a, b, 100, 0.3).correlation < 0.2);
+  CHECK_FALSE(estimate_lag(a, b, 100, 0.3).correlation >= 0.2);  // NaN or low
 }
 
 TEST_CASE("a delay outside the range is no lag", "[lag]") {
@@ -121,7 +121,7 @@ TEST_CASE("a delay outside the range is no lag", "[lag]") {
   }
   const LagEstimate none = estimate_lag(slow_y, slow_x, 1, 100);
   CHECK(std::isnan(none.lag_s));
-  CHECK(none.correlation > 0.5);
+  CHECK(std::isnan(none.correlation));
   CHECK(estimate_lag(slow_y, slow_x, 1, 300).lag_s == Approx(200).margin(0.01));
 }
 

@@ -1,182 +1,360 @@
 #include "libchar/report/comparison.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/replay_json.hpp"
-#include "tests/report/synthetic_replay.hpp"
+#include "libchar/report/comparison_check.hpp"
+#include "libchar/report/comparison_text.hpp"
+#include "libchar/report/replay_summary.hpp"
+#include "tests/support/shared.hpp"
 
-using namespace libchar;
 using Catch::Contains;
+using libchar::Json;
 
 namespace {
 
-ReportedReplay reported(const ReplayResult& r, const std::string& file = "a.json") {
-  return read_reported_replay(dump_json(replay_json(r)), file);
+Json algorithm(const std::string& label, double rmse, double low, double high, double ns = 10) {
+  return {{"name", label},
+          {"label", label},
+          {"status", "ran"},
+          {"why", nullptr},
+          {"bound", false},
+          {"rmse", rmse},
+          {"rmse_ci95", {low, high}},
+          {"regret", rmse - 1},
+          {"ns_per_sample", ns},
+          {"peak_bytes", 1000},
+          {"options", {{"gamma", 0.99}}}};
 }
 
-AlgorithmResult& named(ReplayResult& r, const std::string& label) {
-  for (AlgorithmResult& a : r.algorithms)
-    if (a.label == label) return a;
-  throw std::runtime_error("no " + label);
+Json skipped(const std::string& label) {
+  return {{"name", label},
+          {"label", label},
+          {"status", "skipped"},
+          {"why", "needs"},
+          {"rmse", nullptr},
+          {"rmse_ci95", nullptr},
+          {"regret", nullptr}};
 }
 
-Comparison with_change(double rmse_factor) {
-  const ReplayResult a = test::synthetic_replay();
-  ReplayResult b = a;
-  AlgorithmResult& m = named(b, "minque");
-  m.rmse *= rmse_factor;
-  m.rmse_ci95 = {0.99 * m.rmse, 1.01 * m.rmse};
-  return compare_replays(reported(a), reported(b, "b.json"));
+// A report of two sensors with the keys that replay writes.
+Json report() {
+  return {
+      {"format", "replay-report"},
+      {"version", 1},
+      {"tool", {{"name", "sensorchar"}, {"version", "0.1.0"}}},
+      {"input", {{{"path", "log.csv"}, {"sha256", "aa"}, {"bytes", 10}}}},
+      {"scene", {{"name", "pair"}, {"file", "pair.yaml"}, {"simulated", false}}},
+      {"rate_hz", 100.0},
+      {"instants", 5000},
+      {"learning", nullptr},
+      {"evaluation", {{"from_s", 0}, {"to_s", 50}}},
+      {"reference", {{"use", "each instant"}, {"lag_s", 0.1}, {"lag_estimated", true}}},
+      {"inputs", {{{"name", "truth"}, {"unit", "m"}}}},
+      {"sensors",
+       {{{"name", "left"}, {"unit", "m"}, {"rmse", 2.0}, {"h", {1}}, {"noise_variance", 4}},
+        {{"name", "right"}, {"unit", "m"}, {"rmse", 3.0}, {"h", {1}}}}},
+      {"faults",
+       {{{"sensor", "left"}, {"kind", "bias"}, {"value", 1}, {"from_s", 5}, {"to_s", nullptr}}}},
+      {"best", "mean"},
+      {"algorithms",
+       {algorithm("mean", 1.0, 0.9, 1.1),
+        algorithm("median", 1.2, 1.15, 1.3),
+        skipped("tilt-kalman")}}};
 }
 
-const ComparedAlgorithm& row(const Comparison& c, const std::string& label) {
-  for (const ComparedAlgorithm& r : c.both)
-    if (r.a.label == label) return r;
-  throw std::runtime_error("no " + label);
+libchar::ReplaySummary summary(const Json& json, const std::string& name = "report.json") {
+  return libchar::parse_replay_report(json.dump(1), name);
+}
+
+libchar::Comparison compared(const Json& a, const Json& b) {
+  return libchar::compare_replays(summary(a, "a.json"), summary(b, "b.json"));
+}
+
+std::string refused(const Json& b) {
+  const auto comparison = compared(report(), b);
+  try {
+    libchar::refuse_unlike(comparison);
+  } catch (const libchar::Error& error) {
+    CHECK(error.fault().code == "E0921");
+    CHECK(error.fault().kind == libchar::ErrorKind::input);
+    return error.what();
+  }
+  return "";
+}
+
+// What is said of the first report after `change`.
+template <class Change>
+std::string refused_after(const Change& change) {
+  Json b = report();
+  change(b);
+  return refused(b);
+}
+
+std::string reading_error(const std::string& text) {
+  try {
+    libchar::parse_replay_report(text, "r.json");
+  } catch (const libchar::Error& error) {
+    CHECK(error.fault().kind == libchar::ErrorKind::input);
+    return error.what();
+  }
+  return "";
+}
+
+template <class Change>
+std::string reading_error_after(const Change& change) {
+  Json changed = report();
+  change(changed);
+  return reading_error(changed.dump(1));
+}
+
+std::string check_error(const std::string& text) {
+  try {
+    libchar::parse_comparison_check(text);
+  } catch (const libchar::Error& error) {
+    CHECK(error.fault().kind == libchar::ErrorKind::usage);
+    return error.what();
+  }
+  return "";
 }
 
 }  // namespace
 
-TEST_CASE("comparison: changes, and whether the intervals tell them") {
-  const Comparison small = with_change(1.01), large = with_change(1.1);
-  CHECK(small.differences.empty());
-  CHECK(*row(small, "minque").score_change == Approx(0.01));
-  CHECK(*row(small, "minque").resolved == false);
-  CHECK(*row(large, "minque").resolved == true);
-  CHECK(*row(large, "mean").score_change == 0);
-  CHECK(large.only_a.empty());
+TEST_CASE("comparison: changes, and what the intervals say of them") {
+  Json b = report();
+  b["algorithms"] = {algorithm("mean", 0.8, 0.75, 0.85, 12),
+                     algorithm("median", 1.25, 1.2, 1.4, 5),
+                     algorithm("minque", 0.7, 0.6, 0.8)};
+  b["best"] = "minque";
+  const auto c = compared(report(), b);
+  CHECK(c.unlike.empty());
+  REQUIRE(c.algorithms.size() == 4);
+  CHECK(c.algorithms[0].label == "minque");  // by RMSE of B
+  CHECK(c.algorithms[0].a == nullptr);
+  CHECK(std::isnan(c.algorithms[0].rmse_change));
+  CHECK(side_of(c.algorithms[0]) == "only in B");
+  CHECK(c.algorithms[1].label == "mean");
+  CHECK(c.algorithms[1].difference == libchar::Difference::better);
+  CHECK(c.algorithms[1].rmse_change == Approx(-0.2));
+  CHECK(c.algorithms[1].ns_change == Approx(0.2));
+  CHECK(c.algorithms[1].bytes_change == 0);
+  CHECK(c.algorithms[2].difference == libchar::Difference::not_resolved);
+  CHECK(c.algorithms[2].ns_change == Approx(-0.5));
+  CHECK(side_of(c.algorithms[3]) == "only in A, skipped");
+  const std::string verdict = comparison_verdict(c);
+  CHECK_THAT(verdict, Contains("RMSE of 2 algorithms that ran in both: 1 better, 1 not resolved."));
+  CHECK_THAT(verdict, Contains("Time a sample: -15.0 % (median)"));
+  CHECK_THAT(verdict, Contains("mean (1) in A, minque (0.7) in B"));
+  // The other way round everything changes sides.
+  const auto back = compared(b, report());
+  for (const auto& row : back.algorithms)
+    if (row.label == "mean") CHECK(row.difference == libchar::Difference::worse);
 }
 
-TEST_CASE("comparison: a check fails above its limit and not at it") {
-  const Comparison c = with_change(1.1);
-  CHECK(breaches(c, check_from_words("rmse+10.1%")).empty());
-  const auto broken = breaches(c, check_from_words("rmse+9.9%"));
-  REQUIRE(broken.size() == 1);
-  CHECK_THAT(broken[0], Contains("minque: rmse went from"));
-  CHECK(breaches(c, check_from_words("mean:rmse+0%")).empty());
-  CHECK(breaches(c, check_from_words("minque:rmse+0.001")).size() == 1);
-  CHECK(breaches(c, check_from_words("ns_per_sample+0%")).empty());
-  CHECK(breaches(c, check_from_words("peak_bytes+0")).empty());
-  // Better is no breach.
-  CHECK(breaches(with_change(0.5), check_from_words("rmse+0%")).empty());
+TEST_CASE("comparison: a report against itself is equal and passes every check") {
+  const auto c = compared(report(), report());
+  CHECK(c.unlike.empty());
+  CHECK(c.remarks.empty());
+  for (const auto& row : c.algorithms)
+    CHECK(row.difference ==
+          (row.both_ran() ? libchar::Difference::equal : libchar::Difference::unknown));
+  for (const char* check : {"rmse+0%", "regret+0%", "ns_per_sample+0%", "peak_bytes+0%"})
+    CHECK(failures(c, libchar::parse_comparison_check(check)).empty());
 }
 
-TEST_CASE("comparison: percents of a regret are percentage points") {
-  const ReplayResult a = test::synthetic_replay();
-  ReplayResult b = a;
-  named(b, "minque").regret += 0.03;
-  const Comparison c = compare_replays(reported(a), reported(b));
-  CHECK(breaches(c, check_from_words("regret+4%")).empty());
-  CHECK(breaches(c, check_from_words("regret+2%")).size() == 1);
-  CHECK(breaches(c, check_from_words("regret+0.02")).size() == 1);
+TEST_CASE("comparison: unlike scenes are refused by what differs") {
+  CHECK(refused(report()).empty());
+  CHECK_THAT(refused_after([](Json& b) { b["input"][0]["sha256"] = "bb"; }),
+             Contains("contents of the log: log.csv (sha256 aa…) in A, log.csv (sha256 bb…) in B"));
+  // The place of a file is not its content.
+  CHECK(refused_after([](Json& b) { b["input"][0]["path"] = "elsewhere/log.csv"; }).empty());
+  CHECK_THAT(refused_after([](Json& b) { b["input"][0]["sha256"] = nullptr; }),
+             Contains("sha256 of log.csv is not in both"));
+  CHECK_THAT(refused_after([](Json& b) { b["sensors"].erase(1); }),
+             Contains("sensors that the other does not have: right in A, nothing in B"));
+  CHECK_THAT(refused_after([](Json& b) { std::swap(b["sensors"][0], b["sensors"][1]); }),
+             Contains("sensors stand in another order"));
+  CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["unit"] = "mm"; }),
+             Contains("unit of sensor right: m in A, mm in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["h"] = {-1}; }),
+             Contains("row h of sensor right"));
+  CHECK_THAT(refused_after([](Json& b) { b["sensors"][0]["rmse"] = 2.1; }),
+             Contains("sensor left alone has an RMSE of 2 in A, 2.1 in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["evaluation"]["from_s"] = 10; }),
+             Contains("evaluation: 0 s to 50 s in A, 10 s to 50 s in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["instants"] = 4999; }),
+             Contains("instants of the evaluation: 5000 in A, 4999 in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["rate_hz"] = 200; }),
+             Contains("rate: 100 Hz in A, 200 Hz in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["reference"] = nullptr; }),
+             Contains("reference: one in A, none in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["reference"]["lag_s"] = 0.2; }),
+             Contains("lag behind the reference: 0.1 s in A, 0.2 s in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["reference"]["use"] = "interpolated"; }),
+             Contains("use of the reference"));
+  CHECK_THAT(refused_after([](Json& b) { b["inputs"][0]["name"] = "angle"; }),
+             Contains("true inputs that the other does not have: truth in A, angle in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["faults"][0]["value"] = 2; }),
+             Contains("fault 1: left bias 1 from 5 s in A, left bias 2 from 5 s in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["faults"] = Json::array(); }),
+             Contains("number of faults: 1 in A, 0 in B"));
 }
 
-TEST_CASE("comparison: what no longer runs, or was never measured, does not pass a check") {
-  const ReplayResult a = test::synthetic_replay();
-  ReplayResult b = a;
-  named(b, "minque").ran = false;
-  named(b, "minque").why = "minque needs more sensors";
-  const Comparison c = compare_replays(reported(a), reported(b));
-  REQUIRE(c.only_a.size() == 1);
-  CHECK(c.only_a[0].second == "minque needs more sensors");
-  REQUIRE(breaches(c, check_from_words("minque:rmse+5%")).size() == 1);
-  CHECK_THAT(breaches(c, check_from_words("minque:rmse+5%"))[0], Contains("ran in A and not in B"));
-  REQUIRE(breaches(c, check_from_words("minqe:rmse+5%")).size() == 1);
-  CHECK_THAT(breaches(c, check_from_words("minqe:rmse+5%"))[0], Contains("nothing to compare"));
-  ReplayResult unmeasured = a;
-  for (AlgorithmResult& x : unmeasured.algorithms) x.peak_bytes.reset();
-  CHECK(!breaches(compare_replays(reported(a), reported(unmeasured)),
-                  check_from_words("peak_bytes+5%"))
-             .empty());
+TEST_CASE("comparison: simulations are told apart by seed, then by what was simulated") {
+  Json a = report();
+  a["scene"] = {{"name", "s"}, {"file", "s"}, {"simulated", true}, {"seed", 1}, {"identity", "x"}};
+  a["input"] = Json::array();
+  Json b = a;
+  CHECK(compared(a, b).unlike.empty());
+  b["scene"]["identity"] = "y";
+  CHECK_THAT(compared(a, b).unlike.at(0), Contains("the same seed, but another simulation"));
+  b["scene"]["seed"] = 2;
+  CHECK(compared(a, b).unlike.at(0) == "seed of the simulation: 1 in A, 2 in B");
+  CHECK(compared(a, report()).unlike.at(0) == "the scene is: a simulation in A, a recording in B");
 }
 
-TEST_CASE("comparison: unlike scenes are named") {
-  const ReplayResult a = test::synthetic_replay();
-  const auto differs = [&](auto&& change, const char* word) {
-    ReplayResult b = a;
-    change(b);
-    const auto sentences = scene_differences(reported(a), reported(b));
-    INFO(word);
-    REQUIRE(sentences.size() == 1);
-    CHECK_THAT(sentences[0], Contains(word));
+TEST_CASE("comparison: settings that differ are remarked, not refused") {
+  Json b = report();
+  b["learning"] = {{"from_s", 0}, {"to_s", 10}};
+  b["tool"]["version"] = "0.2.0";
+  b["sensors"][0]["noise_variance"] = 5;
+  b["algorithms"][0]["options"]["gamma"] = 0.999;
+  const auto c = compared(report(), b);
+  CHECK(c.unlike.empty());
+  CHECK(c.remarks == std::vector<std::string>{"program: 0.1.0 in A, 0.2.0 in B",
+                                              "learning window: none in A, 0 s to 10 s in B",
+                                              "algorithms were told other noise levels of left",
+                                              "mean.gamma: 0.99 in A, 0.999 in B"});
+}
+
+TEST_CASE("comparison: checks hold at their limit and fail above it") {
+  Json b = report();
+  b["algorithms"][0] = algorithm("mean", 1.0625, 1, 1.1, 15);
+  const auto c = compared(report(), b);
+  const auto failing = [&](const char* text) {
+    return failures(c, libchar::parse_comparison_check(text));
   };
-  differs([](ReplayResult& r) { r.logs[0].sha256[0] = 'f'; }, "recording differs");
-  differs([](ReplayResult& r) { r.sensors[4].name = "other"; }, "sensors");
-  differs([](ReplayResult& r) { r.sensors[4].unit = "deg/s"; }, "units");
-  differs([](ReplayResult& r) { r.inputs[0].unit = "deg/s"; }, "inputs");
-  differs([](ReplayResult& r) { r.start_s = 10; }, "evaluation differs");
-  differs([](ReplayResult& r) { r.instants = 7; }, "evaluation differs");
-  differs([](ReplayResult& r) { r.scene.reference->channels = {"another"}; }, "reference differs");
-  differs([](ReplayResult& r) { r.faults[0].value = 0.6; }, "faults");
-  // What a clock measured, which algorithms run, and where the file lies are no part of the scene.
-  ReplayResult b = a;
-  b.scene.file = "elsewhere.yaml";
-  b.logs[0].file = "elsewhere.csv";
-  b.algorithms.pop_back();
-  b.seconds = 1;
-  CHECK(scene_differences(reported(a), reported(b)).empty());
+  CHECK(failing("rmse+6.25%").empty());
+  REQUIRE(failing("rmse+6.2%").size() == 1);
+  CHECK(failing("rmse+6.2%")[0] == "mean: rmse 1 in A, 1.0625 in B: 6.25 % more, 6.2 % is allowed");
+  CHECK(failing("median:rmse+0%").empty());
+  CHECK(failing("mean:ns_per_sample+49%").size() == 1);
+  CHECK(failing("mean:ns_per_sample+50%").empty());
+  // Regret is a share already: the limit is in its own points.
+  CHECK(failing("mean:regret+6.25%").empty());
+  CHECK_THAT(failing("mean:regret+6%").at(0), Contains("6.25 points more, 6 are allowed"));
+  // A loss is a failure, an algorithm that B was not asked for is none.
+  b["algorithms"][0] = skipped("mean");
+  const auto lost = compared(report(), b);
+  CHECK_THAT(failures(lost, libchar::parse_comparison_check("rmse+50%")).at(0),
+             Contains("mean: rmse is 1 in A, and there is none in B: needs"));
+  b["algorithms"].erase(0);
+  const auto not_asked = compared(report(), b);
+  CHECK(failures(not_asked, libchar::parse_comparison_check("rmse+50%")).empty());
+  CHECK(failures(not_asked, libchar::parse_comparison_check("mean:rmse+50%")).size() == 1);
 }
 
-TEST_CASE("comparison: leave-one-out scores compare with their like") {
-  const ReplayResult a = test::without_reference();
-  const Comparison c = compare_replays(reported(a), reported(a));
-  CHECK(*row(c, "mean").a.score == a.algorithms[0].rmse);
-  CHECK(!scene_differences(reported(a), reported(test::synthetic_replay())).empty());
-  CHECK_THAT(comparison_markdown(c, {}), Contains("leave-one-out RMS"));
+TEST_CASE("comparison: a check that cannot fail is refused") {
+  const auto c = compared(report(), report());
+  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("tilt-kalman:rmse+5%")),
+                    Contains("E0923"));
+  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("medain:rmse+5%")),
+                    Contains("did you mean median?"));
+  for (const char* text : {"",
+                           "rmse",
+                           "rmse+5",
+                           "rmse+%",
+                           "rmse+-5%",
+                           "rmse+nan%",
+                           "rmse+inf%",
+                           "+5%",
+                           ":rmse+5%",
+                           "speed+5%",
+                           "rmse-5%"})
+    CHECK_THAT(check_error(text), Contains("E0922"));
+  CHECK_THAT(check_error("ns_per_smaple+5%"), Contains("did you mean ns_per_sample?"));
+  CHECK(libchar::parse_comparison_check("minque (gamma=0.9):rmse+5%").label ==
+        "minque (gamma=0.9)");
 }
 
-TEST_CASE("comparison: a document that is none is refused with its place") {
-  const Json good = replay_json(test::synthetic_replay());
-  const auto refused = [&](const std::string& text) {
-    try {
-      read_reported_replay(text, "b.json");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
-  };
-  CHECK_THAT(refused("{\"format\":"), Contains("b.json:1:"));
-  CHECK_THAT(refused("[]"), Contains("E0920"));
-  CHECK_THAT(refused("{\"format\":\"characterization\",\"version\":1}"),
-             Contains("characterization"));
-  Json newer = good;
-  newer["version"] = 2;
-  CHECK_THAT(refused(dump_json(newer)), Contains("version 2 is newer"));
-  Json lacking = good;
-  lacking["algorithms"][3].erase("rmse");
-  CHECK_THAT(refused(dump_json(lacking)), Contains("algorithms[3].rmse"));
-  Json wrong = good;
-  wrong["algorithms"][2]["rmse"] = "much";
-  CHECK_THAT(refused(dump_json(wrong)), Contains("algorithms[2].rmse"));
-  Json twice = good;
-  twice["algorithms"][1]["label"] = twice["algorithms"][0]["label"];
-  CHECK_THAT(refused(dump_json(twice)), Contains("algorithms[1].label"));
-  Json scalar = good;
-  scalar["scene"] = 3;
-  CHECK_THAT(refused(dump_json(scalar)), Contains("E0922"));
+TEST_CASE("comparison: what is no report of a replay is refused with its place") {
+  CHECK_THAT(reading_error("no"), Contains("r.json:1:") && Contains("E0601"));
+  CHECK_THAT(reading_error(""), Contains("is empty"));
+  CHECK_THAT(reading_error("[]"), Contains("E0546"));
+  CHECK_THAT(reading_error("{\n \"format\": \"characterization\",\n \"version\": 1\n}"),
+             Contains("r.json:2:12") && Contains("E0920") && Contains("\"characterization\""));
+  CHECK_THAT(reading_error_after([](Json& r) { r["version"] = 2; }),
+             Contains("r.json:3:") && Contains("is newer than this program"));
+  for (const char* key : {"scene",
+                          "input",
+                          "rate_hz",
+                          "instants",
+                          "evaluation",
+                          "reference",
+                          "inputs",
+                          "sensors",
+                          "faults",
+                          "algorithms"})
+    CHECK_THAT(reading_error_after([&](Json& r) { r.erase(key); }),
+               Contains(std::string(key) + " is missing"));
+  for (const char* key : {"name", "status", "rmse", "rmse_ci95", "regret"})
+    CHECK_THAT(reading_error_after([&](Json& r) { r["algorithms"][1].erase(key); }),
+               Contains("algorithms[1]." + std::string(key) + " is missing"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["rmse"] = "x"; }),
+             Contains("r.json:9") && Contains("algorithms[1].rmse: expected a number"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["rmse"] = -1; }),
+             Contains("algorithms[1].rmse"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["status"] = "won"; }),
+             Contains("expected one of ran, skipped"));
+  CHECK_THAT(reading_error_after([](Json& r) {
+               r["algorithms"][1]["rmse_ci95"] = {2, 1};
+             }),
+             Contains("algorithms[1].rmse_ci95"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["label"] = "mean"; }),
+             Contains("algorithms[1].label: stands twice"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"] = {1}; }),
+             Contains("algorithms[0]: expected a map"));
+  CHECK_THAT(reading_error_after([](Json& r) {
+               r["evaluation"] = {{"from_s", 5}, {"to_s", 5}};
+             }),
+             Contains("evaluation.to_s"));
 }
 
-TEST_CASE("comparison: a check is read or refused") {
-  const Check c = check_from_words("least-squares (2):ns_per_sample+5.5%");
-  CHECK(c.label == "least-squares (2)");
-  CHECK(c.metric == "ns_per_sample");
-  CHECK(c.relative);
-  CHECK(c.limit == Approx(0.055));
-  for (const char* bad : {"",
-                          "rmse",
-                          "rmse5%",
-                          "rmse+",
-                          "rmse+x",
-                          "rmse+-5%",
-                          "rmse+%",
-                          "+5%",
-                          ":rmse+5%",
-                          "rsme+5%",
-                          "rmse+nan",
-                          "rmse+inf"}) {
-    INFO(bad);
-    CHECK_THROWS_AS(check_from_words(bad), Error);
-  }
-  CHECK_THROWS_WITH(check_from_words("rsme+5%"), Contains("did you mean rmse?"));
+TEST_CASE("comparison: keys of a later program are left alone, clocks may be missing") {
+  Json later = report();
+  later["more"] = {1, 2};
+  later["algorithms"][0]["more"] = "x";
+  later["algorithms"][0].erase("ns_per_sample");
+  later["algorithms"][0].erase("peak_bytes");
+  const auto read = summary(later);
+  CHECK(read.algorithms.size() == 3);
+  CHECK(std::isnan(read.algorithms[0].ns_per_sample));
+  CHECK(compared(report(), later).unlike.empty());
+}
+
+TEST_CASE("comparison: a folder stands for the report in it") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "report.json") << report().dump();
+  CHECK(libchar::read_replay_report(folder.path().string()).algorithms.size() == 3);
+  CHECK_THROWS_WITH(libchar::read_replay_report((folder / "none").string()), Contains("E0551"));
+}
+
+TEST_CASE("comparison: as JSON and as Markdown") {
+  Json b = report();
+  b["algorithms"][0]["label"] = "me|an <b>";
+  b["scene"]["name"] = "# x";
+  const auto c = compared(b, report());
+  const Json json = comparison_json(c);
+  CHECK(json["score"] == "rmse");
+  CHECK(json["algorithms"].size() == 4);
+  CHECK(json["algorithms"][0]["difference"] == "unknown");
+  CHECK(json["algorithms"][1]["rmse_change"] == 0);
+  CHECK(json["a"]["best"] == "mean");
+  const std::string page = comparison_markdown(c);
+  CHECK_THAT(page, Contains("| me\\|an \\<b\\> | 1 | – | – | only in A |"));
+  CHECK_THAT(page, Contains("| median | 1.2 | 1.2 | 0 % | equal | 10 ns | 10 ns | 1000 B |"));
+  CHECK_THAT(page, Contains("# \\# x"));
+  CHECK(page.find("tilt-kalman") == std::string::npos);
 }

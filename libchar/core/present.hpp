@@ -1,0 +1,17 @@
+#pragma once
+// Where a record has its samples: NaN marks a missing one.
+
+#include <cstddef>
+#include <span>
+
+namespace libchar {
+
+/// How many samples from the first on are present.
+std::size_t present_run(std::span<const double> samples);
+
+/// The same, where an infinity counts as missing too.
+std::size_t finite_run(std::span<const double> samples);
+
+std::size_t count_missing(std::span<const double> samples);
+
+}  // namespace libchar

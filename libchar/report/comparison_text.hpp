@@ -1,0 +1,25 @@
+#pragma once
+// A comparison for scripts and for pages.
+
+#include <string>
+
+#include "libchar/core/json.hpp"
+#include "libchar/report/comparison.hpp"
+#include "libchar/report/comparison_check.hpp"
+
+namespace libchar {
+
+/// The keys behind the head of {"format":"replay-comparison","version":1,…} (docs/replay.md).
+Json comparison_json(const Comparison& comparison);
+
+/// One page of Markdown.
+std::string comparison_markdown(const Comparison& comparison);
+
+/// "+4.62 %", "0 %"; "–" for no number.
+std::string people_change(double change);
+
+/// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty
+/// when it ran in both.
+std::string side_of(const ComparedAlgorithm& row);
+
+}  // namespace libchar

@@ -1,0 +1,164 @@
+#include "libchar/report/replay_tables.hpp"
+
+#include <catch2/catch.hpp>
+#include <regex>
+#include <string>
+
+#include "libchar/report/assets.hpp"
+#include "libchar/report/replay_html.hpp"
+#include "tests/report/synthetic_replay.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
+  return n;
+}
+
+// The page without what is ours byte for byte, and without the document in it.
+std::string body_of(const ReplayResult& result) {
+  const std::string page = replay_html(result);
+  const std::size_t from = page.find("<body>"), to = page.find("<script id=\"report-data\"");
+  REQUIRE(from != std::string::npos);
+  REQUIRE(to != std::string::npos);
+  return page.substr(from, to - from);
+}
+
+// Each kind of result that a replay can end in.
+const std::vector<std::string>& kinds() {
+  static const std::vector<std::string> all = {
+      "plain", "large", "inputs", "blind", "nothing", "hostile"};
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("replay page: bounds stand behind all methods, in a body of their own") {
+  const ReplayResult r = test::synthetic_replay();
+  const std::string table = ranking_table(r);
+  const std::size_t bounds = table.find("<tbody class=\"bounds\">");
+  REQUIRE(bounds != std::string::npos);
+  CHECK(count(table.substr(0, bounds), "<tr class=\"bound\">") == 0);
+  std::size_t expected = 0;
+  for (const AlgorithmResult& a : r.algorithms) expected += a.ran && a.bound;
+  REQUIRE(expected > 0);
+  CHECK(count(table.substr(bounds), "<tr class=\"bound\">") == expected);
+  CHECK(count(table, "<tr class=\"best\">") == 1);
+}
+
+TEST_CASE("replay page: methods stand in the order of their score") {
+  const std::string table = ranking_table(test::synthetic_replay());
+  const std::string methods = table.substr(0, table.find("<tbody class=\"bounds\">"));
+  static const std::regex score("</th><td class=\"n\" data-value=\"([^\"]+)\"");
+  double last = 0;
+  std::size_t rows = 0;
+  for (std::sregex_iterator it(methods.begin(), methods.end(), score), end; it != end; ++it) {
+    const double value = std::stod((*it)[1]);
+    CHECK(value >= last);
+    last = value;
+    ++rows;
+  }
+  CHECK(rows > 10);
+}
+
+TEST_CASE("replay page: a large regret is a multiple of the optimum, a small one a percentage") {
+  ReplayResult r = test::synthetic_replay();
+  for (AlgorithmResult& a : r.algorithms) a.regret = 16.013;
+  CHECK(count(ranking_table(r), "17.0 × optimum") > 5);
+  for (AlgorithmResult& a : r.algorithms) a.regret = 0.0034;
+  CHECK(count(ranking_table(r), ">0.34 %<") > 5);
+}
+
+TEST_CASE("replay page: a table for each input when there are several, none for one") {
+  CHECK(inputs_table(test::synthetic_replay()).empty());
+  const ReplayResult r = test::synthetic_replay(6, 2);
+  const std::string tables = inputs_table(r);
+  CHECK(count(tables, "<table") == 2);
+  CHECK(count(tables, "<h3>Input axis_0</h3>") == 1);
+  CHECK(count(tables, "<h3>Input axis_1</h3>") == 1);
+  // An algorithm that estimates fewer inputs has no row in the other tables.
+  ReplayResult fewer = r;
+  std::size_t ran = 0;
+  for (const AlgorithmResult& a : r.algorithms) ran += a.ran;
+  for (AlgorithmResult& a : fewer.algorithms)
+    if (a.ran) {
+      a.inputs.resize(1);
+      break;
+    }
+  CHECK(count(tables, "<th scope=\"row\">") == 2 * ran);
+  CHECK(count(inputs_table(fewer), "<th scope=\"row\">") == 2 * ran - 1);
+}
+
+TEST_CASE("replay page: without a reference the scores have their own names and their limit") {
+  const std::string body = body_of(test::without_reference());
+  CHECK(count(body, "Leave-one-out RMS") > 0);
+  CHECK(count(body, "Split-array RMS") > 0);
+  CHECK(count(body, "Neither sees an error that all sensors share") == 1);
+  CHECK(count(body, ">Regret<") == 0);
+  CHECK(count(body, ">RMSE") == 0);
+  CHECK(count(body, "data-kind=\"sensors\"") == 0);
+}
+
+TEST_CASE("replay page: what could not be computed leaves a dash, never a name of a bit pattern") {
+  for (const std::string& kind : kinds()) {
+    INFO(kind);
+    const std::string body = body_of(test::synthetic_replay_of_kind(kind));
+    CHECK(!std::regex_search(body, std::regex("\\b(nan|NaN|inf|Infinity)\\b")));
+  }
+  CHECK(count(body_of(test::nothing_scored()), "data-kind=\"cost-time\"") == 0);
+}
+
+TEST_CASE("replay page: names from files never become elements, attributes or comments") {
+  const std::string plain = replay_html(test::synthetic_replay(12)),
+                    page = replay_html(test::hostile_replay());
+  CHECK(count(page, "<script") == count(plain, "<script"));
+  CHECK(count(page, "</script") == count(plain, "</script"));
+  CHECK(count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
+  CHECK(page.find('\0') == std::string::npos);
+  const std::string body = body_of(test::hostile_replay());
+  for (const char* word : {"<img", "<svg", " onerror=\"", " onmouseover=\"", "<b>", "<!--"}) {
+    INFO(word);
+    CHECK(count(body, word) == 0);
+  }
+  CHECK(count(body, "&lt;img src=x onerror=alert(1)&gt;") > 0);
+}
+
+TEST_CASE("replay page: asks for nothing from anywhere and carries the licence of its plots") {
+  std::string page = replay_html(test::synthetic_replay());
+  CHECK(count(page, std::string(chart_js_licence()).substr(0, 60)) <= 1);
+  CHECK(count(page, "Permission is hereby granted, free of charge") >= 1);
+  CHECK(count(page, "default-src 'none'; script-src 'sha256-") == 1);
+  CHECK(count(page, "unsafe-") == 0);
+  const std::string body = body_of(test::synthetic_replay());
+  for (const char* word : {"src=", "href=\"http", "<link", "<iframe", " style=\"", " onclick"}) {
+    INFO(word);
+    CHECK(count(body, word) == 0);
+  }
+}
+
+TEST_CASE("replay page: every algorithm has a row, and who was skipped a sentence") {
+  const ReplayResult r = test::synthetic_replay();
+  const std::string body = body_of(r), needs = needs_table(r);
+  std::size_t skipped = 0;
+  for (const AlgorithmResult& a : r.algorithms) {
+    INFO(a.label);
+    CHECK(count(needs, ">" + a.label + "</th>") == 1);
+    skipped += !a.ran;
+  }
+  REQUIRE(skipped == 3);
+  CHECK(count(needs, "skipped: ") == skipped);
+  // One reason, said once for all three.
+  CHECK(count(body, "needs one gyroscope axis and two accelerometer axes</li>") == 1);
+}
+
+TEST_CASE("replay page: all algorithms on twelve sensors stay below three megabytes") {
+  CHECK(replay_html(test::synthetic_replay(12)).size() < 3'000'000);
+}
+
+TEST_CASE("replay page: the same result gives the same bytes") {
+  const ReplayResult r = test::synthetic_replay(6, 2);
+  CHECK(replay_html(r) == replay_html(r));
+}
