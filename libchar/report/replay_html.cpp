@@ -114,15 +114,13 @@ std::string cost_plots(const ReplayResult& r) {
         name);
   if (any(r,
           [](const AlgorithmResult& a) { return a.rmse > 0 && a.peak_bytes && *a.peak_bytes > 0; }))
-    plots += plot_figure(
-        "cost-memory",
-        0,
-        {"Error against memory",
-         score_name(r),
-         unit,
-         "Peak of the memory from the heap, over learning and run. Methods that take none "
-         "have no place on this axis; the table has them."},
-        name);
+    plots += plot_figure("cost-memory",
+                         0,
+                         {"Error against memory",
+                          score_name(r),
+                          unit,
+                          "Peak of the memory held from the heap, over learning and run."},
+                         name);
   return plots.empty() ? ""
                        : "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n<div "
                          "class=\"plots cost\">\n" +

@@ -173,15 +173,6 @@ std::string markdown_text(std::string_view text) {
   return out;
 }
 
-std::string markdown_table(const std::vector<std::string>& head,
-                           const std::vector<std::vector<std::string>>& rows) {
-  std::string out = fmt::format("| {} |\n|", fmt::join(head, " | "));
-  for (std::size_t i = 0; i < head.size(); ++i) out += "---|";
-  out += "\n";
-  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
-  return out;
-}
-
 std::string replay_markdown(const ReplayResult& r) {
   std::string out = fmt::format("# {}\n\n{}\n\n",
                                 markdown_text(r.scene.name.empty() ? r.scene.file : r.scene.name),

@@ -3,7 +3,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "libchar/replay/replay_result.hpp"
 
@@ -13,8 +12,5 @@ std::string replay_markdown(const ReplayResult& result);
 
 /// Names and paths are anybody's: no mark of theirs becomes a tag, link, column or line.
 std::string markdown_text(std::string_view text);
-/// Cells are taken as they are.
-std::string markdown_table(const std::vector<std::string>& head,
-                           const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace libchar
