@@ -168,7 +168,10 @@ std::vector<FoundFault> AlgorithmRun::found_faults() const {
     auto& place = open[static_cast<std::size_t>(event.channel)];
     if (event.faulty && place < 0) {
       place = static_cast<std::ptrdiff_t>(out.size());
-      out.push_back({static_cast<std::size_t>(event.channel), "variance", time_s, {}});
+      out.push_back({static_cast<std::size_t>(event.channel),
+                     std::string(fusion::name(event.rule)),
+                     time_s,
+                     {}});
     } else if (!event.faulty && place >= 0) {
       out[static_cast<std::size_t>(place)].to_s = time_s;
       place = -1;

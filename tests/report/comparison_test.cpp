@@ -245,6 +245,12 @@ TEST_CASE("comparison: checks hold at their limit and fail above it") {
   // Regret is a share already: the limit is in its own points.
   CHECK(failing("mean:regret+6.25%").empty());
   CHECK_THAT(failing("mean:regret+6%").at(0), Contains("6.25 points more, 6 are allowed"));
+  // Less than 1 kB more is the allocator's; more counts.
+  b["algorithms"][0]["peak_bytes"] = 2024;
+  const auto grown = libchar::parse_comparison_check("mean:peak_bytes+10%");
+  CHECK(failures(compared(report(), b), grown).empty());
+  b["algorithms"][0]["peak_bytes"] = 2025;
+  CHECK(failures(compared(report(), b), grown).size() == 1);
   // A loss is a failure, an algorithm that B was not asked for is none.
   b["algorithms"][0] = skipped("mean");
   const auto lost = compared(report(), b);
