@@ -55,7 +55,8 @@ TimeWindow window_from_words(const std::string& text, const std::string& option)
   TimeWindow window;
   try {
     if (dots > 0) window.from_s = parse_duration_s(text.substr(0, dots));
-    if (dots + 2 < text.size() && text.substr(dots + 2) != "end") window.to_s = parse_duration_s(text.substr(dots + 2));
+    if (dots + 2 < text.size() && text.substr(dots + 2) != "end")
+      window.to_s = parse_duration_s(text.substr(dots + 2));
   } catch (const Error& error) {
     Fault fault = error.fault();
     fault.where = option;

@@ -13,6 +13,9 @@ namespace {
 constexpr int kRounds = 60;
 /// Share of a channel's variance below which its noise is not followed.
 constexpr double kLeastNoise = 1e-14;
+/// Gains less certain than this (relative standard deviation) are none: of a scene that stands still
+/// they are ratios of noise.
+constexpr double kPoorlyKnown = 0.1;
 
 void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* option) {
   if (wanted > channels)
@@ -110,8 +113,11 @@ bool BlindCalibration::solve_factor() {
   }
   // Relative to the strongest: a channel without the input has no gain to be inverted.
   const double strongest = factor_.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (Eigen::Index i = 0; i < n; ++i) {
     if (!(std::abs(factor_[i]) > 1e-6 * strongest)) return false;
+    // var(g) / g^2 = v / (N g^2), as if the factor itself were known.
+    if (noise_[i] > kPoorlyKnown * kPoorlyKnown * instants_ * factor_[i] * factor_[i]) return false;
+  }
   inverse_gain_ = factor_.cwiseInverse();
   return true;
 }
