@@ -49,33 +49,31 @@ std::string facts(const ReplayResult& r) {
   return out + "</p>\n";
 }
 
+// What the columns mean.
+std::string scores_note(const ReplayResult& r) {
+  if (!r.has_reference)
+    return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
+           "(the "
+           "estimate from all other sensors) − (the sensor left out), over all sensors; it holds "
+           "that sensor's own noise. Split-array RMS: of half the difference between the estimates "
+           "from two halves of the array. Neither sees an error that all sensors share.</p>\n";
+  return "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
+         "Regret: "
+         "RMSE ÷ RMSE of the optimum of " +
+         optimum_of(r) +
+         " on this run, minus 1; beyond 100 % the ratio itself. “× best”: interval of the ratio of "
+         "RMSEs on the same resampled stretches; when it holds 1 the difference is not resolved. "
+         "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
+         "look at the reference of the run itself: they are for comparison. A click on a column's "
+         "head sorts by it.</p>\n";
+}
+
 std::string overview(const ReplayResult& r) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
   for (const std::string& sentence : verdict_sentences(r, true))
     out += "<p>" + html_text(sentence) + "</p>\n";
   out += "</div>\n" + facts(r) + ranking_table(r);
-  out +=
-      r.has_reference
-          ? "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
-            "Regret: "
-            "RMSE ÷ RMSE of the best linear unbiased weights of this run, minus 1; beyond 100 % "
-            "the "
-            "ratio itself. “× best”: "
-            "interval of "
-            "the ratio of RMSEs on the same resampled stretches; when it holds 1 the difference is "
-            "not "
-            "resolved. Converged: from here on the window RMS stays within a tenth of its final "
-            "level. "
-            "Bounds look at the reference of the run itself: they are for comparison. A click on a "
-            "column's head sorts by it.</p>\n"
-          : "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
-            "(the "
-            "estimate from all other sensors) − (the sensor left out), over all sensors; it holds "
-            "that "
-            "sensor's own noise. Split-array RMS: of half the difference between the estimates "
-            "from two "
-            "halves of the array. Neither sees an error that all sensors share.</p>\n";
-  return out + inputs_table(r) + "</section>\n";
+  return out + scores_note(r) + inputs_table(r) + "</section>\n";
 }
 
 std::string skipped(const ReplayResult& r) {

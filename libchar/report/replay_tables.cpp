@@ -219,7 +219,7 @@ std::string sensors_table(const ReplayResult& r) {
     std::vector<std::string> row = {s.name};
     if (r.has_reference) {
       row.push_back(people(s.error.rmse));
-      row.push_back(people_interval(s.error.rmse_ci95));
+      row.push_back(std::isfinite(s.error.rmse) ? people_interval(s.error.rmse_ci95) : "–");
       row.push_back(people(s.error.bias, 3));
       row.push_back(people(s.error.maximum, 3));
     }
@@ -230,7 +230,7 @@ std::string sensors_table(const ReplayResult& r) {
     row.push_back(s.missing > 0 ? people_percent(s.missing) : "none");
     std::string h;
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
-    row.push_back(h);
+    row.push_back(r.scene.tilt ? "–" : h);
     row.push_back(s.constant ? "never changed" : "");
     out += table_row(row);
   }
