@@ -68,7 +68,7 @@ struct Extreme {
   }
 };
 
-double fold(Four lane) {
+double fold(const Four& lane) {
   return (lane[0] + lane[2]) + (lane[1] + lane[3]);
 }
 

@@ -152,6 +152,8 @@ ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& op
   out.bias = all.n > 0 ? all.sum / all.n : kNone;
   out.maximum = all.n > 0 ? all.maximum : kNone;
   out.availability = all.n + all.missing > 0 ? all.n / (all.n + all.missing) : 0;
+  out.rmse_ci95 = out.bias_ci95 = {kNone, kNone};
+  out.converged_s = kNone;
   if (all.n == 0) return out;
   const auto sums = cumulated(cells);
   Resampler resampler(cells.size(), options);

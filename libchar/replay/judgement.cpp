@@ -13,11 +13,12 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastShare = 0.9;
 
 // The diagonal of (H' R^-1 H)^-1, R the sensors' mean square errors: by QR of R^-1/2 H.
-Eigen::VectorXd gauss_markov(const std::vector<SensorResult>& sensors, const fusion::Given& given) {
+Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Given& given) {
   Eigen::MatrixXd scaled = given.h();
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const double rmse = sensors[i].error.rmse;
-    scaled.row(static_cast<Eigen::Index>(i)) /= rmse > 0 ? rmse : kNone;
+  for (std::size_t i = 0; i < rms.size(); ++i) {
+    // A sensor that was never sound tells nothing.
+    const double information = rms[i] > 0 ? 1 / rms[i] : 0;
+    scaled.row(static_cast<Eigen::Index>(i)) *= information;
   }
   const Eigen::Index r = scaled.cols();
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
@@ -40,6 +41,7 @@ double regret_of(const AlgorithmResult& algorithm) {
 
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& sound_rms,
                    const fusion::Given& given) {
   if (!result.has_reference) return;
   ScoreOptions quick;
@@ -50,7 +52,7 @@ void judge_optimum(ReplayResult& result,
         result.inputs[0].optimum_rmse = std::fmin(
             result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
   } else {
-    const Eigen::VectorXd best = gauss_markov(result.sensors, given);
+    const Eigen::VectorXd best = gauss_markov(sound_rms, given);
     for (std::size_t j = 0; j < result.inputs.size(); ++j)
       result.inputs[j].optimum_rmse = best[static_cast<Eigen::Index>(j)];
   }

@@ -13,9 +13,11 @@
 namespace libchar {
 
 /// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one
-/// input, or rows of H that differ: from the sensors' own errors, (H' R^-1 H)^-1.
+/// input, or rows of H that differ: from the sensors' own errors without known
+/// faults (`sound_rms`), (H' R^-1 H)^-1.
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& sound_rms,
                    const fusion::Given& given);
 
 /// Distances over time; needs `sensors` of the result.

@@ -33,6 +33,7 @@ struct PassProgress final : Progress {
 
 struct SensorMeter {
   ErrorMeter error;
+  double sound_squares = 0, sound_samples = 0;  // of the error, known faults left out
   double first = kMissing;
   bool constant = true;
   std::uint64_t missing = 0;
@@ -170,14 +171,16 @@ class Replay {
           for (AlgorithmRun& run : optimum_) run.score(first - plan_.run_from, truth);
           for (const auto& blind : blind_)
             if (blind) blind->run(samples);
-          judge_sensors(samples, truth);
+          judge_sensors(samples, sound, truth);
           if (options_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
         passing);
   }
 
-  void judge_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+  void judge_sensors(const Eigen::MatrixXd& samples,
+                     const Eigen::MatrixXd& sound,
+                     const Eigen::MatrixXd& truth) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
     if (errors) expected_ = plan_.given.h() * truth;
     std::vector<double> error(static_cast<std::size_t>(samples.cols()));
@@ -196,6 +199,10 @@ class Replay {
         if (errors) {
           const double e = y - expected_(row, k);
           error[static_cast<std::size_t>(k)] = std::isfinite(e) ? e : kMissing;
+          if (std::isfinite(e) && std::isfinite(sound(row, k))) {
+            meter.sound_squares += e * e;
+            meter.sound_samples += 1;
+          }
         }
       }
       if (errors) meter.error.push(error);
@@ -338,7 +345,10 @@ ReplayResult Replay::collect() {
     answer_faults(result, out);
     out.algorithms.push_back(std::move(result));
   }
-  judge_optimum(out, optimum_, plan_.given);
+  std::vector<double> sound_rms;
+  for (const SensorMeter& meter : sensors_)
+    sound_rms.push_back(std::sqrt(meter.sound_squares / meter.sound_samples));
+  judge_optimum(out, optimum_, sound_rms, plan_.given);
   judge_best(out, meters, scoring);
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {

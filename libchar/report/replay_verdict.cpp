@@ -36,6 +36,8 @@ const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
 
 std::string regret_for_people(const ReplayResult& r, double regret) {
   const std::string optimum = "the optimum of " + optimum_of(r);
+  // The best of a few filters may be the optimum itself.
+  if (std::abs(regret) < 1e-9) return optimum;
   if (regret > 1) return fmt::format("{} times {}", significant(1 + regret, 2), optimum);
   return fmt::format("{} % {} {}",
                      significant(std::abs(100 * regret), 2),
@@ -72,7 +74,14 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   for (const AlgorithmResult* a : ranked(r))
     if (!a->bound && a->as_good_as_best && a->label != best.label)
       equals.push_back(a->label + (learns(*a) ? " (learns from a reference)" : ""));
-  if (equals.empty()) return "Every other method is worse, and the record is long enough to tell.";
+  if (equals.empty()) {
+    const auto others =
+        std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+          return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
+        });
+    return others == 0 ? "No other method has a score."
+                       : "Every other method is worse, and the record is long enough to tell.";
+  }
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
