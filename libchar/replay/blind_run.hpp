@@ -1,6 +1,7 @@
 #pragma once
 // Scores of an algorithm where there is no reference.
-//   leave-one-out   e_i = h_i x(without sensor i) - y_i        (the sensor's own noise is in it)
+//   leave-one-out   e_i = h_i x(without sensor i) - y_i        (the sensor's own noise is in it;
+//                   of more than 32 sensors 32 are left out in turn, evenly chosen)
 //   split array     e   = (x(even sensors) - x(odd sensors)) / 2: with equal halves of independent
 //                   errors its RMS is that of the whole array's estimate
 // What all sensors have in common (an error of the board, of the temperature) is in neither.

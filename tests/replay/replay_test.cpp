@@ -276,3 +276,26 @@ TEST_CASE("replay: refusals name the place") {
       said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nreference: zz\n"),
       Contains("zz"));
 }
+
+TEST_CASE("replay: of many sensors without reference some are left out in turn") {
+  const test::SceneBench bench;
+  std::string head = "t[s]", names;
+  for (int i = 0; i < 40; ++i) {
+    head += ",s" + std::to_string(i);
+    names += (i == 0 ? "s" : ", s") + std::to_string(i);
+  }
+  std::string log = head + "\n";
+  for (int k = 0; k < 300; ++k) {
+    log += std::to_string(0.01 * k);
+    for (int i = 0; i < 40; ++i) log += "," + std::to_string((k * 7 + i * i * 13) % 17);
+    log += "\n";
+  }
+  bench.put("many.csv", log);
+  const ReplayResult result =
+      replay(bench.read("format: scene\nversion: 1\nrecording: many.csv\nsensors: [" + names +
+                        "]\nalgorithms: [mean]\n"));
+  REQUIRE(named(result, "mean").blind);
+  const auto& each = named(result, "mean").blind->leave_one_out;
+  CHECK(std::count_if(each.begin(), each.end(), [](double v) { return v > 0; }) == 32);
+  CHECK(named(result, "mean").rmse > 0);
+}
