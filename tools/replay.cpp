@@ -21,6 +21,7 @@
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
 #include "libchar/report/replay_verdict.hpp"
+#include "libchar/report/replay_words.hpp"
 #include "numbers.hpp"
 #include "output_files.hpp"
 #include "verbs.hpp"
@@ -34,8 +35,8 @@ namespace fs = std::filesystem;
 struct ReplayVerb {
   std::string scene, folder, estimates, learning, evaluation;
   std::vector<std::string> algorithms, settings, faults;
-  bool explain = false, force = false, json = false, no_allan = false, no_skip = false,
-       no_faults = false, allow_outside = false;
+  bool explain = false, list = false, force = false, json = false, no_allan = false,
+       no_skip = false, no_faults = false, allow_outside = false;
   std::optional<double> window_s;
   std::uint64_t seed = 1;
 };
@@ -128,12 +129,17 @@ class EstimateFile final : public EstimateSink {
   void begin(const std::vector<std::string>& labels,
              const std::vector<InputResult>& inputs,
              double rate_hz,
-             double,
+             double start_s,
              std::uint64_t instants) override {
     LogInfo info;
     info.file = path_;
     info.samples = info.rows = instants;
     info.time.rate_hz = rate_hz;
+    // Seconds from the recording's first sample, as everything else in the report.
+    info.channels.push_back({"t", "s", false});
+    writing_.time_column = false;
+    rate_hz_ = rate_hz;
+    start_s_ = start_s;
     inputs_ = inputs.size();
     labels_ = labels.size();
     for (const InputResult& input : inputs)
@@ -145,11 +151,16 @@ class EstimateFile final : public EstimateSink {
     writer_ = open_log_writer(path_, info, writing_);
   }
   void block(const std::vector<std::vector<double>>& columns) override {
-    std::vector<std::span<const double>> out;
+    times_.clear();
+    const std::size_t rows = columns.empty() ? 0 : columns[0].size();
+    for (std::size_t k = 0; k < rows; ++k)
+      times_.push_back(start_s_ + static_cast<double>(done_ + k) / rate_hz_);
+    done_ += rows;
+    std::vector<std::span<const double>> out = {times_};
     // Without a reference the columns of the truth are missing.
     if (columns.size() < inputs_ * (labels_ + 1)) {
       missing_.assign(columns.empty() ? 0 : columns[0].size(), kMissing);
-      out.assign(inputs_, missing_);
+      out.insert(out.end(), inputs_, missing_);
     }
     out.insert(out.end(), columns.begin(), columns.end());
     writer_->write(out);
@@ -164,7 +175,9 @@ class EstimateFile final : public EstimateSink {
   WriteOptions writing_;
   std::unique_ptr<LogWriter> writer_;
   std::size_t inputs_ = 1, labels_ = 0;
-  std::vector<double> missing_;
+  std::vector<double> missing_, times_;
+  double rate_hz_ = 1, start_s_ = 0;
+  std::uint64_t done_ = 0;
 };
 
 std::string cell(double value, int digits) {
@@ -200,7 +213,9 @@ std::string text_for_people(const ReplayResult& r) {
         std::isfinite(a->rmse_ci95.low)
             ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
             : "-",
-        std::isfinite(a->regret) ? fmt::format("{:.2f} %", 100 * a->regret) : "-",
+        !std::isfinite(a->regret) ? "-"
+        : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
+                                  : significant(1 + a->regret, 3) + " x",
         cell(a->ns_per_sample, 3),
         people_bytes(a->peak_bytes),
         a->bound             ? "  (bound)"
@@ -226,7 +241,40 @@ Json settings_json(const ReplayVerb& verb, const ReplayResult& result) {
   return out;
 }
 
+// What runs, what it needs and what can be set.
+std::string list_for_people() {
+  std::string text;
+  for (const fusion::Entry& entry : fusion::algorithms()) {
+    text += fmt::format("{:<28} {}\n", entry.card->name, entry.card->title);
+    for (const std::string& need : needs_in_words(*entry.card))
+      text += fmt::format("{:<28}   needs {}\n", "", need);
+    for (const fusion::Option& option : entry.options)
+      text += fmt::format("{:<28}   {} = {}{}  {}\n",
+                          "",
+                          option.name,
+                          significant(option.standard, 6),
+                          option.unit.empty() ? "" : " " + std::string(option.unit),
+                          option.meaning);
+  }
+  return text;
+}
+
+// A folder that a failing run has made goes again.
+struct MadeFolder {
+  explicit MadeFolder(const fs::path& folder) : path(folder), old(fs::exists(folder)) {}
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+  ~MadeFolder() {
+    std::error_code ignored;
+    if (!old && fs::is_empty(path, ignored)) fs::remove(path, ignored);
+  }
+  fs::path path;
+  bool old;
+};
+
 void run_replay(Session& session, const ReplayVerb& verb) {
+  if (verb.list) return print(list_for_people());
+  if (verb.scene.empty()) refuse("SCENE", "which scene?", "", "--list names the algorithms");
   const Scene scene = read_scene(verb);
   ReplayOptions options;
   options.algorithms = chosen(verb, scene);
@@ -250,6 +298,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.scene);
   const fs::path folder = verb.folder;
+  const MadeFolder made(folder);
   std::vector<std::string> files;
   for (const char* name : {"report.html", "report.json", "report.md"})
     files.push_back((folder / name).string());
@@ -293,8 +342,7 @@ void add_replay(CLI::App& app, Session& session) {
       "Every fusion algorithm a scene can feed, compared: report.html, report.json, report.md",
       [&session, verb] { run_replay(session, *verb); });
   sub->add_option(
-         "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation")
-      ->required();
+      "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation");
   sub->add_option("-o,--output", verb->folder, "folder for the results, made when absent")
       ->type_name("DIR");
   sub->add_option("--algorithms",
@@ -326,6 +374,7 @@ void add_replay(CLI::App& app, Session& session) {
                   "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       ->type_name("FORMAT");
   add_count(*sub, "--seed", verb->seed, "seed of the bootstrap intervals (default: 1)");
+  sub->add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
   sub->add_flag("--explain",
                 verb->explain,
                 "print the plan: what would be read, learnt, run, skipped and why");

@@ -89,7 +89,7 @@ const Entry& algorithm(std::string_view name) {
                "",
                "no fusion algorithm has this name",
                std::string(name),
-               near ? "did you mean " + *near + "?" : "the page on fusion lists them"});
+               near ? "did you mean " + *near + "?" : "sensorchar replay --list names them"});
 }
 
 }  // namespace libchar::fusion

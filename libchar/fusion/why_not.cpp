@@ -52,11 +52,15 @@ std::string why_not(const Card& card, const Given& given) {
     return sentence;
   }
   if (needs.noise_levels && !known(given.noise_levels, given.channels))
-    return name + " needs a noise level (above zero) for each channel; give a sensor model";
+    return name +
+           " needs a noise level (above zero) for each channel; give a sensor model, noise or a "
+           "rest";
   if (needs.reference_throughout && !given.reference_throughout)
     return name + " looks at the reference all along; this scene has none over the run";
   if (needs.reference && given.learning_samples == 0)
-    return name + " learns from a reference; this scene has no reference in a learning window";
+    return name +
+           " learns from a reference; this scene has no reference in a learning window (learning: "
+           "[from, to])";
   if (given.learning_samples < needs.learning_samples)
     return name + " learns from at least " + count(needs.learning_samples, "instant", "instants") +
            "; the learning window has " + std::to_string(given.learning_samples);

@@ -24,6 +24,16 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+// Errors with gaps at every turn have no curve, and everything else all the same.
+AllanCurve curve_of(const AllanPyramid& pyramid, double dt_s) {
+  try {
+    return pyramid.finish(dt_s);
+  } catch (const Error& error) {
+    if (error.fault().kind != ErrorKind::numeric) throw;
+    return {};
+  }
+}
+
 }  // namespace
 
 AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why) {
@@ -49,7 +59,8 @@ void AlgorithmRun::guarded(const Work& work) {
     learning_s_ += thread_seconds() - start;
   } catch (const Error& error) {
     if (error.fault().kind != ErrorKind::numeric && error.fault().kind != ErrorKind::usage) throw;
-    failure_ = planned_->label + ": " + error.fault().what;
+    const std::string what = error.fault().what, name(planned_->entry->card->name);
+    failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
     runner_.reset();
   }
 }
@@ -189,7 +200,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     input.error = libchar::score(meters_[j], frame_->rate_hz, options);
     input.optimum_ratio = kNone;
     input.window_rms = window_rms(meters_[j], frame_->rate_hz, frame_->start_s, window_s);
-    if (!allan_.empty()) input.allan = allan_[j].finish(1 / frame_->rate_hz);
+    if (!allan_.empty()) input.allan = curve_of(allan_[j], 1 / frame_->rate_hz);
     out.inputs.push_back(std::move(input));
   }
   if (!out.inputs.empty()) {

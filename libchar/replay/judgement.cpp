@@ -120,7 +120,8 @@ void judge_best(ReplayResult& result,
     if (a.ran && !a.bound) most_available = std::max(most_available, a.availability);
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     const AlgorithmResult& a = result.algorithms[k];
-    if (!a.ran || a.bound || !(a.rmse >= 0) || a.availability < kLeastShare * most_available)
+    if (!a.ran || a.bound || !std::isfinite(a.rmse) ||
+        a.availability < kLeastShare * most_available)
       continue;
     if (!result.best || a.rmse < result.algorithms[*result.best].rmse) result.best = k;
   }
@@ -129,9 +130,11 @@ void judge_best(ReplayResult& result,
   result.algorithms[best].as_good_as_best = true;
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     AlgorithmResult& a = result.algorithms[k];
-    if (k == best || meters[k] == nullptr || !(a.rmse >= 0)) continue;
+    if (k == best || meters[k] == nullptr || !std::isfinite(a.rmse)) continue;
     a.ratio_to_best = rmse_ratio_ci95(*meters[k], *meters[best], scoring);
-    a.as_good_as_best = a.ratio_to_best->low <= 1 && a.ratio_to_best->high >= 1;
+    // Equal errors, zero among them, have no ratio to speak of.
+    a.as_good_as_best = a.rmse == result.algorithms[best].rmse ||
+                        (a.ratio_to_best->low <= 1 && a.ratio_to_best->high >= 1);
   }
 }
 

@@ -139,6 +139,13 @@ void place_windows(const Scene& scene,
   plan.run_to = feed.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
     refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
+  for (const SensorFault& fault : feed.source().known_faults())
+    if (fault.from_s >= end_s)
+      plan.warnings.add(
+          "fault_after_end",
+          "a fault begins after the end of the recording and changes nothing",
+          fmt::format(
+              "{} from {} s", scene.sensors[fault.sensor].name, significant(fault.from_s, 6)));
   if (plan.learn_to > plan.run_from && plan.learn_from < plan.run_to)
     plan.warnings.add("learning_in_evaluation",
                       "the evaluation holds instants of the learning window: methods that learn "

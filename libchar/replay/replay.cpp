@@ -182,6 +182,7 @@ class Replay {
                      const Eigen::MatrixXd& sound,
                      const Eigen::MatrixXd& truth) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
+    if (truth.rows() > 0) truths_ += truth.row(0).array().isFinite().count();
     if (errors) expected_ = plan_.given.h() * truth;
     std::vector<double> error(static_cast<std::size_t>(samples.cols()));
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -269,6 +270,7 @@ class Replay {
   std::vector<SensorMeter> sensors_;
   std::vector<Eigen::MatrixXd> kept_;
   Eigen::MatrixXd expected_, sound_;
+  Eigen::Index truths_ = 0;  // instants of the run with a truth
   double lag_s_ = 0;
   std::uint64_t passes_ = 0;
 };
@@ -290,6 +292,13 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
 
 ReplayResult Replay::collect() {
   const ScoreOptions scoring{40, 1000, options_.seed};
+  if (feed_.info().has_reference && truths_ == 0)
+    throw Error({ErrorKind::input,
+                 "E0902",
+                 scene_.file,
+                 "the reference has no value within the evaluation",
+                 "",
+                 "its stamps, its lag or its gaps put it elsewhere"});
   const FeedInfo& info = feed_.info();
   ReplayResult out;
   out.scene = scene_;
@@ -315,6 +324,9 @@ ReplayResult Replay::collect() {
   out.inputs = inputs();
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     out.sensors.push_back(sensor_result(i, scoring));
+  for (const SensorResult& sensor : out.sensors)
+    if (sensor.constant)
+      out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
   std::vector<const ErrorMeter*> meters;
   auto run = runs_.begin();
   for (const PlannedAlgorithm& algorithm : plan_.algorithms) {

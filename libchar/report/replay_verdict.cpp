@@ -85,7 +85,7 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out = fmt::format("The record is too short to tell {} from it.", list_of(equals));
+  std::string out = fmt::format("This record does not tell {} from it.", list_of(equals));
   const AlgorithmResult* cheap = cheapest_equal(r);
   if (costs && cheap != nullptr && cheap->label != best.label &&
       cheap->ns_per_sample < 0.8 * best.ns_per_sample)

@@ -299,3 +299,41 @@ TEST_CASE("replay: of many sensors without reference some are left out in turn")
   CHECK(std::count_if(each.begin(), each.end(), [](double v) { return v > 0; }) == 32);
   CHECK(named(result, "mean").rmse > 0);
 }
+
+TEST_CASE("replay: a sensor with every second sample takes nothing from the others") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a,b,c,x\n";
+  for (int k = 0; k < 3000; ++k) {
+    const double x = std::sin(0.01 * k);
+    log += std::to_string(0.01 * k) + "," + std::to_string(x + 0.01 * (k % 3)) + "," +
+           std::to_string(x - 0.02 * (k % 5)) + "," +
+           (k % 2 == 0 ? std::to_string(x + 0.01 * (k % 7)) : "") + "," + std::to_string(x) + "\n";
+  }
+  bench.put("half.csv", log);
+  const ReplayResult result = replay(
+      bench.read("format: scene\nversion: 1\nrecording: half.csv\nsensors: [a, b, c]\nreference: "
+                 "x\nlearning: [0, 10]\n"));
+  CHECK(named(result, "mean").availability == 1);
+  CHECK_FALSE(named(result, "mean").inputs[0].allan.points.empty());
+  // It needs all three at once, so that no two of its errors follow each other.
+  const AlgorithmResult& whole = named(result, "blind-calibration");
+  REQUIRE(whole.ran);
+  CHECK(whole.availability == Approx(0.5).margin(0.01));
+  CHECK(whole.inputs[0].allan.points.empty());
+}
+
+TEST_CASE("replay: what cannot be scored or does not change is said") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a,b,c,x\n";
+  for (int k = 0; k < 500; ++k)
+    log += std::to_string(0.01 * k) + ",1,1,1," + std::to_string(k) + "\n";
+  bench.put("flat.csv", log);
+  const std::string scene = "format: scene\nversion: 1\nrecording: flat.csv\nsensors: [a, b, c]\n";
+  const ReplayResult result = replay(bench.read(scene));
+  REQUIRE(result.warnings.find("constant_sensor") != nullptr);
+  CHECK(result.warnings.find("constant_sensor")->count == 3);
+  CHECK(named(result, "mean").as_good_as_best);
+  CHECK(named(result, "median").as_good_as_best);
+  CHECK_THROWS_WITH(replay(bench.read(scene + "reference: {channels: [x], lag_s: 100}\n")),
+                    Contains("E0902"));
+}
