@@ -237,6 +237,14 @@ ReplayPlan make_plan(const Scene& scene,
                      const SensorKnowledge& knowledge) {
   ReplayPlan plan;
   place_windows(scene, options, feed, plan);
+  if (scene.reference && !scene.reference->recording && !scene.simulate)
+    for (const SceneSensor& sensor : scene.sensors) {
+      const auto& channels = scene.reference->channels;
+      if (std::find(channels.begin(), channels.end(), sensor.channel) != channels.end())
+        plan.warnings.add("reference_is_a_sensor",
+                          "a sensor is part of the reference: its error is hidden in every score",
+                          sensor.name);
+    }
   plan.given = make_given(scene, feed, knowledge, plan);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)

@@ -336,4 +336,7 @@ TEST_CASE("replay: what cannot be scored or does not change is said") {
   CHECK(named(result, "median").as_good_as_best);
   CHECK_THROWS_WITH(replay(bench.read(scene + "reference: {channels: [x], lag_s: 100}\n")),
                     Contains("E0902"));
+  const ReplayResult golden = replay(bench.read(scene + "reference: b\n"));
+  REQUIRE(golden.warnings.find("reference_is_a_sensor") != nullptr);
+  CHECK(golden.warnings.find("reference_is_a_sensor")->count == 1);
 }
