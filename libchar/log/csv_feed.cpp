@@ -1,6 +1,7 @@
 #include "libchar/log/csv_feed.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,9 @@
 
 namespace libchar::csv {
 namespace {
+
+/// How long a named pipe may take until its writer writes; files and other pipes are ready at once.
+constexpr int kPatience_ms = 1000;
 
 [[noreturn]] void refuse(const std::string& path,
                          const std::string& what,
@@ -43,6 +47,9 @@ Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
   // Without O_NONBLOCK a named pipe that nobody writes to would hang the program here.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) refuse(path_, "cannot open: " + std::string(std::strerror(errno)));
+  // A writer that waits for us in its own open() needs a moment to begin.
+  pollfd waiting{descriptor_, POLLIN, 0};
+  ::poll(&waiting, 1, kPatience_ms);
   ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK);
   struct stat status {};
   const bool known = ::fstat(descriptor_, &status) == 0;
