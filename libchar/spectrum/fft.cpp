@@ -167,7 +167,7 @@ struct ComplexFft::State {
   std::vector<double> turns;
 
   void plan_two_steps(std::size_t a, std::size_t step, fftw_complex* values);
-  void two_steps(fftw_complex* values) const;
+  void two_steps(fftw_complex* from, fftw_complex* to) const;
 };
 
 void ComplexFft::State::plan_two_steps(std::size_t a, std::size_t step, fftw_complex* values) {
@@ -195,27 +195,43 @@ void ComplexFft::State::plan_two_steps(std::size_t a, std::size_t step, fftw_com
     }
 }
 
-void ComplexFft::State::two_steps(fftw_complex* values) const {
+void ComplexFft::State::two_steps(fftw_complex* from, fftw_complex* to) const {
   auto* const packed = reinterpret_cast<fftw_complex*>(between.get());
-  for (std::size_t i = 0; i < count; i += together, values += together * distance) {
-    fftw_execute_dft(plan.get(), values, packed);
+  for (std::size_t i = 0; i < count;
+       i += together, from += together * distance, to += together * distance) {
+    fftw_execute_dft(plan.get(), from, packed);
     auto* const doubles = reinterpret_cast<double*>(between.get());
     together == 4 ? turn_fours(doubles, turns.data(), n) : turn_each(doubles, turns.data(), n);
-    fftw_execute_dft(second.get(), packed, values);
+    fftw_execute_dft(second.get(), packed, to);
   }
 }
 
+namespace {
+
+// Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the
+// address.
+struct PlannedFor {
+  Aligned<std::complex<double>> memory;
+  fftw_complex* values;
+  explicit PlannedFor(std::size_t n) : memory(aligned<std::complex<double>>(n + 4)) {
+    const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
+    values =
+        reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
+  }
+};
+
+fftw_iodim64 dimension_of(std::size_t n, std::size_t step) {
+  return {static_cast<std::ptrdiff_t>(n),
+          static_cast<std::ptrdiff_t>(step),
+          static_cast<std::ptrdiff_t>(step)};
+}
+
+}  // namespace
+
 ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance)
     : state_(std::make_unique<State>()) {
-  const auto signed_of = [](std::size_t value) { return static_cast<std::ptrdiff_t>(value); };
-  const fftw_iodim64 dimension{signed_of(n), signed_of(step), signed_of(step)};
-  const fftw_iodim64 batch{signed_of(count), signed_of(distance), signed_of(distance)};
-  // Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the
-  // address.
-  const auto memory = aligned<std::complex<double>>(n * step + count * distance + 4);
-  const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
-  auto* const values =
-      reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
+  const fftw_iodim64 dimension = dimension_of(n, step), batch = dimension_of(count, distance);
+  const PlannedFor memory(n * step + count * distance);
   State& s = *state_;
   s.n = n;
   s.count = count;
@@ -224,10 +240,31 @@ ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::
   const std::size_t a = first_step(n);
   const std::lock_guard lock(planner());
   if (a != 0 && (s.together == 4 || n % 2 == 0))
-    s.plan_two_steps(a, step, values);
+    s.plan_two_steps(a, step, memory.values);
+  else
+    s.plan.reset(fftw_plan_guru64_dft(1,
+                                      &dimension,
+                                      1,
+                                      &batch,
+                                      memory.values,
+                                      memory.values,
+                                      FFTW_FORWARD,
+                                      FFTW_ESTIMATE));
+}
+
+ComplexFft::ComplexFft(std::size_t n) : state_(std::make_unique<State>()) {
+  const fftw_iodim64 dimension = dimension_of(n, 1);
+  const PlannedFor from(n), to(n);
+  State& s = *state_;
+  s.n = s.distance = n;
+  s.count = 1;
+  const std::size_t a = first_step(n);
+  const std::lock_guard lock(planner());
+  if (a != 0 && n % 2 == 0)
+    s.plan_two_steps(a, 1, from.values);
   else
     s.plan.reset(fftw_plan_guru64_dft(
-        1, &dimension, 1, &batch, values, values, FFTW_FORWARD, FFTW_ESTIMATE));
+        1, &dimension, 0, nullptr, from.values, to.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 ComplexFft::~ComplexFft() = default;
 ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;
@@ -235,8 +272,16 @@ ComplexFft& ComplexFft::operator=(ComplexFft&&) noexcept = default;
 
 void ComplexFft::transform(double* interleaved) const {
   auto* const values = reinterpret_cast<fftw_complex*>(interleaved);
-  if (state_->second) return state_->two_steps(values);
+  if (state_->second) return state_->two_steps(values, values);
   fftw_execute_dft(state_->plan.get(), values, values);
+}
+
+void ComplexFft::transform(const double* from, double* to) const {
+  // FFTW's interface knows no const; a transform to another place leaves its input as it is.
+  auto* const values = reinterpret_cast<fftw_complex*>(const_cast<double*>(from));
+  auto* const result = reinterpret_cast<fftw_complex*>(to);
+  if (state_->second) return state_->two_steps(values, result);
+  fftw_execute_dft(state_->plan.get(), values, result);
 }
 
 namespace {

@@ -36,10 +36,14 @@ class RealFft {
 class ComplexFft {
  public:
   ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);
+  /// One transform of n values side by side, from one place to another.
+  explicit ComplexFft(std::size_t n);
   ~ComplexFft();
   ComplexFft(ComplexFft&&) noexcept;
   ComplexFft& operator=(ComplexFft&&) noexcept;
   void transform(double* interleaved) const;  ///< real and imaginary parts in turn
+  /// The same from one place to another; `from` stays as it is.
+  void transform(const double* from, double* to) const;
 
  private:
   struct State;

@@ -8,7 +8,7 @@ namespace libchar::halves {
 
 using Complex = std::complex<double>;
 
-/// Inside a row four values stand as four real and four imaginary parts, in the order that
+/// Inside a row of bins four values stand as four real and four imaginary parts, in the order that
 /// unpacking gives.
 inline constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
 
@@ -28,50 +28,61 @@ inline void put(double* row, std::size_t m2, Complex value) {
   row[real_place(m2) + 4] = value.imag();
 }
 
-struct ColumnStep {
-  std::size_t n1, n2, pitch, count, column;
-  bool odd;             // bins
-  const double* shift;  // [n1] exp(-i pi t1 / n1), interleaved: half a bin
-  const double* fine;  // [n1] exp(-2 pi i m1 j / q), j < count; four real and four imaginary parts.
-                       // Odd bins: m1 + 1/2
-  const double* coarse;  // exp(-2 pi i j / period) over a period of 2 q / count, interleaved
+/// Two halves and their means.
+struct HalfPair {
+  const double *a, *b;
+  double mean_a, mean_b;
 };
 
-/// `count` columns of u less the mean; for the odd bins turned by half a bin.
-void gather_columns(const double* x, double mean, const ColumnStep& step, double* to);
+struct ColumnStep {
+  std::size_t n1, n2, pitch, count, column;  // count: columns at once, a multiple of 4
+  const double* shift;                       // [n1] exp(-i pi t1 / n1), interleaved: half a bin
+};
+
+/// `count` columns of u = a + i b less the means, as they are (for the even bins) and turned by half
+/// a bin (for the odd ones). Of four columns the middle two change places.
+void gather_columns(const HalfPair& pair, const ColumnStep& step, double* even, double* odd);
+
+struct ColumnTurns {
+  const double* fine;    // [n1] exp(-2 pi i m j / h), j < count; four real and four imaginary parts;
+                         // m = m1 (even bins), m1 + 1/2 (odd ones)
+  const double* coarse;  // exp(-2 pi i j / period) over a period of 2 h / count, interleaved
+  bool odd;              // bins
+};
 
 /// Turns the transformed columns and puts them back as columns of the rows to come.
-void scatter_columns(const double* from, const ColumnStep& step, double* to);
+void scatter_columns(const double* from,
+                     const ColumnStep& step,
+                     const ColumnTurns& turns,
+                     double* to);
 
-/// Row r and its mirror row: from the complex transform to Z and to the squares of the cosine
-/// transform.
-struct RowPair {
-  const double *row, *mirror;                    // interleaved
-  double *z_row, *z_mirror;                      // four real, four imaginary
-  double *c_row = nullptr, *c_mirror = nullptr;  // sums of squares; none: not wanted
-  const double* quarter;                         // exp(-i pi m2 / (2 n2)), four and four
-  Complex start;                                 // exp(-i pi k / L) at m2 = 0
-  std::size_t n2;
+/// A row of bins of both halves: from the transform of a + i b, and of the half P before, to X of
+/// the two segments that the pair ends.
+struct BinRow {
+  const double *row, *mirror;       // interleaved, n2 values; the mirror is read from its end
+  std::size_t bins;                 // n2 / 2, a multiple of 4
+  const double* quarter;            // exp(-i pi m2 / n2), four and four
+  Complex start;                    // exp(-i pi k / L) at m2 = 0
+  const double* before;             // P
+  double* z;                        // B; may be P's place
+  double *first, *second;           // X of (P, A) and of (A, B)
+  double step_first, step_second;   // between the means, for odd bins
+  double* cosine = nullptr;         // sums of squares of the cosine transforms; none: not wanted
+  double weight_a = 0, weight_b = 0;  // 0: not of this half
 };
 
-void separate(const RowPair& pair);
+void even_bins(const BinRow& row);
+void odd_bins(const BinRow& row);
 
-/// X = P + A for a row of even bins; A takes the place of P.
-void join_even(const double* a, std::size_t n2, double* p, double* x);
-
-/// X = P - A + step (1 - i cot(pi k / L)) for a row of odd bins, and A takes the place of P;
-/// `start` is exp(-i pi k / L) at its first.
-void join_odd(const double* a,
-              std::size_t n2,
-              const double* quarter,
-              Complex start,
-              double step,
-              double* p,
-              double* x);
+/// Three neighbouring rows of X.
+struct Neighbours {
+  const double *low, *centre, *high;
+};
 
 /// power += |centre/2 - (low + high)/4|^2
-void add_windowed(
-    const double* low, const double* centre, const double* high, std::size_t n2, double* power);
+void add_windowed(const Neighbours& x, std::size_t bins, double* power);
+/// The same for two segments, in their order.
+void add_windowed(const Neighbours& x, const Neighbours& y, std::size_t bins, double* power);
 
 /// Mean about the first value, in eight lanes.
 double mean_about_first(const double* x, std::size_t n);

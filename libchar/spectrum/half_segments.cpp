@@ -11,28 +11,26 @@
 // Z_k).
 //
 // Z itself: even bins k = 2m are the DFT of the half, odd ones k = 2m+1 its DFT at frequencies
-// moved by half a bin. Each is a complex transform of q = h/2 values u_s = x_{2s} + i x_{2s+1} and
-// the usual separation (R. N. Bracewell, The Fourier Transform and Its Applications, on two real
-// transforms in one). Each transform of q = n1 n2 values goes in two steps that stay in the cache
-// (W. M. Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2
-// pi i t2 m1 / q), over t2; s = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in
-// rows of fixed m1: the mirror q - m of row r is row n1 - r backwards, the neighbours m ± 1 are the
-// rows beside it, and everything after the transform goes row by row, as soon as a row is there:
-// memory is what this costs, more than arithmetic.
+// moved by half a bin. Two halves a and b are transformed at once as u = a + i b (R. N. Bracewell,
+// The Fourier Transform and Its Applications, on two real transforms in one):
+//   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),   m' = h - m for even bins, h - 1 - m
+// for odd ones. Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M.
+// Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2
+// m1 / h), over t2; t = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in rows of
+// fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r) backwards, the neighbours m ± 1
+// are the rows beside it, and everything after the transform goes row by row, from both ends to the
+// middle, as soon as a row is there: memory is what this costs, more than arithmetic.
 //
-// Inside a row four values stand as four real and four imaginary parts, in the order 0 2 1 3 that
-// unpacking gives.
+// Only m2 < n2/2 is kept: the rest is the mirror. Inside a row of bins four values stand as four
+// real and four imaginary parts, in the order 0 2 1 3 that unpacking gives.
 
 #include "libchar/spectrum/half_segments.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
-#include <numbers>
 #include <utility>
 
-#include "libchar/spectrum/fft.hpp"
-#include "libchar/spectrum/half_segment_kernels.hpp"
+#include "libchar/spectrum/half_rows.hpp"
 
 namespace libchar {
 
@@ -40,327 +38,330 @@ using namespace halves;
 
 namespace {
 
-constexpr std::size_t kColumns =
-    4;  // transformed side by side, or a multiple of it: one line of the cache
-constexpr std::size_t kPadding =
-    8;  // between rows, or a column of them would fall into few sets of the cache
-constexpr std::size_t kRows = 4;              // transformed one after another
 constexpr std::size_t kShortest = 1U << 11U;  // halves below are transformed faster whole
 
-struct Freed {
-  void operator()(double* memory) const { ::operator delete[](memory, std::align_val_t{64}); }
-};
-using Buffer = std::unique_ptr<double[], Freed>;
-Buffer zeros(std::size_t n) {
-  Buffer buffer(static_cast<double*>(::operator new[](n * sizeof(double), std::align_val_t{64})));
-  std::fill_n(buffer.get(), n, 0.0);
-  return buffer;
-}
-
-/// exp(-i pi num / den)
-Complex turn(double num, double den) {
-  const double angle = std::numbers::pi * num / den;
-  return {std::cos(angle), -std::sin(angle)};
-}
-
-/// n1 <= n2 as near to each other as can be, n2 a multiple of 8; {0, 0} when q has other factors
-/// than 2, 3, 5, 7.
-std::pair<std::size_t, std::size_t> split(std::size_t q) {
-  std::size_t rest = q;
-  for (const std::size_t prime : {2U, 3U, 5U, 7U})
-    while (rest > 1 && rest % prime == 0) rest /= prime;
-  if (rest != 1) return {0, 0};
-  for (auto n1 = static_cast<std::size_t>(std::sqrt(static_cast<double>(q)) + 0.5); n1 >= 16; --n1)
-    if (q % n1 == 0 && q / n1 % kColumns == 0 && q / n1 < 8 * n1) return {n1, q / n1};
-  return {0, 0};
-}
-
-/// Where a column of all rows is more than the cache holds at once, several lines are taken from
-/// each row.
-std::size_t columns_at_once(std::size_t q, std::size_t n2) {
-  std::size_t count = q <= (std::size_t{1} << 16U) ? 2 * kColumns : 6 * kColumns;
-  while (n2 % count != 0) count -= kColumns;
-  return count;
+inline void prefetch(const double* values, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += 8) __builtin_prefetch(values + i, 1, 2);
 }
 
 }  // namespace
 
+class HalfSegments::Sums {
+ public:
+  explicit Sums(std::size_t h) : values(aligned_zeros(h)) {}
+  AlignedDoubles values;  // even bins, then odd bins
+  double top = 0;         // bin h
+};
+
+void HalfSegments::SumsFreed::operator()(Sums* sums) const {
+  delete sums;
+}
+
 struct HalfSegments::State {
-  std::size_t h, q, n1, n2, pitch, count;               // count: columns at once
-  ComplexFft columns, rows, row;                        // rows: kRows of them
-  std::vector<double> shift, fine[2], coarse, quarter;  // fine: even bins, odd bins
-  Buffer column_values;                                 // four columns
-  Buffer row_values;                                    // n1 rows, `pitch` apart
-  Buffer z;        // of the half before: even bins, then odd bins
-  Buffer x_even;   // X of the segment
-  Buffer scratch;  // rows: Z, Z of the mirror, X of odd bins: two rising, two falling, one moved
-  double z_top = 0, x_top = 0;  // bin h
-  Buffer segment_sums,
-      block_sums;  // even bins, then odd bins; the second when it is first asked for
-  double top_sum = 0;
-  std::vector<char> row_done;
-  bool joined = false;  // z is there
+  std::shared_ptr<RowShop> shop;
+  AlignedDoubles z;           // of the half before: even bins, then odd bins
+  double z_top = 0;           // its bin h
+  AlignedDoubles block_sums;  // even bins, then odd bins; when first asked for
+  AlignedDoubles nothing;     // a half that is not there; when first needed
+  bool joined = false;        // z is there
   double before_mean = 0;
 
-  State(std::size_t half, std::size_t split1, std::size_t split2);
-  void transform_columns(const double* x, double mean, bool odd);
-  void transform_row(std::size_t r);
-  Complex start_of(std::size_t r, bool odd) const {
-    return turn(static_cast<double>(2 * r + (odd ? 1 : 0)), static_cast<double>(2 * h));
-  }
-  void z_of_rows(
-      std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror);
-  void z_of_own_mirror(std::size_t r, bool odd, bool block, double* z_row);
-  void take_even(const double* x, double mean, bool block);
-  void take_odd(const double* x, double mean, bool block);
-  void take_odd_row(std::size_t r, const double* z_row, double step, double* x_odd);
+  explicit State(std::size_t half) : shop(RowShop::of(half)), z(aligned_zeros(2 * half)) {}
+  const double* samples_of(const Half& half);
+  Used push(Half a, Half b, Sums* first, Sums* second, bool remember);
   void natural(const double* sums, double top, std::vector<double>& out) const;
 };
 
-HalfSegments::State::State(std::size_t half, std::size_t split1, std::size_t split2)
-    : h(half),
-      q(half / 2),
-      n1(split1),
-      n2(split2),
-      pitch(2 * n2 + kPadding),
-      count(columns_at_once(q, n2)),
-      columns(n1, count, count, 1),
-      rows(n2, kRows, 1, pitch / 2),
-      row(n2, 1, 1, n2),
-      column_values(zeros(2 * count * n1)),
-      row_values(zeros(n1 * pitch)),
-      z(zeros(4 * q)),
-      x_even(zeros(2 * q)),
-      scratch(zeros(14 * n2)),
-      segment_sums(zeros(2 * q)) {
-  const auto push = [](std::vector<double>& table, Complex value) {
-    table.push_back(value.real());
-    table.push_back(value.imag());
+namespace {
+
+// One pass over the rows of a pair.
+class Pass {
+ public:
+  struct Work {
+    HalfPair pair;
+    double before_mean;
+    double* z;
+    double *z_top, *block_sums;
+    bool remember;
+    double weight_a, weight_b;
+    // Places of the sums of the two segments and their bins h; none: not wanted.
+    double *first, *second, *first_top, *second_top;
   };
-  for (std::size_t t1 = 0; t1 < n1; ++t1)
-    push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
-  for (std::size_t odd = 0; odd < 2; ++odd) {
-    fine[odd].resize(2 * count * n1);
-    for (std::size_t m1 = 0; m1 < n1; ++m1)
-      for (std::size_t j = 0; j < count; ++j)
-        put(fine[odd].data() + 2 * count * m1,
-            j,
-            turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd),
-                 static_cast<double>(q)));
-  }
-  const std::size_t period = 2 * q / count;
-  for (std::size_t j = 0; j < period; ++j)
-    push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
-  quarter.resize(2 * n2);
-  for (std::size_t m2 = 0; m2 < n2; ++m2)
-    put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(2 * n2)));
-}
 
-void HalfSegments::State::transform_columns(const double* x, double mean, bool odd) {
-  ColumnStep step{
-      n1, n2, pitch, count, 0, odd, shift.data(), fine[odd ? 1 : 0].data(), coarse.data()};
-  for (; step.column < n2; step.column += count) {
-    gather_columns(x, mean, step, column_values.get());
-    columns.transform(column_values.get());
-    scatter_columns(column_values.get(), step, row_values.get());
-  }
-  row_done.assign(n1, 0);
-}
+  Pass(const RowTables& tables, RowScratch& scratch, const Work& work)
+      : t_(tables), scratch_(scratch), work_(work), bins_(tables.n2 / 2) {}
+  void run();
 
-/// When it is first asked for, with its neighbours in memory.
-void HalfSegments::State::transform_row(std::size_t r) {
-  const std::size_t first = r / kRows * kRows;
-  if (first + kRows > n1) {  // the last few
-    if (std::exchange(row_done[r], char{1}) == 0) row.transform(row_values.get() + r * pitch);
-  } else if (std::exchange(row_done[first], char{1}) == 0) {
-    rows.transform(row_values.get() + first * pitch);
-  }
-}
-
-void HalfSegments::State::z_of_rows(
-    std::size_t r, std::size_t mirror, bool odd, bool block, double* z_row, double* z_mirror) {
-  transform_row(r);
-  if (mirror == r) return z_of_own_mirror(r, odd, block, z_row);
-  transform_row(mirror);
-  double* const c = block ? block_sums.get() + (odd ? q : 0) : nullptr;
-  separate({row_values.get() + r * pitch,
-            row_values.get() + mirror * pitch,
-            z_row,
-            z_mirror,
-            block ? c + r * n2 : nullptr,
-            block ? c + mirror * n2 : nullptr,
-            quarter.data(),
-            start_of(r, odd),
-            n2});
-}
-
-/// A row that is its own mirror, value by value: the first one of the even bins (moved by one), and
-/// the one in the middle.
-void HalfSegments::State::z_of_own_mirror(std::size_t r, bool odd_bins, bool block, double* z_row) {
-  const double* const u = row_values.get() + r * pitch;
-  double* const c_row = block ? block_sums.get() + (odd_bins ? q : 0) + r * n2 : nullptr;
-  const Complex start = start_of(r, odd_bins);
-  const bool moved = r == 0 && !odd_bins;
-  const auto at = [&](std::size_t m2) { return Complex(u[2 * m2], u[2 * m2 + 1]); };
-  for (std::size_t m2 = 0; m2 < n2; ++m2) {
-    const Complex mine = at(m2), other = std::conj(at(moved ? (n2 - m2) % n2 : n2 - 1 - m2));
-    const Complex even = 0.5 * (mine + other), odd = Complex(0, -0.5) * (mine - other);
-    const Complex turned = start * value_at(quarter.data(), m2);
-    const Complex value = even + turned * turned * odd;
-    put(z_row, m2, value);
-    if (moved && m2 == 0) {
-      const double top = even.real() - odd.real();
-      x_top = std::exchange(z_top, top) + top;
-    }
-    if (!block) continue;
-    const double c = turned.real() * value.real() - turned.imag() * value.imag();
-    c_row[sum_place(m2)] += c * c;
-  }
-}
-
-void HalfSegments::State::take_even(const double* x, double mean, bool block) {
-  const std::size_t width = 2 * n2;
-  double *z_row = scratch.get(), *z_mirror = z_row + width;
-  transform_columns(x, mean, false);
-  for (std::size_t r = 0; r <= n1 / 2; ++r) {
-    const std::size_t mirror = r == 0 ? 0 : n1 - r;
-    if (mirror < r) break;  // n1 odd: done
-    z_of_rows(r, mirror, false, block, z_row, z_mirror);
-    join_even(z_row, n2, z.get() + r * width, x_even.get() + r * width);
-    if (mirror != r)
-      join_even(z_mirror, n2, z.get() + mirror * width, x_even.get() + mirror * width);
-  }
-}
-
-/// X of a row of odd bins, and its windowed power (between the even bins below and above, which are
-/// there already).
-void HalfSegments::State::take_odd_row(std::size_t r,
-                                       const double* z_row,
-                                       double step,
-                                       double* x_odd) {
-  const std::size_t width = 2 * n2;
-  join_odd(z_row, n2, quarter.data(), start_of(r, true), step, z.get() + 2 * q + r * width, x_odd);
-  if (!joined) return;
-  const double* above = x_even.get() + (r + 1) * width;
-  double* const moved = scratch.get() + 6 * width;
-  if (r + 1 == n1) {  // above the last row stands the first one, moved by one; at its end bin h
-    for (std::size_t m2 = 0; m2 + 1 < n2; ++m2) put(moved, m2, value_at(x_even.get(), m2 + 1));
-    put(moved, n2 - 1, x_top);
-    above = moved;
-  }
-  add_windowed(x_even.get() + r * width, x_odd, above, n2, segment_sums.get() + q + r * n2);
-}
-
-void HalfSegments::State::take_odd(const double* x, double mean, bool block) {
-  const std::size_t width = 2 * n2;
-  double *z_row = scratch.get(), *z_mirror = z_row + width;
-  double *rising = z_mirror + width, *rising_before = rising + width,
-         *falling = rising_before + width, *falling_before = falling + width;
-  double* const moved = falling_before + width;
-  const double step = before_mean - mean;
-  transform_columns(x, mean, true);
-  const auto even_row = [&](std::size_t r, const double* below, const double* above) {
-    if (joined)
-      add_windowed(below, x_even.get() + r * width, above, n2, segment_sums.get() + r * n2);
+ private:
+  /// X of a row of both segments.
+  struct Row {
+    double* x = nullptr;
   };
-  const std::size_t pairs = (n1 + 1) / 2;
-  for (std::size_t r = 0; r < pairs; ++r) {
-    const std::size_t mirror = n1 - 1 - r;
-    z_of_rows(r, mirror, true, block, z_row, z_mirror);
-    take_odd_row(r, z_row, step, rising);
-    if (mirror != r)
-      take_odd_row(mirror, z_mirror, step, falling);
-    else
-      std::swap(falling, rising);  // the middle row closes both ways
+  std::size_t place(std::size_t r, bool odd) const { return (odd ? t_.h / 2 : 0) + r * bins_; }
+  void make(std::size_t r, bool odd, Row to, Row to_mirror);
+  void make_row(std::size_t r, bool odd, const double* values, const double* mirror, Row to);
+  void window(std::size_t r, bool odd, Row low, Row centre, Row high);
+  void window_first_row(Row below, Row even, Row odd);
+  void ask_for(std::size_t r, bool odd) const;
+  void ask_for_step(std::size_t r) const;
+  Row moved_up(Row even_first);
+
+  const RowTables& t_;
+  RowScratch& scratch_;
+  const Work& work_;
+  std::size_t bins_;
+  double first_top_ = 0, second_top_ = 0;
+};
+
+/// A row and its mirror row, which is made of the same two; the first even row and the middle ones
+/// are their own.
+void Pass::make(std::size_t r, bool odd, Row to, Row to_mirror) {
+  const std::size_t mirror = r == 0 && !odd ? 0 : t_.n1 - (odd ? 1 : 0) - r;
+  const double* const values = scratch_.row(r, odd, 0);
+  if (mirror != r) {
+    const double* const mirrored = scratch_.row(mirror, odd, 1);
+    make_row(r, odd, values, mirrored, to);
+    return make_row(mirror, odd, mirrored, values, to_mirror);
+  }
+  if (r > 0 || odd) return make_row(r, odd, values, values, to);
+  make_row(r, odd, values, scratch_.mirror_of(values), to);
+  // Bin h is its own mirror.
+  const double* const middle = values + t_.n2;
+  first_top_ = *work_.z_top + middle[0];
+  second_top_ = middle[0] + middle[1];
+  if (work_.remember) *work_.z_top = middle[1];
+}
+
+void Pass::make_row(
+    std::size_t r, bool odd, const double* values, const double* mirror, Row to) {
+  const std::size_t at = 2 * place(r, odd);
+  const BinRow row{values,
+                   mirror,
+                   bins_,
+                   t_.quarter.data(),
+                   t_.start_of(r, odd),
+                   work_.z + at,
+                   work_.remember ? work_.z + at : scratch_.spare(0),
+                   to.x,
+                   to.x + t_.n2,
+                   work_.before_mean - work_.pair.mean_a,
+                   work_.pair.mean_a - work_.pair.mean_b,
+                   work_.block_sums == nullptr ? nullptr : work_.block_sums + at / 2,
+                   work_.weight_a,
+                   work_.weight_b};
+  odd ? odd_bins(row) : even_bins(row);
+}
+
+void Pass::window(std::size_t r, bool odd, Row low, Row centre, Row high) {
+  const std::size_t at = place(r, odd), next = t_.n2;
+  const Neighbours x{low.x, centre.x, high.x};
+  const Neighbours y{low.x + next, centre.x + next, high.x + next};
+  if (work_.first != nullptr && work_.first == work_.second)
+    return add_windowed(x, y, bins_, work_.first + at);
+  if (work_.first != nullptr) add_windowed(x, bins_, work_.first + at);
+  if (work_.second != nullptr) add_windowed(y, bins_, work_.second + at);
+}
+
+/// Below the first row stands the last one, moved by one; below bin 1 its conjugate.
+void Pass::window_first_row(Row last_odd, Row even, Row odd) {
+  const Row below{scratch_.spare(0)};
+  for (const std::size_t segment : {std::size_t{0}, t_.n2}) {
+    for (std::size_t m2 = bins_ - 1; m2 > 0; --m2)
+      put(below.x + segment, m2, value_at(last_odd.x + segment, m2 - 1));
+    put(below.x + segment, 0, std::conj(value_at(odd.x + segment, 0)));
+  }
+  window(0, false, below, even, odd);
+  // Both neighbours of bin h are the last odd bin, or its conjugate.
+  const auto add = [&](double* sum, double x_top, const double* row) {
+    if (sum == nullptr) return;
+    const double y = 0.5 * x_top - 0.5 * value_at(row, bins_ - 1).real();
+    *sum += y * y;
+  };
+  add(work_.first_top, first_top_, last_odd.x);
+  add(work_.second_top, second_top_, last_odd.x + t_.n2);
+}
+
+/// Above the last row stands the first one, moved by one; at its end bin h.
+Pass::Row Pass::moved_up(Row first) {
+  const Row above{scratch_.spare(2)};
+  for (const std::size_t segment : {std::size_t{0}, t_.n2}) {
+    for (std::size_t m2 = 0; m2 + 1 < bins_; ++m2)
+      put(above.x + segment, m2, value_at(first.x + segment, m2 + 1));
+    put(above.x + segment, bins_ - 1, segment == 0 ? first_top_ : second_top_);
+  }
+  return above;
+}
+
+/// Rows are short and in two orders, too short for the processor to see what comes next: asked for
+/// a step ahead, what the next step needs is there.
+void Pass::ask_for(std::size_t r, bool odd) const {
+  const std::size_t at = place(r, odd);
+  prefetch(scratch_.untransformed(r, odd), 2 * t_.n2);
+  prefetch(work_.z + 2 * at, t_.n2);
+  if (work_.block_sums != nullptr) prefetch(work_.block_sums + at, bins_);
+  if (work_.second != nullptr) prefetch(work_.second + at, bins_);
+}
+
+void Pass::ask_for_step(std::size_t r) const {
+  if (2 * r > t_.n1) return;
+  ask_for(r, false);
+  if (r > 0) ask_for(t_.n1 - r, false);
+  if (2 * r == t_.n1) return;
+  ask_for(r, true);
+  ask_for(t_.n1 - 1 - r, true);
+}
+
+void Pass::run() {
+  scratch_.transform_columns(work_.pair);
+  // Rows of this step and of the one before: even and odd, rising from the first and falling from
+  // the last.
+  Row even{scratch_.bins(0)}, even_before{scratch_.bins(1)}, odd{scratch_.bins(2)},
+      odd_before{scratch_.bins(3)};
+  Row even_falling{scratch_.bins(4)}, even_falling_before{scratch_.bins(5)},
+      odd_falling{scratch_.bins(6)}, odd_falling_before{scratch_.bins(7)};
+  const std::size_t n1 = t_.n1;
+  for (std::size_t r = 0; 2 * r <= n1; ++r) {
+    const std::size_t falling = n1 - r;
+    ask_for_step(r + 1);
+    make(r, false, even, even_falling);
+    if (2 * r < n1) make(r, true, odd, odd_falling);
     if (r == 0) {
-      // Below the first row stands the last one, moved by one; below bin 1 its conjugate.
-      const double* const last = falling;
-      for (std::size_t m2 = n2 - 1; m2 > 0; --m2) put(moved, m2, value_at(last, m2 - 1));
-      put(moved, 0, std::conj(value_at(rising, 0)));
-      even_row(0, moved, rising);
-      const double top = 0.5 * x_top - 0.5 * value_at(last, n2 - 1).real();
-      if (joined) top_sum += top * top;
-    } else if (mirror == r) {
-      even_row(r, rising_before, falling);
-      even_row(r + 1, falling, falling_before);
+      window_first_row(odd_falling, even, odd);
+      even_falling = std::exchange(even_falling_before, moved_up(even));
     } else {
-      even_row(r, rising_before, rising);
-      even_row(mirror + 1, falling, falling_before);
+      window(r - 1, true, even_before, odd_before, even);
+      if (falling == r) {  // the middle row closes both ways
+        window(r, false, odd_before, even, odd_falling_before);
+        window(r, true, even, odd_falling_before, even_falling_before);
+      } else {
+        const bool closes = 2 * r + 1 == n1;
+        window(r, false, odd_before, even, odd);
+        window(falling, false, closes ? odd : odd_falling, even_falling, odd_falling_before);
+        window(falling, true, even_falling, odd_falling_before, even_falling_before);
+        if (closes) window(r, true, even, odd, even_falling);
+      }
+      std::swap(even_falling, even_falling_before);
     }
-    if (mirror == r + 1) even_row(mirror, rising, falling);
-    std::swap(rising, rising_before);
-    std::swap(falling, falling_before);
+    std::swap(even, even_before);
+    std::swap(odd, odd_before);
+    std::swap(odd_falling, odd_falling_before);
   }
+}
+
+}  // namespace
+
+/// Zeros for a half that is not there or not whole: its partner has nothing to do with it.
+const double* HalfSegments::State::samples_of(const Half& half) {
+  if (half.samples != nullptr && std::isfinite(half.mean)) return half.samples;
+  if (!nothing) nothing = aligned_zeros(shop->tables.h);
+  return nothing.get();
+}
+
+HalfSegments::Used HalfSegments::State::push(
+    Half a, Half b, Sums* first, Sums* second, bool remember) {
+  const std::size_t h = shop->tables.h;
+  const bool a_whole = a.samples != nullptr && std::isfinite(a.mean);
+  const bool b_whole = b.samples != nullptr && std::isfinite(b.mean);
+  const Used used{joined && a_whole, a_whole && b_whole};
+  if (!used.first) first = nullptr;
+  if (!used.second) second = nullptr;
+  const bool block_a = a_whole && a.block, block_b = b_whole && b.block;
+  if ((block_a || block_b) && !block_sums) block_sums = aligned_zeros(h);
+  if (a_whole || b_whole) {
+    const double *const samples_a = samples_of(a), *const samples_b = samples_of(b);
+    auto scratch = shop->borrow();
+    const Pass::Work work{{samples_a, samples_b, a_whole ? a.mean : 0, b_whole ? b.mean : 0},
+                          before_mean,
+                          z.get(),
+                          &z_top,
+                          block_a || block_b ? block_sums.get() : nullptr,
+                          remember,
+                          block_a ? 1.0 : 0.0,
+                          block_b ? 1.0 : 0.0,
+                          first == nullptr ? nullptr : first->values.get(),
+                          second == nullptr ? nullptr : second->values.get(),
+                          first == nullptr ? nullptr : &first->top,
+                          second == nullptr ? nullptr : &second->top};
+    Pass(shop->tables, *scratch, work).run();
+    shop->give_back(std::move(scratch));
+  }
+  if (remember) {
+    joined = b_whole;
+    before_mean = b.mean;
+  }
+  return used;
 }
 
 void HalfSegments::State::natural(const double* sums, double top, std::vector<double>& out) const {
-  out.resize(h + 1);
-  for (std::size_t r = 0; r < n1; ++r)
-    for (std::size_t m2 = 0; m2 < n2; ++m2) {
-      const std::size_t place = r * n2 + sum_place(m2), m = r + n1 * m2;
+  const RowTables& t = shop->tables;
+  const std::size_t bins = t.n2 / 2;
+  out.resize(t.h + 1);
+  for (std::size_t r = 0; r < t.n1; ++r)
+    for (std::size_t m2 = 0; m2 < bins; ++m2) {
+      const std::size_t place = r * bins + sum_place(m2), m = r + t.n1 * m2;
       out[2 * m] = sums[place];
-      out[2 * m + 1] = sums[q + place];
+      out[2 * m + 1] = sums[t.h / 2 + place];
     }
-  out[h] = top;
+  out[t.h] = top;
 }
 
 bool HalfSegments::suits(const WelchOptions& options) {
   const std::uint64_t h = options.segment / 2;
   return options.window == Window::hann && options.overlap == 0.5 &&
-         options.detrend == Detrend::constant && options.segment % 4 == 0 && h >= kShortest &&
-         split(h / 2).first != 0;
+         options.detrend == Detrend::constant && options.segment % 2 == 0 && h >= kShortest &&
+         rows_and_columns(h).first != 0;
 }
 
-HalfSegments::HalfSegments(std::size_t segment) {
-  const auto [n1, n2] = split(segment / 4);
-  state_ = std::make_unique<State>(segment / 2, n1, n2);
-}
+HalfSegments::HalfSegments(std::size_t segment) : state_(std::make_unique<State>(segment / 2)) {}
 HalfSegments::~HalfSegments() = default;
 HalfSegments::HalfSegments(HalfSegments&&) noexcept = default;
 HalfSegments& HalfSegments::operator=(HalfSegments&&) noexcept = default;
 
 std::size_t HalfSegments::half() const {
-  return state_->h;
+  return state_->shop->tables.h;
 }
-double HalfSegments::mean_of(const double* x) const {
-  return mean_about_first(x, state_->h);
+
+HalfSegments::Half HalfSegments::half_at(const double* samples, bool block) const {
+  return {samples, mean_about_first(samples, half()), block};
 }
+
+HalfSegments::SumsPointer HalfSegments::zero_sums() const {
+  return SumsPointer(new Sums(half()));
+}
+
+HalfSegments::SumsPointer HalfSegments::copy_of(const Sums& sums) const {
+  SumsPointer copy = zero_sums();
+  std::copy_n(sums.values.get(), half(), copy->values.get());
+  copy->top = sums.top;
+  return copy;
+}
+
+void HalfSegments::take_power(Sums& sums, std::vector<double>& power) const {
+  state_->natural(sums.values.get(), sums.top, power);
+  std::fill_n(sums.values.get(), half(), 0.0);
+  sums.top = 0;
+}
+
+HalfSegments::Used HalfSegments::push(const Half& a, const Half& b, Sums* first, Sums* second) {
+  return state_->push(a, b, first, second, true);
+}
+
+bool HalfSegments::add_last(const Half& a, Sums& sums) const {
+  return state_->push({a.samples, a.mean, false}, {}, &sums, nullptr, false).first;
+}
+
 void HalfSegments::forget() {
   state_->joined = false;
 }
 
-bool HalfSegments::push(const double* x, double mean, bool block) {
-  State& s = *state_;
-  if (!std::isfinite(mean)) {
-    s.joined = false;
-    return false;
-  }
-  if (block && !s.block_sums) s.block_sums = zeros(2 * s.q);
-  s.take_even(x, mean, block);
-  s.take_odd(x, mean, block);
-  s.before_mean = mean;
-  return std::exchange(s.joined, true);
-}
-
-void HalfSegments::take_power(std::vector<double>& power) {
-  State& s = *state_;
-  s.natural(s.segment_sums.get(), s.top_sum, power);
-  std::fill_n(s.segment_sums.get(), 2 * s.q, 0.0);
-  s.top_sum = 0;
-}
-
-std::vector<double> HalfSegments::power() const {
-  std::vector<double> power;
-  state_->natural(state_->segment_sums.get(), state_->top_sum, power);
-  return power;
-}
-
 std::vector<double> HalfSegments::block_power() const {
-  std::vector<double> power(state_->h, 0.0);
-  if (!state_->block_sums) return power;
-  state_->natural(state_->block_sums.get(), 0, power);
-  power.resize(state_->h);
-  for (double& c : power) c *= 2 / static_cast<double>(state_->h);
+  const State& s = *state_;
+  const std::size_t h = half();
+  std::vector<double> power(h, 0.0);
+  if (!s.block_sums) return power;
+  s.natural(s.block_sums.get(), 0, power);
+  power.resize(h);
+  for (double& c : power) c *= 2 / static_cast<double>(h);
   return power;
 }
 

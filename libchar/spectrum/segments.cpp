@@ -195,7 +195,7 @@ Layout layout_of(std::uint64_t segment, double overlap) {
   layout.segment = static_cast<std::size_t>(segment);
   const double hop = std::round(static_cast<double>(segment) * (1 - overlap));
   layout.hop = std::clamp<std::size_t>(static_cast<std::size_t>(hop), 1, layout.segment);
-  layout.group = std::max<std::size_t>(8, (std::size_t{1} << 16U) / layout.segment);
+  layout.group = std::max<std::size_t>(32, (std::size_t{1} << 16U) / layout.segment / 2 * 2);
   return layout;
 }
 

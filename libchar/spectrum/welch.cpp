@@ -128,14 +128,21 @@ Group sum_of_group(std::uint64_t index,
       out.used.push_back(worker.periodogram->add(record.data() + i * layout.hop, out.power.data()));
     return out;
   }
+  // Pairs as a stream has them: the group ends with the first segment of one.
   HalfSegments& halves = *worker.halves;
   halves.forget();
-  for (std::uint64_t i = first; i <= last; ++i) {
-    const double* const half = record.data() + i * layout.hop;
-    const bool used = halves.push(half, halves.mean_of(half), false);
-    if (i > first) out.used.push_back(used);
+  const auto sums = halves.zero_sums();
+  const std::uint64_t there = layout.count(record.size()) + 1;  // halves
+  for (std::uint64_t i = first; i <= last; i += 2) {
+    const double* const x = record.data() + i * layout.hop;
+    const HalfSegments::Half a = halves.half_at(x);
+    const HalfSegments::Half b =
+        i + 1 < there ? halves.half_at(x + layout.hop) : HalfSegments::Half();
+    const auto used = halves.push(a, b, sums.get(), i < last ? sums.get() : nullptr);
+    if (i > first) out.used.push_back(used.first);
+    if (i < last) out.used.push_back(used.second);
   }
-  halves.take_power(out.power);
+  halves.take_power(*sums, out.power);
   return out;
 }
 

@@ -1,5 +1,5 @@
-// Welch's method on samples as they come. By halves, where that is possible: each is transformed
-// once. Else one segment is kept, its tail is the head of the next.
+// Welch's method on samples as they come. By pairs of halves, where that is possible: each is
+// transformed once. Else one segment is kept, its tail is the head of the next.
 
 #include <fmt/format.h>
 
@@ -24,12 +24,13 @@ struct WelchStream::State {
   std::optional<Periodogram> periodogram;  // one of the two
   std::optional<HalfSegments> halves;
   Average average;
-  std::vector<double> segment;  // its first `filled` samples are there (or those of the half)
+  std::vector<double> segment;  // its first `filled` samples are there (or those of two halves)
   std::size_t filled = 0;
   std::vector<double> group;  // power of the group under way, `in_group` segments of it
+  HalfSegments::SumsPointer sums, next_sums;  // the same by halves; of the group after it
   std::size_t in_group = 0;
   std::uint64_t samples = 0;
-  bool first_half = true;
+  bool first_pair = true;
 
   explicit State(const WelchOptions& chosen)
       : options(chosen),
@@ -38,40 +39,51 @@ struct WelchStream::State {
                                            : window_values(chosen.window, layout.segment)),
         average(options, layout),
         group(layout.segment / 2 + 1, 0.0) {
-    if (window.empty())
+    if (window.empty()) {
       halves.emplace(layout.segment);
-    else
+      sums = halves->zero_sums();
+      next_sums = halves->zero_sums();
+    } else {
       periodogram.emplace(options, window);
-    segment.resize(halves ? layout.hop : layout.segment);
+    }
+    segment.resize(layout.segment);
   }
   void take(const double* x);
-  void take_half(const double* x, HalfListener* listener);
-  void end_of_segment();
+  void take_pair(const double* x, HalfListener* listener);
   void push_by_segments(std::span<const double> pushed);
   void push_by_halves(std::span<const double> pushed, HalfListener* listener);
+  void add_rest(Average& whole) const;
 };
 
-void WelchStream::State::end_of_segment() {
+void WelchStream::State::take(const double* x) {
+  average.note_segment(periodogram->add(x, group.data()));
   if (++in_group < layout.group) return;
-  if (halves) halves->take_power(group);
   average.add_group(group);
   std::fill(group.begin(), group.end(), 0.0);
   in_group = 0;
 }
 
-void WelchStream::State::take(const double* x) {
-  average.note_segment(periodogram->add(x, group.data()));
-  end_of_segment();
-}
-
-void WelchStream::State::take_half(const double* x, HalfListener* listener) {
-  const double mean = halves->mean_of(x);
-  const bool block = listener != nullptr && listener->half({x, layout.hop}, std::isfinite(mean));
-  const bool used = halves->push(x, mean, block);
-  if (!std::exchange(first_half, false)) {
-    average.note_segment(used);
-    end_of_segment();
+// The first pair ends one segment, every other two; groups are of an even number of segments, so
+// that they end with the first of the two.
+void WelchStream::State::take_pair(const double* x, HalfListener* listener) {
+  HalfSegments::Half a = halves->half_at(x), b = halves->half_at(x + layout.hop);
+  for (HalfSegments::Half* half : {&a, &b})
+    half->block = listener != nullptr &&
+                  listener->half({half->samples, layout.hop}, std::isfinite(half->mean));
+  const bool closes = in_group + 1 == layout.group;
+  const auto used = halves->push(a, b, sums.get(), closes ? next_sums.get() : sums.get());
+  if (!std::exchange(first_pair, false)) {
+    average.note_segment(used.first);
+    ++in_group;
   }
+  if (closes) {
+    halves->take_power(*sums, group);
+    average.add_group(group);
+    std::swap(sums, next_sums);
+    in_group = 0;
+  }
+  average.note_segment(used.second);
+  ++in_group;
 }
 
 void WelchStream::State::push_by_segments(std::span<const double> pushed) {
@@ -95,21 +107,40 @@ void WelchStream::State::push_by_segments(std::span<const double> pushed) {
 }
 
 void WelchStream::State::push_by_halves(std::span<const double> pushed, HalfListener* listener) {
-  const std::size_t h = layout.hop;
+  const std::size_t pair = 2 * layout.hop;
   while (!pushed.empty()) {
-    if (filled == 0 && pushed.size() >= h) {  // where it lies
-      take_half(pushed.data(), listener);
-      pushed = pushed.subspan(h);
+    if (filled == 0 && pushed.size() >= pair) {  // where it lies
+      take_pair(pushed.data(), listener);
+      pushed = pushed.subspan(pair);
       continue;
     }
-    const std::size_t more = std::min(h - filled, pushed.size());
+    const std::size_t more = std::min(pair - filled, pushed.size());
     std::memcpy(segment.data() + filled, pushed.data(), more * sizeof(double));
     filled += more;
     pushed = pushed.subspan(more);
-    if (filled < h) return;
-    take_half(segment.data(), listener);
+    if (filled < pair) return;
+    take_pair(segment.data(), listener);
     filled = 0;
   }
+}
+
+// The group under way, and the segment of a half that still waits for its partner. Nothing here
+// changes: more samples may come.
+void WelchStream::State::add_rest(Average& whole) const {
+  if (!halves) {
+    if (in_group > 0) whole.add_group(group);
+    return;
+  }
+  const auto rest = halves->copy_of(*sums);
+  bool any = in_group > 0;
+  if (filled >= layout.hop && !first_pair) {
+    whole.note_segment(halves->add_last(halves->half_at(segment.data()), *rest));
+    any = true;
+  }
+  if (!any) return;
+  std::vector<double> power;
+  halves->take_power(*rest, power);
+  whole.add_group(power);
 }
 
 WelchStream::WelchStream(const WelchOptions& options) {
@@ -148,7 +179,9 @@ std::span<const double> WelchStream::rest() const {
 Spectrum WelchStream::finish(double rate_hz) const {
   check_rate(rate_hz);
   const State& s = *state_;
-  if (s.average.used() == 0)
+  Average whole = s.average;
+  s.add_rest(whole);
+  if (whole.used() == 0)
     throw Error({ErrorKind::numeric,
                  "",
                  "",
@@ -158,8 +191,6 @@ Spectrum WelchStream::finish(double rate_hz) const {
                              s.samples),
                  "",
                  "choose a shorter segment"});
-  Average whole = s.average;
-  if (s.in_group > 0) whole.add_group(s.halves ? s.halves->power() : s.group);
   Spectrum spectrum = whole.spectrum(s.window, rate_hz);
   if (spectrum.dropped > 0)
     spectrum.notes.push_back(

@@ -65,6 +65,24 @@ std::vector<double> power_by_segments(const std::vector<double>& x, std::size_t 
   return power;
 }
 
+// The halves at x, x + h, …, two by two, into one sum; which segments were used, in order.
+std::vector<bool> push_all(HalfSegments& halves,
+                           const std::vector<double>& x,
+                           HalfSegments::Sums& sums,
+                           bool block = false) {
+  const std::size_t h = halves.half(), count = x.size() / h;
+  std::vector<bool> used;
+  for (std::size_t i = 0; i < count; i += 2) {
+    const auto a = halves.half_at(x.data() + i * h, block);
+    const auto b =
+        i + 1 < count ? halves.half_at(x.data() + (i + 1) * h, block) : HalfSegments::Half();
+    const auto [first, second] = halves.push(a, b, &sums, &sums);
+    if (i > 0) used.push_back(first);
+    if (i + 1 < count) used.push_back(second);
+  }
+  return used;
+}
+
 // Remembers what it heard, and asks for every second half.
 struct Listener final : HalfListener {
   std::vector<std::vector<double>> heard;
@@ -86,11 +104,13 @@ TEST_CASE("halves: the powers of whole segments, for lengths that split in every
       CAPTURE(n, offset, drift);
       const auto x = noise(2 * n + n / 2, offset, drift);
       HalfSegments halves(n);
-      std::size_t used = 0;
-      for (std::size_t t = 0; t < x.size(); t += n / 2)
-        used += halves.push(x.data() + t, halves.mean_of(x.data() + t), false);
-      CHECK(used == 4);
-      same_power(halves.power(), power_by_segments(x, n), 1e-12);
+      const auto sums = halves.zero_sums();
+      CHECK(push_all(halves, x, *sums) == std::vector<bool>(4, true));
+      std::vector<double> power;
+      halves.take_power(*sums, power);
+      same_power(power, power_by_segments(x, n), 1e-12);
+      halves.take_power(*sums, power);
+      CHECK(largest(power) == 0);
     }
   }
 }
@@ -103,8 +123,8 @@ TEST_CASE("halves: their cosine transforms") {
     HalfSegments halves(n);
     Dct dct(h);
     std::vector<double> wanted(h, 0.0);
+    push_all(halves, x, *halves.zero_sums(), true);
     for (std::size_t t = 0; t < x.size(); t += h) {
-      halves.push(x.data() + t, halves.mean_of(x.data() + t), true);
       const auto c = dct.transform({x.data() + t, h});
       for (std::size_t k = 1; k < h; ++k) wanted[k] += c[k] * c[k];
     }
@@ -114,23 +134,53 @@ TEST_CASE("halves: their cosine transforms") {
   }
 }
 
-TEST_CASE("halves: a segment depends on its own halves only") {
+TEST_CASE("halves: a segment depends on its own pairs only, and each goes to the sum it is for") {
   constexpr std::size_t n = 4096, h = n / 2;
-  const auto x = noise(5 * h, 1, 1);
+  const auto x = noise(6 * h, 1, 1);
   HalfSegments all(n), alone(n);
-  for (std::size_t i = 0; i < 4; ++i)
-    all.push(x.data() + i * h, all.mean_of(x.data() + i * h), false);
-  std::vector<double> before, last, single;
-  all.take_power(before);
-  CHECK(largest(all.power()) == 0);
-  CHECK(all.push(x.data() + 4 * h, all.mean_of(x.data() + 4 * h), false));
-  all.take_power(last);
-  alone.push(x.data(), alone.mean_of(x.data()), true);
+  const auto half = [&](std::size_t i) { return all.half_at(x.data() + i * h); };
+  const auto sums = all.zero_sums(), first = all.zero_sums(), second = all.zero_sums();
+  all.push(half(0), half(1), sums.get(), sums.get());
+  all.push(half(2), half(3), sums.get(), sums.get());
+  all.push(half(4), half(5), first.get(), second.get());
+  std::vector<double> before, segment_3, segment_4, power;
+  all.take_power(*sums, before);
+  all.take_power(*first, segment_3);
+  all.take_power(*second, segment_4);
+  // The same from the fourth half on, with another history.
+  alone.push(half(0), half(5), nullptr, nullptr);
   alone.forget();
-  CHECK_FALSE(alone.push(x.data() + 3 * h, alone.mean_of(x.data() + 3 * h), true));
-  CHECK(alone.push(x.data() + 4 * h, alone.mean_of(x.data() + 4 * h), false));
-  alone.take_power(single);
-  CHECK(single == last);
+  CHECK_FALSE(alone.push(half(2), half(3), first.get(), nullptr).first);
+  alone.take_power(*first, power);
+  CHECK(largest(power) == 0);
+  const auto used = alone.push(half(4), half(5), first.get(), first.get());
+  CHECK((used.first && used.second));
+  alone.take_power(*first, power);
+  for (std::size_t k = 0; k < power.size(); ++k) REQUIRE(power[k] == segment_3[k] + segment_4[k]);
+  // And both sums are what whole segments give.
+  same_power(segment_3, power_by_segments({x.begin() + 3 * h, x.begin() + 5 * h}, n), 1e-12);
+  same_power(segment_4, power_by_segments({x.begin() + 4 * h, x.end()}, n), 1e-12);
+  same_power(before, power_by_segments({x.begin(), x.begin() + 4 * h}, n), 1e-12);
+}
+
+TEST_CASE("halves: a last one without a partner changes nothing") {
+  constexpr std::size_t n = 8000, h = n / 2;
+  const auto x = noise(5 * h, -4, 2);
+  HalfSegments halves(n), again(n);
+  const auto sums = halves.zero_sums(), rest = halves.zero_sums(), other = halves.zero_sums();
+  push_all(halves, {x.begin(), x.begin() + 2 * h}, *sums);
+  CHECK(halves.add_last(halves.half_at(x.data() + 2 * h), *rest));
+  CHECK_FALSE(again.add_last(again.half_at(x.data() + 2 * h), *other));
+  std::vector<double> power, wanted;
+  halves.take_power(*rest, power);
+  same_power(power, power_by_segments({x.begin() + h, x.begin() + 3 * h}, n), 1e-12);
+  halves.push(halves.half_at(x.data() + 2 * h), halves.half_at(x.data() + 3 * h), rest.get(), rest.get());
+  push_all(again, {x.begin(), x.begin() + 2 * h}, *other);
+  again.take_power(*other, wanted);
+  again.push(again.half_at(x.data() + 2 * h), again.half_at(x.data() + 3 * h), other.get(), other.get());
+  again.take_power(*other, wanted);
+  halves.take_power(*rest, power);
+  CHECK(power == wanted);
 }
 
 TEST_CASE("halves: with a missing sample neither segment of a half is used") {
@@ -139,12 +189,17 @@ TEST_CASE("halves: with a missing sample neither segment of a half is used") {
   for (const double missing : {kMissing, std::numeric_limits<double>::infinity()}) {
     x[2 * h + 17] = missing;
     HalfSegments halves(n);
-    std::vector<bool> used;
-    for (std::size_t t = 0; t < x.size(); t += h)
-      used.push_back(halves.push(x.data() + t, halves.mean_of(x.data() + t), true));
-    CHECK(used == std::vector<bool>{false, true, false, false, true, true});
-    for (const double p : halves.power()) REQUIRE(std::isfinite(p));
+    const auto sums = halves.zero_sums();
+    CHECK(push_all(halves, x, *sums, true) == std::vector<bool>{true, false, false, true, true});
+    std::vector<double> power;
+    halves.take_power(*sums, power);
+    for (const double p : power) REQUIRE(std::isfinite(p));
     for (const double c : halves.block_power()) REQUIRE(std::isfinite(c));
+    // The half that shares its transform with the broken one is as it would be alone.
+    std::vector<double> wanted = power_by_segments({x.begin(), x.begin() + 2 * h}, n);
+    const auto later = power_by_segments({x.begin() + 3 * h, x.end()}, n);
+    for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] += later[k];
+    same_power(power, wanted, 1e-12);
   }
 }
 
@@ -189,6 +244,7 @@ TEST_CASE(
         REQUIRE(s.dropped == whole.dropped);
         REQUIRE(s.notes == whole.notes);
         // Every sample was heard of once, or is left.
+        REQUIRE(listener.heard.size() == x.size() / n * 2);
         std::size_t heard = 0;
         for (std::size_t i = 0; i < listener.heard.size(); ++i) {
           for (const double v : listener.heard[i]) {
