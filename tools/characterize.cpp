@@ -35,10 +35,12 @@ struct CharacterizeVerb {
 };
 
 std::vector<OutputFile> outputs_of(const Characterization& result, const fs::path& folder) {
+  Json document = json_without_times(result);
   std::vector<OutputFile> outputs = {
-      {(folder / "report.html").string(), html_report(result)},
-      {(folder / "report.json").string(), dump_json(json_report(result))},
-      {(folder / "curves.csv").string(), csv_curves(result)}};
+      {(folder / "report.html").string(), html_report(result, document)}};
+  add_times(document, result);
+  outputs.push_back({(folder / "report.json").string(), dump_json(document)});
+  outputs.push_back({(folder / "curves.csv").string(), csv_curves(result)});
   std::set<std::string> taken;
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;

@@ -54,6 +54,7 @@ class CsvSource final : public RowSource {
     goes_along_ = feed_.hashes_along();
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
+    info_.read_ahead = !workers_.empty();
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;

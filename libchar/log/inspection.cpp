@@ -15,9 +15,12 @@ namespace {
 // number.
 class Meters final : public BlockSink {
  public:
-  explicit Meters(int threads) : arena_(threads > 0 ? threads : tbb::task_arena::automatic) {}
+  explicit Meters(int threads) : threads_(threads) {}
 
-  void begin(const LogInfo& so_far) override { meters_.resize(so_far.channels.size()); }
+  void begin(const LogInfo& so_far) override {
+    meters_.resize(so_far.channels.size());
+    arena_.initialize(threads_beside_reading(so_far, threads_));
+  }
   void block(const SampleBlock& samples) override {
     arena_.execute([&] {
       tbb::parallel_for(std::size_t{0}, meters_.size(), [&](std::size_t c) {
@@ -28,6 +31,7 @@ class Meters final : public BlockSink {
   ChannelQuality quality(std::size_t channel) const { return meters_[channel].finish(); }
 
  private:
+  int threads_;
   tbb::task_arena arena_;
   std::vector<QualityMeter> meters_;
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -217,6 +218,12 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
     quality_warnings(
         recording.info.channels[c], collector.meters[c].finish(), recording.info.warnings);
   return recording;
+}
+
+int threads_beside_reading(const LogInfo& log, int threads) {
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int all = threads > 0 ? std::min(threads, cores) : cores;
+  return std::max(1, log.read_ahead ? all - 1 : all);
 }
 
 }  // namespace libchar

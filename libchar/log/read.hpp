@@ -29,7 +29,7 @@ struct ReadOptions {
   std::uint64_t skip_rows = 0;        ///< lines to skip before the header (CSV)
   bool overflow_as_missing = false;   ///< a number out of double's range counts as missing instead of ending the reading
   bool skip_repeated_header = false;  ///< header lines inside the data (concatenated logs) are counted and skipped
-  std::size_t block_bytes = std::size_t{1} << 22U;  ///< bytes of file per block; results never depend on it (tests use 1…70000)
+  std::size_t block_bytes = std::size_t{1} << 21U;  ///< bytes of file per block; results never depend on it (tests use 1…70000)
   int threads = 0;                    ///< 0 = all cores; results never depend on it
   bool hash = true;                   ///< compute LogInfo::sha256
 };
@@ -51,6 +51,10 @@ struct BlockSink {
 /// Streams a log once through `sink` in constant memory. "-" reads standard input (CSV only).
 /// Throws Error(input) with file, line and column (or byte); Error(usage) for options that do not fit the file.
 LogInfo read_log(const std::string& path, const ReadOptions& options, BlockSink& sink, Progress& progress = no_progress());
+
+/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that reading ahead keeps busy. More would
+/// take turns with it, and its hash is one long chain that all others wait for in the end.
+int threads_beside_reading(const LogInfo& log, int threads);
 
 /// The same, whole, in memory.
 Recording read_recording(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());

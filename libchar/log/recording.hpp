@@ -43,6 +43,7 @@ struct LogInfo {
   std::uint64_t bytes = 0;
   std::uint64_t rows = 0;     ///< data rows in the file; before its end as the first ones let expect, 0 when there is no telling
   std::uint64_t samples = 0;  ///< grid points delivered (rows used + missing)
+  bool read_ahead = false;       ///< other threads read and parse while the caller works
   std::uint64_t first_line = 0;  ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
   TimeBase time;

@@ -23,6 +23,29 @@ void StampSketch::begin_cell(const Pair& pair) {
   low_ = high_ = residual(pair);
 }
 
+void StampSketch::add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n) {
+  while (n > 0) {
+    // Most stretches hold no new extreme: two of them are looked for before one by one.
+    const auto m = static_cast<std::size_t>(std::min<std::uint64_t>(n, in_cell_));
+    double low = low_, high = high_;
+    for (std::size_t i = 0; i < m; ++i) {
+      const double r = residual({index + static_cast<std::int64_t>(i), stamps[i]});
+      low = r < low ? r : low;
+      high = r > high ? r : high;
+    }
+    const bool none = m > 0 && low == low_ && high == high_;
+    const std::size_t taken = std::max<std::size_t>(m, 1);
+    if (none)
+      in_cell_ -= m;
+    else
+      for (std::size_t i = 0; i < taken; ++i)
+        add(index + static_cast<std::int64_t>(i), stamps[i]);
+    index += static_cast<std::int64_t>(taken);
+    stamps += taken;
+    n -= taken;
+  }
+}
+
 void StampSketch::thin() {
   slope_ = interval_ns();
   std::size_t kept = 0;

@@ -28,6 +28,8 @@ class StampSketch {
       cells_.back().high = {index, stamp};
     }
   }
+  /// n stamps of consecutive grid indices: the same as one by one.
+  void add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n);
   /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
   double interval_ns() const;
   /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/lanes.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -14,6 +15,27 @@ namespace {
 
 constexpr std::size_t kLearn = 1025;    // rows whose stamps decide on dt
 constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
+constexpr std::size_t kTogether = 256;  // rows whose stamps are looked at together
+
+/// All n stamps are `shortest` (>= 1) to `longest` after the one before.
+LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
+                                      const std::int64_t* stamps,
+                                      std::size_t n,
+                                      std::int64_t shortest,
+                                      std::int64_t longest) {
+  // Differences wrap: a rising pair whose difference does not fit becomes negative.
+  const auto step = [](std::int64_t from, std::int64_t to) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(to) -
+                                     static_cast<std::uint64_t>(from));
+  };
+  const auto fits = [&](std::int64_t from, std::int64_t to) -> int {
+    return (to > from) & (step(from, to) >= shortest) & (step(from, to) <= longest);
+  };
+  if (n == 0) return true;
+  std::int64_t good = fits(before, stamps[0]);
+  for (std::size_t i = 1; i < n; ++i) good &= fits(stamps[i - 1], stamps[i]);
+  return good != 0;
+}
 
 }  // namespace
 
@@ -134,14 +156,45 @@ void TimeGrid::learn() {
   begin();
 }
 
-// The common case is one comparison a row; a run of regular rows goes to the sink without being
-// copied.
+// Rows whose stamps all follow each other as they should are taken together; a run of them goes to
+// the sink without being copied.
 void TimeGrid::process_rows(Pending& front, std::size_t count) {
-  const std::int64_t* const time = front.block.time_ns.data();
-  std::size_t run = front.done;
   const std::size_t stop = front.done + count;
-  const std::size_t ahead_base = static_cast<std::size_t>(waiting_);
-  for (std::size_t i = front.done; i < stop; ++i) {
+  std::size_t run = front.done;
+  for (std::size_t from = front.done; from < stop; from += kTogether) {
+    const std::size_t to = std::min(stop, from + kTogether);
+    if (take_regular(front.block.time_ns.data() + from, to - from)) continue;
+    const auto ahead = static_cast<std::size_t>(waiting_) - (from - front.done);
+    if (!take_one_by_one(front, from, to, ahead, run)) {
+      run = stop;
+      break;
+    }
+  }
+  emit_rows(front.block, std::min(run, stop), stop);
+}
+
+/// False, and nothing is taken, when one of the rows needs a decision.
+bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
+  if (!have_last_ || wrap_ != 0 || same_ratio_ != 0) return false;
+  const auto shortest_step =
+      std::max<std::int64_t>(1, (3 * static_cast<std::int64_t>(dt_) + 3) / 4);
+  if (!steps_between(last_, time, n, shortest_step, limit_)) return false;
+  if (time[0] - first_stamp_ < from_ns_ || time[n - 1] - first_stamp_ >= to_ns_) return false;
+  dropped_in_a_row_ = 0;
+  sketch_.add_run(index_ + 1, time, n);
+  index_ += static_cast<std::int64_t>(n);
+  raw_last_ = last_ = time[n - 1];
+  if (!start_ns_) start_ns_ = time[0];
+  used_ += n;
+  return true;
+}
+
+/// Rows [from, to), of which those from `run` on are not passed on yet; false when the window ends
+/// among them.
+bool TimeGrid::take_one_by_one(
+    Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run) {
+  const std::int64_t* const time = front.block.time_ns.data();
+  for (std::size_t i = from; i < to; ++i) {
     std::int64_t stamp = time[i] + wrap_;
     std::int64_t step = 0;
     const bool overflow = __builtin_sub_overflow(stamp, last_, &step);
@@ -149,7 +202,7 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
     if (!regular) {
       emit_rows(front.block, run, i);
       run = i;
-      if (decide(front, i, stamp, ahead_base - (i - front.done)) == Verdict::drop) {
+      if (decide(front, i, stamp, ahead - (i - from)) == Verdict::drop) {
         run = i + 1;
         continue;
       }
@@ -166,15 +219,14 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
       run = i + 1;
     } else if (stamp - first_stamp_ >= to_ns_) {
       emit_rows(front.block, run, i);
-      run = stop;
       window_over_ = true;
-      break;
+      return false;
     } else {
       if (!start_ns_) start_ns_ = stamp;
       ++used_;
     }
   }
-  emit_rows(front.block, std::min(run, stop), stop);
+  return true;
 }
 
 void TimeGrid::without_stamps(Pending& front) {

@@ -24,6 +24,7 @@ class Stages : public BlockSink {
   void begin(const LogInfo& so_far) override {
     const std::size_t channels = so_far.channels.size();
     for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_);
+    arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
     if (surely_too_long(so_far)) {
       for (ChannelStage& stage : stages_) stage.stop_keeping();
       return;
@@ -36,9 +37,11 @@ class Stages : public BlockSink {
   void block(const SampleBlock& samples) override {
     kept_bytes_ += samples.rows * samples.channels.size() * sizeof(double);
     const bool too_much = kept_bytes_ > budget_;
-    tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
-      if (too_much) stages_[c].stop_keeping();
-      stages_[c].push({samples.channels[c], samples.rows});
+    arena_.execute([&] {
+      tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
+        if (too_much) stages_[c].stop_keeping();
+        stages_[c].push({samples.channels[c], samples.rows});
+      });
     });
   }
 
@@ -51,11 +54,16 @@ class Stages : public BlockSink {
     struct Again final : BlockSink {
       std::vector<ChannelStage*> stages;
       std::vector<std::size_t> channels;
-      void begin(const LogInfo&) override {}
+      int threads = 0;
+      tbb::task_arena arena;
+      void begin(const LogInfo& so_far) override { arena.initialize(threads_beside_reading(so_far, threads)); }
       void block(const SampleBlock& samples) override {
-        tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t k) { stages[k]->push({samples.channels[channels[k]], samples.rows}); });
+        arena.execute([&] {
+          tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t k) { stages[k]->push({samples.channels[channels[k]], samples.rows}); });
+        });
       }
     } again;
+    again.threads = options_.reading.threads;
     for (const std::size_t c : wanted) {
       stages_[c].begin_second_pass();
       again.stages.push_back(&stages_[c]);
@@ -90,6 +98,7 @@ class Stages : public BlockSink {
 
   const CharacterizeOptions& options_;
   std::uint64_t budget_ = 0, kept_bytes_ = 0;
+  tbb::task_arena arena_;
   std::vector<ChannelStage> stages_;
 };
 
@@ -100,6 +109,8 @@ Characterization characterize(const std::string& path, const CharacterizeOptions
   AllanCovarianceCache covariances;
   CharacterizeOptions options = given;
   options.fit.covariances = &covariances;
+  SpectrumMemory memory;
+  options.spectrum.memory = &memory;
   Characterization result;
   Stages stages(options);
   result.log = read_log(path, options.reading, stages, progress);

@@ -45,7 +45,14 @@ void add_allan(std::string& out,
   }
 }
 
-void add_spectrum(std::string& out, const ChannelResult& c, const std::string& name) {
+struct Factors {
+  IntervalFactors in68{0.6827}, in95{0.95};
+};
+
+void add_spectrum(std::string& out,
+                  const ChannelResult& c,
+                  const std::string& name,
+                  Factors& factors) {
   const Spectrum& s = c.spectrum;
   const std::string curve = fmt::format("{}_{}_sided", key_of(s.scaling), key_of(s.sides));
   const std::string unit = csv_cell(spectrum_unit(s.scaling, c.channel.unit));
@@ -53,8 +60,8 @@ void add_spectrum(std::string& out, const ChannelResult& c, const std::string& n
     const double dof = i < s.dof.size() ? s.dof[i] : 0;
     std::pair<double, double> in68{NAN, NAN}, in95{NAN, NAN};
     if (dof > 0) {
-      in68 = spectrum_interval(s, i, 0.6827);
-      in95 = spectrum_interval(s, i, 0.95);
+      in68 = factors.in68.interval(s, i);
+      in95 = factors.in95.interval(s, i);
     }
     out += fmt::format("{},{},{},Hz,{},{},{},{},{},{},{},,{}\n",
                        curve,
@@ -75,10 +82,11 @@ void add_spectrum(std::string& out, const ChannelResult& c, const std::string& n
 
 std::string csv_curves(const Characterization& result) {
   std::string out = "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model\n";
+  Factors factors;
   for (const ChannelResult& c : result.channels) {
     const std::string name = csv_cell(c.channel.name), unit = csv_cell(c.channel.unit);
     add_allan(out, c, name, unit);
-    add_spectrum(out, c, name);
+    add_spectrum(out, c, name, factors);
   }
   return out;
 }

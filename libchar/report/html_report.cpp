@@ -190,9 +190,13 @@ std::string page_of(const Characterization& result, const std::string& data) {
 }  // namespace
 
 std::string html_report(const Characterization& result) {
+  return html_report(result, json_without_times(result));
+}
+
+std::string html_report(const Characterization& result, const Json& without_times) {
   Characterization shown = result;
   for (ChannelResult& channel : shown.channels) channel = in_usual_spelling(std::move(channel));
-  return page_of(shown, json_in_script(json_without_times(result)));
+  return page_of(shown, json_in_script(without_times));
 }
 
 }  // namespace libchar

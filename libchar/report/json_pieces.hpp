@@ -8,11 +8,12 @@ namespace libchar {
 /// With a fit, also "model": what it predicts at each point.
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit);
 Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit);
+/// With `in95` shared by the channels.
+Json spectrum_channel_json(const Channel& channel,
+                           const Spectrum& spectrum,
+                           const NoiseFit* fit,
+                           IntervalFactors& in95);
 Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
-
-/// The whole document without "measured": all that a page shows, and the same bytes for the same
-/// characterization.
-Json json_without_times(const Characterization& result);
 
 }  // namespace libchar

@@ -91,10 +91,11 @@ Json json_without_times(const Characterization& result) {
   spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
   spectrum["scaling"] = key_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
   for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
+  IntervalFactors in95(0.95);
   for (const ChannelResult& c : result.channels) {
     const NoiseFit* model = c.fit ? &*c.fit : nullptr;
     allan["channels"].push_back(allan_channel_json(c.channel, c.allan, model));
-    spectrum["channels"].push_back(spectrum_channel_json(c.channel, c.spectrum, model));
+    spectrum["channels"].push_back(spectrum_channel_json(c.channel, c.spectrum, model, in95));
     fit["channels"].push_back(fit_or_reason(c, result.log.time.rate_hz));
     quality["channels"].push_back(quality_json(c));
   }
@@ -114,8 +115,12 @@ Json json_without_times(const Characterization& result) {
 
 Json json_report(const Characterization& result) {
   Json out = json_without_times(result);
-  out["measured"] = {{"seconds", result.seconds}};
+  add_times(out, result);
   return out;
+}
+
+void add_times(Json& document, const Characterization& result) {
+  document["measured"] = {{"seconds", result.seconds}};
 }
 
 }  // namespace libchar

@@ -9,9 +9,14 @@ namespace libchar {
 
 /// One self-contained page: no network, opens from disk. The same bytes for the same characterization.
 std::string html_report(const Characterization& result);
+/// The same where its document is there already.
+std::string html_report(const Characterization& result, const Json& without_times);
 
 /// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (design.md 6.3).
 Json json_report(const Characterization& result);
+/// The document without "measured": all that a page shows, and the same bytes for the same characterization.
+Json json_without_times(const Characterization& result);
+void add_times(Json& document, const Characterization& result);
 
 /// Allan and spectrum curves of all channels in one table: curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model.
 std::string csv_curves(const Characterization& result);

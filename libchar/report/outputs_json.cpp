@@ -86,11 +86,16 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 }
 
 Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit) {
+  IntervalFactors in95(0.95);
+  return spectrum_channel_json(channel, spectrum, fit, in95);
+}
+
+Json spectrum_channel_json(const Channel& channel,
+                           const Spectrum& spectrum,
+                           const NoiseFit* fit,
+                           IntervalFactors& in95) {
   Json out = named(channel);
   for (const char* key : {"frequency_hz", "value", "dof", "ci95"}) out[key] = Json::array();
-  const bool root = spectrum.scaling == Scaling::lsd || spectrum.scaling == Scaling::ls;
-  double known_dof = 0;
-  std::pair<double, double> factors;
   Json model = Json::array();
   for (std::size_t i = 0; i < spectrum.frequency_hz.size(); ++i) {
     const double dof = i < spectrum.dof.size() ? spectrum.dof[i] : 0;
@@ -98,11 +103,8 @@ Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, con
     out["value"].push_back(json_number(spectrum.value[i]));
     out["dof"].push_back(json_number(dof));
     if (dof > 0) {
-      // Most bins share one number of degrees of freedom, and a quantile costs more than the rest of the row.
-      if (dof != known_dof) factors = interval_factors(known_dof = dof, 0.95);
-      const double v = spectrum.value[i], low = root ? std::sqrt(factors.first) : factors.first,
-                   high = root ? std::sqrt(factors.second) : factors.second;
-      out["ci95"].push_back(interval({v * low, v * high}));
+      const auto [low, high] = in95.interval(spectrum, i);
+      out["ci95"].push_back(interval({low, high}));
     } else {
       out["ci95"].push_back(nullptr);
     }

@@ -10,14 +10,12 @@ namespace libchar::halves {
 namespace {
 
 constexpr std::size_t kColumns = 8;  // a line of the cache from each half
-constexpr std::size_t kPadding =
-    8;  // between rows, or a column of them would fall into few sets of the cache
 constexpr std::size_t kPlaces = 2;  // for transformed rows
 
 /// Where a column of all rows is more than the cache holds at once, several lines are taken from
 /// each half.
 std::size_t columns_at_once(std::size_t h, std::size_t n2) {
-  std::size_t count = h <= (std::size_t{1} << 17U) ? kColumns : 3 * kColumns;
+  std::size_t count = h <= (std::size_t{1} << 17U) ? kColumns : 2 * kColumns;
   while (n2 % count != 0) count -= kColumns;
   return count;
 }
@@ -93,8 +91,7 @@ RowScratch::RowScratch(const RowTables& tables)
       row_values_{aligned_zeros(tables.n1 * tables.pitch), aligned_zeros(tables.n1 * tables.pitch)},
       rows_(aligned_zeros(kPlaces * tables.pitch)),
       moved_(aligned_zeros(2 * tables.n2)),
-      bins_(aligned_zeros(kBinRows * 2 * tables.n2)),
-      spare_(aligned_zeros(kSpareRows * tables.n2)) {}
+      bins_(aligned_zeros((kBinRows + kSpareRows) * bin_pitch())) {}
 
 void RowScratch::transform_columns(const HalfPair& pair) {
   const RowTables& t = tables_;

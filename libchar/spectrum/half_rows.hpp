@@ -16,6 +16,10 @@
 
 namespace libchar::halves {
 
+/// Doubles between rows: without them a column of rows, or a row and its neighbours, would fall into
+/// few sets of the cache.
+inline constexpr std::size_t kPadding = 8;
+
 struct FreedAligned {
   void operator()(double* memory) const { ::operator delete[](memory, std::align_val_t{64}); }
 };
@@ -56,16 +60,19 @@ class RowScratch {
   }
   /// Row 0 of the even bins moved by one, so that read from its end it is that row's mirror.
   const double* mirror_of(const double* first_row);
-  /// Rows of X of two segments: `first` at [0], `second` at [n2].
-  double* bins(std::size_t index) { return bins_.get() + index * 2 * tables_.n2; }
-  /// A row of bins that is nobody's.
-  double* spare(std::size_t index) { return spare_.get() + index * tables_.n2; }
-  static constexpr std::size_t kBinRows = 8, kSpareRows = 4;
+  /// Rows of X of two segments, the second one `second()` doubles behind the first.
+  double* bins(std::size_t index) { return bins_.get() + index * bin_pitch(); }
+  std::size_t second() const { return tables_.n2 + kPadding; }
+  /// A row of bins that is nobody's, of two segments.
+  double* spare(std::size_t index) { return bins(kBinRows + index); }
+  static constexpr std::size_t kBinRows = 8, kSpareRows = 2;
 
  private:
+  std::size_t bin_pitch() const { return 2 * second() + kPadding; }
+
   const RowTables& tables_;
   ComplexFft columns_, row_;
-  AlignedDoubles column_values_, row_values_[2], rows_, moved_, bins_, spare_;
+  AlignedDoubles column_values_, row_values_[2], rows_, moved_, bins_;
 };
 
 /// What halves of one length share.

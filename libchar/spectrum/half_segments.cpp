@@ -143,7 +143,7 @@ void Pass::make_row(
                    work_.z + at,
                    work_.remember ? work_.z + at : scratch_.spare(0),
                    to.x,
-                   to.x + t_.n2,
+                   to.x + scratch_.second(),
                    work_.before_mean - work_.pair.mean_a,
                    work_.pair.mean_a - work_.pair.mean_b,
                    work_.block_sums == nullptr ? nullptr : work_.block_sums + at / 2,
@@ -153,7 +153,7 @@ void Pass::make_row(
 }
 
 void Pass::window(std::size_t r, bool odd, Row low, Row centre, Row high) {
-  const std::size_t at = place(r, odd), next = t_.n2;
+  const std::size_t at = place(r, odd), next = scratch_.second();
   const Neighbours x{low.x, centre.x, high.x};
   const Neighbours y{low.x + next, centre.x + next, high.x + next};
   if (work_.first != nullptr && work_.first == work_.second)
@@ -165,7 +165,7 @@ void Pass::window(std::size_t r, bool odd, Row low, Row centre, Row high) {
 /// Below the first row stands the last one, moved by one; below bin 1 its conjugate.
 void Pass::window_first_row(Row last_odd, Row even, Row odd) {
   const Row below{scratch_.spare(0)};
-  for (const std::size_t segment : {std::size_t{0}, t_.n2}) {
+  for (const std::size_t segment : {std::size_t{0}, scratch_.second()}) {
     for (std::size_t m2 = bins_ - 1; m2 > 0; --m2)
       put(below.x + segment, m2, value_at(last_odd.x + segment, m2 - 1));
     put(below.x + segment, 0, std::conj(value_at(odd.x + segment, 0)));
@@ -178,13 +178,13 @@ void Pass::window_first_row(Row last_odd, Row even, Row odd) {
     *sum += y * y;
   };
   add(work_.first_top, first_top_, last_odd.x);
-  add(work_.second_top, second_top_, last_odd.x + t_.n2);
+  add(work_.second_top, second_top_, last_odd.x + scratch_.second());
 }
 
 /// Above the last row stands the first one, moved by one; at its end bin h.
 Pass::Row Pass::moved_up(Row first) {
-  const Row above{scratch_.spare(2)};
-  for (const std::size_t segment : {std::size_t{0}, t_.n2}) {
+  const Row above{scratch_.spare(1)};
+  for (const std::size_t segment : {std::size_t{0}, scratch_.second()}) {
     for (std::size_t m2 = 0; m2 + 1 < bins_; ++m2)
       put(above.x + segment, m2, value_at(first.x + segment, m2 + 1));
     put(above.x + segment, bins_ - 1, segment == 0 ? first_top_ : second_top_);

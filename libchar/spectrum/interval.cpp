@@ -16,14 +16,24 @@ std::pair<double, double> interval_factors(double dof, double confidence) {
   return {dof / quantile(complement(distribution, tail)), dof / quantile(distribution, tail)};
 }
 
-std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
-                                            std::size_t i,
-                                            double confidence) {
-  const auto [low, high] = interval_factors(spectrum.dof[i], confidence);
+std::pair<double, double> IntervalFactors::of(double dof) {
+  const auto known = known_.find(dof);
+  return known != known_.end() ? known->second
+                               : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
+}
+
+std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, std::size_t i) {
+  const auto [low, high] = of(spectrum.dof[i]);
   const bool root = spectrum.scaling == Scaling::lsd || spectrum.scaling == Scaling::ls;
   const double value = spectrum.value[i];
   if (root) return {value * std::sqrt(low), value * std::sqrt(high)};
   return {value * low, value * high};
+}
+
+std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
+                                            std::size_t i,
+                                            double confidence) {
+  return IntervalFactors(confidence).interval(spectrum, i);
 }
 
 }  // namespace libchar

@@ -16,6 +16,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -39,11 +40,22 @@ std::size_t lobe_of(Window window) {
   }
 }
 
-// One-sided density at the positive frequencies, Nyquist left out.
+// One-sided density at the positive frequencies, Nyquist left out. Value k stands for `count` bins
+// of the spectrum, of which the first is number first_bin + k count.
 struct Density {
-  std::vector<double> frequency_hz, power;
-  double dof = 0, step_hz = 0;
-  std::vector<double> correlation;  // of neighbouring bins
+  Density() = default;
+  Density(Density&&) = default;  // `power` may be a view of `own`
+
+  std::span<const double> power;
+  std::vector<double> own;  // power, where the spectrum has something else
+  double dof = 0, bin_hz = 0;
+  std::size_t first_bin = 0, count = 1;
+  std::vector<double> correlation;  // of neighbouring values
+  double step_hz() const { return bin_hz * static_cast<double>(count); }
+  double frequency_hz(std::size_t k) const {
+    const std::size_t twice = 2 * (first_bin + k * count) + count - 1;
+    return static_cast<double>(twice) / 2 * bin_hz;
+  }
 };
 
 Density density_of(const Spectrum& s) {
@@ -53,16 +65,18 @@ Density density_of(const Spectrum& s) {
   Density out;
   const auto zero = static_cast<std::size_t>(
       std::lower_bound(s.frequency_hz.begin(), s.frequency_hz.end(), 0.0) - s.frequency_hz.begin());
-  out.frequency_hz.reserve(s.value.size() - zero);
-  out.power.reserve(s.value.size() - zero);
-  for (std::size_t i = zero; i < s.value.size(); ++i) {
-    if (2 * (i - zero) == s.segment) break;
-    out.frequency_hz.push_back(s.frequency_hz[i]);
-    out.power.push_back((root ? s.value[i] * s.value[i] : s.value[i]) * factor);
-    if (i > zero) out.dof = s.dof[i];
+  const std::size_t size =
+      std::min<std::size_t>(s.value.size() - zero, (static_cast<std::size_t>(s.segment) + 1) / 2);
+  out.power = std::span(s.value).subspan(zero, size);
+  if (root || factor != 1) {
+    out.own.reserve(size);
+    for (const double value : out.power)
+      out.own.push_back((root ? value * value : value) * factor);
+    out.power = out.own;
   }
+  if (size > 1) out.dof = s.dof[zero + size - 1];
   out.correlation = s.neighbour_correlation;
-  out.step_hz = s.rate_hz / static_cast<double>(std::max<std::uint64_t>(s.segment, 1));
+  out.bin_hz = s.rate_hz / static_cast<double>(std::max<std::uint64_t>(s.segment, 1));
   return out;
 }
 
@@ -76,13 +90,16 @@ Density averaged(const Density& d, std::size_t count) {
   }
   out.dof = d.dof * static_cast<double>(count * count) / variance;
   out.correlation = {across / variance};
-  out.step_hz = d.step_hz * static_cast<double>(count);
+  out.bin_hz = d.bin_hz;
+  out.first_bin = 1;
+  out.count = count;
+  out.own.reserve(d.power.size() / count);
   for (std::size_t begin = 1; begin + count <= d.power.size(); begin += count) {
     double sum = 0;
     for (std::size_t k = begin; k < begin + count; ++k) sum += d.power[k];
-    out.power.push_back(sum / static_cast<double>(count));
-    out.frequency_hz.push_back((d.frequency_hz[begin] + d.frequency_hz[begin + count - 1]) / 2);
+    out.own.push_back(sum / static_cast<double>(count));
   }
+  out.power = out.own;
   return out;
 }
 
@@ -139,7 +156,7 @@ class LocalFloor {
     floor = {median / typical_, count};
   }
   std::size_t begin_, guard_;
-  const std::vector<double>& power_;
+  std::span<const double> power_;
   double typical_ = 1;  // median of chi-square / nu
 };
 
@@ -174,7 +191,7 @@ double parabola_top(double left, double middle, double right) {
 }
 
 // Where the power falls to `level` on the way from the peak, in bins.
-double half_width(const std::vector<double>& power, std::size_t peak, double level, int direction) {
+double half_width(std::span<const double> power, std::size_t peak, double level, int direction) {
   std::size_t i = peak;
   while (i > 0 && i + 1 < power.size() && power[i] > level) i = direction > 0 ? i + 1 : i - 1;
   const std::size_t inside = direction > 0 ? i - 1 : i + 1;
@@ -194,16 +211,16 @@ SpectralLine line_of(
   const bool inner = peak > 0 && peak + 1 < d.power.size();
   const double offset =
       inner ? parabola_top(d.power[peak - 1], d.power[peak], d.power[peak + 1]) : 0;
-  line.frequency_hz = d.frequency_hz[peak] + offset * d.step_hz;
+  line.frequency_hz = d.frequency_hz(peak) + offset * d.step_hz();
   const std::size_t from = std::min(first, peak - std::min(peak, lobe)),
                     to = std::min(std::max(last, peak + lobe), d.power.size() - 1);
   double sum = 0;
   for (std::size_t k = from; k <= to; ++k) sum += d.power[k] - floor;
-  line.amplitude = std::sqrt(2 * std::max(sum, 0.0) * d.step_hz);
+  line.amplitude = std::sqrt(2 * std::max(sum, 0.0) * d.step_hz());
   line.excess = d.power[peak] / floor - 1;
   const double half = floor + (d.power[peak] - floor) / 2;
   line.width_hz =
-      inner ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz
+      inner ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz()
             : 0;
   return line;
 }
@@ -231,8 +248,8 @@ std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
   const auto close = [&] {
     if (open)
       found.push_back({line_of(d, first, last, floor, lobe),
-                       d.frequency_hz[first] - d.step_hz,
-                       d.frequency_hz[last] + d.step_hz});
+                       d.frequency_hz(first) - d.step_hz(),
+                       d.frequency_hz(last) + d.step_hz()});
     open = false;
   };
   for (std::size_t k = lobe; k < d.power.size(); ++k) {

@@ -23,6 +23,21 @@ bool is_root(Scaling scaling) {
   return scaling == Scaling::lsd || scaling == Scaling::ls;
 }
 
+// All but the bins, which may be as many as a record has samples.
+Spectrum without_bins(const Spectrum& s) {
+  Spectrum out;
+  out.sides = s.sides;
+  out.scaling = s.scaling;
+  out.window = s.window;
+  out.rate_hz = s.rate_hz;
+  out.segment = s.segment;
+  out.segments = s.segments;
+  out.dropped = s.dropped;
+  out.enbw_hz = s.enbw_hz;
+  out.notes = s.notes;
+  return out;
+}
+
 double power_of(const Spectrum& s, std::size_t i) {
   return is_root(s.scaling) ? s.value[i] * s.value[i] : s.value[i];
 }
@@ -212,11 +227,7 @@ std::vector<Level> levels_of(std::span<const double> record,
 }  // namespace
 
 Spectrum log_binned(const Spectrum& spectrum, std::size_t bins) {
-  Spectrum out = spectrum;
-  out.frequency_hz.clear();
-  out.value.clear();
-  out.dof.clear();
-  out.neighbour_correlation.clear();
+  Spectrum out = without_bins(spectrum);
   const auto first =
       std::upper_bound(spectrum.frequency_hz.begin(), spectrum.frequency_hz.end(), 0.0);
   if (first == spectrum.frequency_hz.end() || bins == 0) return out;
@@ -235,11 +246,7 @@ Spectrum log_frequency_spectrum(std::span<const double> record,
                                 std::size_t bins) {
   const auto taps = low_pass();
   const std::vector<Level> levels = levels_of(record, rate_hz, sides, taps);
-  Spectrum out = levels.back().spectrum;
-  out.frequency_hz.clear();
-  out.value.clear();
-  out.dof.clear();
-  out.neighbour_correlation.clear();
+  Spectrum out = without_bins(levels.back().spectrum);
   const LogAxis axis = axis_of(levels.back().from, rate_hz / 2, std::max<std::size_t>(bins, 1));
   for (std::size_t j = levels.size(); j-- > 0;) {
     const auto response = [&](double f) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -27,6 +28,19 @@ std::string_view name_of(Window window);
 std::optional<Window> window_named(std::string_view name);
 std::vector<double> window_values(Window window, std::size_t n);
 
+/// What welch() works in, kept from one record to the next: for long segments it is as large as a
+/// record, and new memory costs as much as a transform. Any number of threads may share it.
+class SpectrumMemory {
+ public:
+  SpectrumMemory();
+  ~SpectrumMemory();
+  struct State;
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
 struct WelchOptions {
   Window window = Window::hann;
   std::uint64_t segment =
@@ -36,6 +50,7 @@ struct WelchOptions {
   Sides sides = Sides::one;
   Scaling scaling = Scaling::psd;
   int threads = 0;
+  SpectrumMemory* memory = nullptr;  ///< none: memory of its own
 };
 
 struct Spectrum {
@@ -101,6 +116,20 @@ class WelchStream {
 /// Chi-square interval of an average of powers with `dof` degrees of freedom, as multiples of the
 /// average.
 std::pair<double, double> interval_factors(double dof, double confidence);
+
+/// The same for one confidence, each number of degrees of freedom computed once: bins and channels
+/// share most of them, and a quantile costs more than anything else that is written of a bin.
+class IntervalFactors {
+ public:
+  explicit IntervalFactors(double confidence) : confidence_(confidence) {}
+  std::pair<double, double> of(double dof);
+  /// Interval of bin i, as spectrum_interval.
+  std::pair<double, double> interval(const Spectrum& spectrum, std::size_t i);
+
+ private:
+  double confidence_;
+  std::unordered_map<double, std::pair<double, double>> known_;
+};
 
 /// Chi-square interval of bin i of a density at the given confidence (for lsd, ls: of the root).
 std::pair<double, double> spectrum_interval(const Spectrum& spectrum,

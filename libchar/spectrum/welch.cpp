@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 
 #include "libchar/core/error.hpp"
@@ -17,9 +19,40 @@
 #include "libchar/spectrum/segments.hpp"
 
 namespace libchar {
-namespace {
 
 using namespace welch_detail;
+
+/// Halves of one length and a sum to go with each.
+struct SpectrumMemory::State {
+  struct Piece {
+    HalfSegments halves;
+    HalfSegments::SumsPointer sums;
+  };
+  std::mutex mutex;
+  std::vector<Piece> idle;
+
+  Piece take(std::size_t segment) {
+    const std::lock_guard lock(mutex);
+    if (!idle.empty() && 2 * idle.back().halves.half() == segment) {
+      Piece piece = std::move(idle.back());
+      idle.pop_back();
+      return piece;
+    }
+    idle.clear();  // of another length: not needed any more
+    HalfSegments halves(segment);
+    auto sums = halves.zero_sums();
+    return {std::move(halves), std::move(sums)};
+  }
+  void give_back(Piece piece) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(piece));
+  }
+};
+
+SpectrumMemory::SpectrumMemory() : state_(std::make_unique<State>()) {}
+SpectrumMemory::~SpectrumMemory() = default;
+
+namespace {
 
 struct Run {
   std::uint64_t begin = 0, end = 0;
@@ -103,14 +136,24 @@ struct Group {
 // What one thread works with: halves, each transformed once, where the options allow it; else whole
 // segments.
 struct Worker {
-  std::optional<HalfSegments> halves;
+  SpectrumMemory::State& memory;
+  std::optional<SpectrumMemory::State::Piece> halves;
   std::optional<Periodogram> periodogram;
   /// No window: by halves.
-  Worker(const WelchOptions& options, const Layout& layout, const std::vector<double>& window) {
+  Worker(const WelchOptions& options,
+         const Layout& layout,
+         const std::vector<double>& window,
+         SpectrumMemory& kept)
+      : memory(kept.state()) {
     if (window.empty())
-      halves.emplace(layout.segment);
+      halves = memory.take(layout.segment);
     else
       periodogram.emplace(options, window);
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  ~Worker() {
+    if (halves) memory.give_back(std::move(*halves));
   }
 };
 
@@ -129,9 +172,8 @@ Group sum_of_group(std::uint64_t index,
     return out;
   }
   // Pairs as a stream has them: the group ends with the first segment of one.
-  HalfSegments& halves = *worker.halves;
+  auto& [halves, sums] = *worker.halves;
   halves.forget();
-  const auto sums = halves.zero_sums();
   const std::uint64_t there = layout.count(record.size()) + 1;  // halves
   for (std::uint64_t i = first; i <= last; i += 2) {
     const double* const x = record.data() + i * layout.hop;
@@ -171,15 +213,17 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
                                          : window_values(options.window, layout.segment);
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   Average average(options, layout);
+  SpectrumMemory own;
+  SpectrumMemory& memory = options.memory != nullptr ? *options.memory : own;
 
   const int threads = static_cast<int>(std::min(groups, threads_of(options)));
   if (threads <= 1) {
-    Worker worker(options, layout, window);
+    Worker worker(options, layout, window, memory);
     for (std::uint64_t g = 0; g < groups; ++g)
       take(sum_of_group(g, record, layout, worker), average);
   } else {
-    tbb::enumerable_thread_specific<Worker> workers(
-        [&] { return Worker(options, layout, window); });
+    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
+        [&] { return std::make_unique<Worker>(options, layout, window, memory); });
     tbb::task_arena arena(threads);
     arena.execute([&] {
       std::uint64_t next = 0;
@@ -193,7 +237,7 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
               tbb::make_filter<std::uint64_t, Group>(tbb::filter_mode::parallel,
                                                      [&](std::uint64_t g) {
                                                        return sum_of_group(
-                                                           g, record, layout, workers.local());
+                                                           g, record, layout, *workers.local());
                                                      }) &
               tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
                                             [&](const Group& group) { take(group, average); }));
