@@ -169,6 +169,10 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
   if (options_->wanted.allan || options_->wanted.fit)
     attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
+  if (streams_->shared_blocks) {
+    HalvesToBins listener(streams_->bins);
+    streams_->spectrum->end(&listener);
+  }
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
       const Spectrum spectrum = streams_->spectrum->finish(rate_hz);

@@ -97,6 +97,8 @@ class WelchStream {
   WelchStream(WelchStream&&) noexcept;
   WelchStream& operator=(WelchStream&&) noexcept;
   void push(std::span<const double> samples, HalfListener* listener = nullptr);
+  /// No more samples come: the listener hears of a half that waited for its partner.
+  void end(HalfListener* listener);
   Spectrum finish(double rate_hz) const;
 
   /// Samples of half a segment when the spectrum goes by halves, each transformed once: then the

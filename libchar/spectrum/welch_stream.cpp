@@ -49,6 +49,7 @@ struct WelchStream::State {
     segment.resize(layout.segment);
   }
   void take(const double* x);
+  HalfSegments::Half half_at(const double* x, HalfListener* listener) const;
   void take_pair(const double* x, HalfListener* listener);
   void push_by_segments(std::span<const double> pushed);
   void push_by_halves(std::span<const double> pushed, HalfListener* listener);
@@ -63,13 +64,17 @@ void WelchStream::State::take(const double* x) {
   in_group = 0;
 }
 
+HalfSegments::Half WelchStream::State::half_at(const double* x, HalfListener* listener) const {
+  HalfSegments::Half half = halves->half_at(x);
+  half.block =
+      listener != nullptr && listener->half({x, layout.hop}, std::isfinite(half.mean));
+  return half;
+}
+
 // The first pair ends one segment, every other two; groups are of an even number of segments, so
 // that they end with the first of the two.
 void WelchStream::State::take_pair(const double* x, HalfListener* listener) {
-  HalfSegments::Half a = halves->half_at(x), b = halves->half_at(x + layout.hop);
-  for (HalfSegments::Half* half : {&a, &b})
-    half->block = listener != nullptr &&
-                  listener->half({half->samples, layout.hop}, std::isfinite(half->mean));
+  const HalfSegments::Half a = half_at(x, listener), b = half_at(x + layout.hop, listener);
   const bool closes = in_group + 1 == layout.group;
   const auto used = halves->push(a, b, sums.get(), closes ? next_sums.get() : sums.get());
   if (!std::exchange(first_pair, false)) {
@@ -165,6 +170,19 @@ void WelchStream::push(std::span<const double> samples, HalfListener* listener) 
 
 std::uint64_t WelchStream::half() const {
   return state_->halves ? state_->layout.hop : 0;
+}
+
+void WelchStream::end(HalfListener* listener) {
+  State& s = *state_;
+  const std::size_t hop = s.layout.hop;
+  if (!s.halves || s.filled < hop) return;
+  const auto used = s.halves->push(s.half_at(s.segment.data(), listener), {}, s.sums.get(), nullptr);
+  if (!std::exchange(s.first_pair, false)) {
+    s.average.note_segment(used.first);
+    ++s.in_group;
+  }
+  s.filled -= hop;
+  std::memmove(s.segment.data(), s.segment.data() + hop, s.filled * sizeof(double));
 }
 
 std::vector<double> WelchStream::block_power() const {

@@ -245,6 +245,9 @@ TEST_CASE(
         REQUIRE(s.notes == whole.notes);
         // Every sample was heard of once, or is left.
         REQUIRE(listener.heard.size() == x.size() / n * 2);
+        stream.end(&listener);
+        REQUIRE(listener.heard.size() == x.size() / (n / 2));
+        REQUIRE(stream.finish(50).value == whole.value);
         std::size_t heard = 0;
         for (std::size_t i = 0; i < listener.heard.size(); ++i) {
           for (const double v : listener.heard[i]) {
