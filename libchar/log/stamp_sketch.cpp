@@ -38,8 +38,7 @@ void StampSketch::add_run(std::int64_t index, const std::int64_t* stamps, std::s
     if (none)
       in_cell_ -= m;
     else
-      for (std::size_t i = 0; i < taken; ++i)
-        add(index + static_cast<std::int64_t>(i), stamps[i]);
+      for (std::size_t i = 0; i < taken; ++i) add(index + static_cast<std::int64_t>(i), stamps[i]);
     index += static_cast<std::int64_t>(taken);
     stamps += taken;
     n -= taken;

@@ -46,7 +46,8 @@ class TimeGrid {
   void process(bool end);
   void process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
-  bool take_one_by_one(Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
+  bool take_one_by_one(
+      Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   void without_stamps(Pending& front);
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);

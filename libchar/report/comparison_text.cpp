@@ -40,16 +40,6 @@ Json sentences(const std::vector<std::string>& list) {
   return out;
 }
 
-// Names are anybody's: no mark of theirs may become one of the page's.
-std::string plain(const std::string& text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 std::string number(double value) {
   return std::isfinite(value) ? significant(value, 5) : "–";
 }
@@ -101,18 +91,18 @@ Json comparison_json(const Comparison& c) {
 
 std::string comparison_markdown(const Comparison& c) {
   std::string out = fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
-                                plain(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                                plain(comparison_verdict(c)),
-                                plain(c.a.file),
-                                plain(c.a.program),
-                                plain(c.b.file),
-                                plain(c.b.program));
+                                markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
+                                markdown_text(comparison_verdict(c)),
+                                markdown_text(c.a.file),
+                                markdown_text(c.a.program),
+                                markdown_text(c.b.file),
+                                markdown_text(c.b.program));
   const char* heads[] = {"These are not two replays of one scene:", "What else differs:"};
   const std::vector<std::string>* lists[] = {&c.unlike, &c.remarks};
   for (std::size_t i = 0; i < 2; ++i) {
     if (lists[i]->empty()) continue;
     out += fmt::format("\n{}\n\n", heads[i]);
-    for (const std::string& sentence : *lists[i]) out += fmt::format("- {}\n", plain(sentence));
+    for (const std::string& sentence : *lists[i]) out += fmt::format("- {}\n", markdown_text(sentence));
   }
   const char* score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
   out += fmt::format(
@@ -124,7 +114,7 @@ std::string comparison_markdown(const Comparison& c) {
     const std::string where = side_of(row);
     if (where == "skipped in both") continue;
     out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       plain(row.label),
+                       markdown_text(row.label),
                        number(value(row.a, &AlgorithmSummary::rmse)),
                        number(value(row.b, &AlgorithmSummary::rmse)),
                        people_change(row.rmse_change),

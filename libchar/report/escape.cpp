@@ -91,4 +91,13 @@ std::string json_text(std::string_view text) {
   return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
 }
 
+std::string markdown_text(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 }  // namespace libchar

@@ -29,6 +29,9 @@ std::string html_comment(std::string_view text);
 /// an apostrophe put in front of = + - @ TAB CR, which would start a formula.
 std::string csv_cell(std::string_view text);
 
+/// For Markdown: no mark of it becomes a tag, link, column or line.
+std::string markdown_text(std::string_view text);
+
 /// The text itself when it is valid UTF-8, else with visible escapes: JSON carries nothing else.
 std::string json_text(std::string_view text);
 

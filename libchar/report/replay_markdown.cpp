@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/text.hpp"
+#include "libchar/report/escape.hpp"
 #include "libchar/report/replay_verdict.hpp"
 
 namespace libchar {
@@ -163,15 +164,6 @@ std::string remarks(const ReplayResult& r) {
 }
 
 }  // namespace
-
-std::string markdown_text(std::string_view text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
 
 std::string replay_markdown(const ReplayResult& r) {
   std::string out = fmt::format("# {}\n\n{}\n\n",

@@ -242,14 +242,8 @@ ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::
   if (a != 0 && (s.together == 4 || n % 2 == 0))
     s.plan_two_steps(a, step, memory.values);
   else
-    s.plan.reset(fftw_plan_guru64_dft(1,
-                                      &dimension,
-                                      1,
-                                      &batch,
-                                      memory.values,
-                                      memory.values,
-                                      FFTW_FORWARD,
-                                      FFTW_ESTIMATE));
+    s.plan.reset(fftw_plan_guru64_dft(
+        1, &dimension, 1, &batch, memory.values, memory.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 
 ComplexFft::ComplexFft(std::size_t n) : state_(std::make_unique<State>()) {

@@ -10,7 +10,7 @@ namespace libchar::halves {
 namespace {
 
 constexpr std::size_t kColumns = 8;  // a line of the cache from each half
-constexpr std::size_t kPlaces = 2;  // for transformed rows
+constexpr std::size_t kPlaces = 2;   // for transformed rows
 
 /// Where a column of all rows is more than the cache holds at once, several lines are taken from
 /// each half.
@@ -68,8 +68,8 @@ RowTables::RowTables(std::size_t half)
     fine[odd].resize(2 * count * n1);
     for (std::size_t m1 = 0; m1 < n1; ++m1)
       for (std::size_t j = 0; j < count; ++j) {
-        const Complex value =
-            turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), static_cast<double>(h));
+        const Complex value = turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd),
+                                   static_cast<double>(h));
         double* const four = fine[odd].data() + 2 * count * m1 + j / 4 * 8;
         four[j % 4] = value.real();
         four[4 + j % 4] = value.imag();

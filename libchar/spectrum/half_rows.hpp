@@ -16,8 +16,8 @@
 
 namespace libchar::halves {
 
-/// Doubles between rows: without them a column of rows, or a row and its neighbours, would fall into
-/// few sets of the cache.
+/// Doubles between rows: without them a column of rows, or a row and its neighbours, would fall
+/// into few sets of the cache.
 inline constexpr std::size_t kPadding = 8;
 
 struct FreedAligned {

@@ -8,8 +8,8 @@ namespace {
 // Interleaved complex numbers, two in a vector.
 #define SWAPPED(v) __builtin_shufflevector(v, v, 1, 0, 3, 2)
 #define BACKWARDS(v) __builtin_shufflevector(v, v, 3, 2, 1, 0)
-// Two vectors of interleaved numbers to four real or imaginary parts, in the order 0 2 1 3; the same
-// exchange of places undoes itself.
+// Two vectors of interleaved numbers to four real or imaginary parts, in the order 0 2 1 3; the
+// same exchange of places undoes itself.
 #define EVEN_PLACES(v, w) __builtin_shufflevector(v, w, 0, 4, 2, 6)
 #define ODD_PLACES(v, w) __builtin_shufflevector(v, w, 1, 5, 3, 7)
 // Four real and four imaginary parts in their order to interleaved numbers in theirs.
@@ -70,23 +70,23 @@ LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
 
 // Both kinds of bins begin alike: A and B from the transform of a + i b at m and at its mirror, and
 // exp(-i pi k / L).
-#define LIBCHAR_SEPARATE(p, at, back)                                                         \
-  const Four u0 = LIBCHAR_FOUR(p.row + at), u1 = LIBCHAR_FOUR(p.row + at + 4);                \
-  const Four v0 = LIBCHAR_FOUR(p.mirror + back), v1 = LIBCHAR_FOUR(p.mirror + back + 4);      \
-  const Four ur = EVEN_PLACES(u0, u1), ui = ODD_PLACES(u0, u1);                               \
-  const Four vr0 = EVEN_PLACES(v0, v1), vi0 = ODD_PLACES(v0, v1);                             \
-  const Four vr = BACKWARDS(vr0), vi = BACKWARDS(vi0);                                        \
-  const Four ar = 0.5 * (ur + vr), ai = 0.5 * (ui - vi);                                      \
-  const Four br = 0.5 * (ui + vi), bi = 0.5 * (vr - ur);                                      \
-  const Four tr = LIBCHAR_FOUR(p.quarter + at), ti = LIBCHAR_FOUR(p.quarter + at + 4);        \
-  const Four rr = cr * tr - ci * ti, ri = cr * ti + ci * tr;                                  \
-  if (p.cosine != nullptr) {                                                                  \
-    const Four ca = rr * ar - ri * ai, cb = rr * br - ri * bi;                                \
-    LIBCHAR_FOUR_TO(p.cosine + at / 2) =                                                      \
-        (LIBCHAR_FOUR(p.cosine + at / 2) + p.weight_a * (ca * ca)) + p.weight_b * (cb * cb);  \
-  }                                                                                           \
-  const Four pr = LIBCHAR_FOUR(p.before + at), pi = LIBCHAR_FOUR(p.before + at + 4);          \
-  LIBCHAR_FOUR_TO(p.z + at) = br;                                                             \
+#define LIBCHAR_SEPARATE(p, at, back)                                                        \
+  const Four u0 = LIBCHAR_FOUR(p.row + at), u1 = LIBCHAR_FOUR(p.row + at + 4);               \
+  const Four v0 = LIBCHAR_FOUR(p.mirror + back), v1 = LIBCHAR_FOUR(p.mirror + back + 4);     \
+  const Four ur = EVEN_PLACES(u0, u1), ui = ODD_PLACES(u0, u1);                              \
+  const Four vr0 = EVEN_PLACES(v0, v1), vi0 = ODD_PLACES(v0, v1);                            \
+  const Four vr = BACKWARDS(vr0), vi = BACKWARDS(vi0);                                       \
+  const Four ar = 0.5 * (ur + vr), ai = 0.5 * (ui - vi);                                     \
+  const Four br = 0.5 * (ui + vi), bi = 0.5 * (vr - ur);                                     \
+  const Four tr = LIBCHAR_FOUR(p.quarter + at), ti = LIBCHAR_FOUR(p.quarter + at + 4);       \
+  const Four rr = cr * tr - ci * ti, ri = cr * ti + ci * tr;                                 \
+  if (p.cosine != nullptr) {                                                                 \
+    const Four ca = rr * ar - ri * ai, cb = rr * br - ri * bi;                               \
+    LIBCHAR_FOUR_TO(p.cosine + at / 2) =                                                     \
+        (LIBCHAR_FOUR(p.cosine + at / 2) + p.weight_a * (ca * ca)) + p.weight_b * (cb * cb); \
+  }                                                                                          \
+  const Four pr = LIBCHAR_FOUR(p.before + at), pi = LIBCHAR_FOUR(p.before + at + 4);         \
+  LIBCHAR_FOUR_TO(p.z + at) = br;                                                            \
   LIBCHAR_FOUR_TO(p.z + at + 4) = bi
 
 LIBCHAR_WIDE_LANES void even_bins(const BinRow& p) {

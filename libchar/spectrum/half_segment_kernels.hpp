@@ -39,13 +39,13 @@ struct ColumnStep {
   const double* shift;                       // [n1] exp(-i pi t1 / n1), interleaved: half a bin
 };
 
-/// `count` columns of u = a + i b less the means, as they are (for the even bins) and turned by half
-/// a bin (for the odd ones). Of four columns the middle two change places.
+/// `count` columns of u = a + i b less the means, as they are (for the even bins) and turned by
+/// half a bin (for the odd ones). Of four columns the middle two change places.
 void gather_columns(const HalfPair& pair, const ColumnStep& step, double* even, double* odd);
 
 struct ColumnTurns {
-  const double* fine;    // [n1] exp(-2 pi i m j / h), j < count; four real and four imaginary parts;
-                         // m = m1 (even bins), m1 + 1/2 (odd ones)
+  const double* fine;  // [n1] exp(-2 pi i m j / h), j < count; four real and four imaginary parts;
+                       // m = m1 (even bins), m1 + 1/2 (odd ones)
   const double* coarse;  // exp(-2 pi i j / period) over a period of 2 h / count, interleaved
   bool odd;              // bins
 };
@@ -59,15 +59,15 @@ void scatter_columns(const double* from,
 /// A row of bins of both halves: from the transform of a + i b, and of the half P before, to X of
 /// the two segments that the pair ends.
 struct BinRow {
-  const double *row, *mirror;       // interleaved, n2 values; the mirror is read from its end
-  std::size_t bins;                 // n2 / 2, a multiple of 4
-  const double* quarter;            // exp(-i pi m2 / n2), four and four
-  Complex start;                    // exp(-i pi k / L) at m2 = 0
-  const double* before;             // P
-  double* z;                        // B; may be P's place
-  double *first, *second;           // X of (P, A) and of (A, B)
-  double step_first, step_second;   // between the means, for odd bins
-  double* cosine = nullptr;         // sums of squares of the cosine transforms; none: not wanted
+  const double *row, *mirror;         // interleaved, n2 values; the mirror is read from its end
+  std::size_t bins;                   // n2 / 2, a multiple of 4
+  const double* quarter;              // exp(-i pi m2 / n2), four and four
+  Complex start;                      // exp(-i pi k / L) at m2 = 0
+  const double* before;               // P
+  double* z;                          // B; may be P's place
+  double *first, *second;             // X of (P, A) and of (A, B)
+  double step_first, step_second;     // between the means, for odd bins
+  double* cosine = nullptr;           // sums of squares of the cosine transforms; none: not wanted
   double weight_a = 0, weight_b = 0;  // 0: not of this half
 };
 

@@ -13,13 +13,14 @@
 // Z itself: even bins k = 2m are the DFT of the half, odd ones k = 2m+1 its DFT at frequencies
 // moved by half a bin. Two halves a and b are transformed at once as u = a + i b (R. N. Bracewell,
 // The Fourier Transform and Its Applications, on two real transforms in one):
-//   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),   m' = h - m for even bins, h - 1 - m
+//   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),   m' = h - m for even bins, h - 1 -
+//   m
 // for odd ones. Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M.
 // Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2
 // m1 / h), over t2; t = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in rows of
-// fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r) backwards, the neighbours m ± 1
-// are the rows beside it, and everything after the transform goes row by row, from both ends to the
-// middle, as soon as a row is there: memory is what this costs, more than arithmetic.
+// fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r) backwards, the neighbours m ±
+// 1 are the rows beside it, and everything after the transform goes row by row, from both ends to
+// the middle, as soon as a row is there: memory is what this costs, more than arithmetic.
 //
 // Only m2 < n2/2 is kept: the rest is the mirror. Inside a row of bins four values stand as four
 // real and four imaginary parts, in the order 0 2 1 3 that unpacking gives.
@@ -132,8 +133,7 @@ void Pass::make(std::size_t r, bool odd, Row to, Row to_mirror) {
   if (work_.remember) *work_.z_top = middle[1];
 }
 
-void Pass::make_row(
-    std::size_t r, bool odd, const double* values, const double* mirror, Row to) {
+void Pass::make_row(std::size_t r, bool odd, const double* values, const double* mirror, Row to) {
   const std::size_t at = 2 * place(r, odd);
   const BinRow row{values,
                    mirror,

@@ -47,8 +47,8 @@ class HalfSegments {
   struct Used {
     bool first = false, second = false;
   };
-  /// The next two halves. Adds the power of the segments they end to `first` and `second` (which may
-  /// be the same; none: not wanted).
+  /// The next two halves. Adds the power of the segments they end to `first` and `second` (which
+  /// may be the same; none: not wanted).
   Used push(const Half& a, const Half& b, Sums* first, Sums* second);
   /// The segment that a last half without a partner ends; nothing is remembered of it.
   bool add_last(const Half& a, Sums& sums) const;

@@ -18,8 +18,9 @@ std::pair<double, double> interval_factors(double dof, double confidence) {
 
 std::pair<double, double> IntervalFactors::of(double dof) {
   const auto known = known_.find(dof);
-  return known != known_.end() ? known->second
-                               : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
+  return known != known_.end()
+             ? known->second
+             : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
 }
 
 std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, std::size_t i) {

@@ -70,8 +70,7 @@ Density density_of(const Spectrum& s) {
   out.power = std::span(s.value).subspan(zero, size);
   if (root || factor != 1) {
     out.own.reserve(size);
-    for (const double value : out.power)
-      out.own.push_back((root ? value * value : value) * factor);
+    for (const double value : out.power) out.own.push_back((root ? value * value : value) * factor);
     out.power = out.own;
   }
   if (size > 1) out.dof = s.dof[zero + size - 1];
@@ -220,8 +219,9 @@ SpectralLine line_of(
   line.excess = d.power[peak] / floor - 1;
   const double half = floor + (d.power[peak] - floor) / 2;
   line.width_hz =
-      inner ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz()
-            : 0;
+      inner
+          ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz()
+          : 0;
   return line;
 }
 

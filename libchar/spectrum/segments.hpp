@@ -14,8 +14,8 @@ namespace libchar::welch_detail {
 inline constexpr std::uint64_t kShortestSegment = 8;
 
 /// Lengths of a segmentation. Segments start at 0, hop, 2 hop, …; every `group` of them (an even
-/// number: halves go in pairs) are summed from zero and the sums of the groups added in order, so that the bits do not depend on which
-/// thread did which group, nor on how samples were pushed.
+/// number: halves go in pairs) are summed from zero and the sums of the groups added in order, so
+/// that the bits do not depend on which thread did which group, nor on how samples were pushed.
 struct Layout {
   std::size_t segment = 0, hop = 0, group = 0;
   std::uint64_t count(std::uint64_t samples) const {

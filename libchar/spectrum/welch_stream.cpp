@@ -66,8 +66,7 @@ void WelchStream::State::take(const double* x) {
 
 HalfSegments::Half WelchStream::State::half_at(const double* x, HalfListener* listener) const {
   HalfSegments::Half half = halves->half_at(x);
-  half.block =
-      listener != nullptr && listener->half({x, layout.hop}, std::isfinite(half.mean));
+  half.block = listener != nullptr && listener->half({x, layout.hop}, std::isfinite(half.mean));
   return half;
 }
 
@@ -176,7 +175,8 @@ void WelchStream::end(HalfListener* listener) {
   State& s = *state_;
   const std::size_t hop = s.layout.hop;
   if (!s.halves || s.filled < hop) return;
-  const auto used = s.halves->push(s.half_at(s.segment.data(), listener), {}, s.sums.get(), nullptr);
+  const auto used =
+      s.halves->push(s.half_at(s.segment.data(), listener), {}, s.sums.get(), nullptr);
   if (!std::exchange(s.first_pair, false)) {
     s.average.note_segment(used.first);
     ++s.in_group;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "libchar/log/stamp_sketch.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;
@@ -191,4 +192,68 @@ TEST_CASE("windows without stamps go by the given rate") {
   CHECK(r.samples[0][0] == 250);
   options.rate_hz.reset();
   CHECK(failure(text, options).find("--rate HZ") != std::string::npos);
+}
+
+TEST_CASE("stamps sketched together are stamps sketched one by one") {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> jitter(0, 2e4);
+  std::vector<std::int64_t> stamps;
+  for (std::size_t i = 0; i < 40000; ++i) {
+    const double late = i % 977 == 13 ? 3e5 : 0;  // now and then an extreme
+    stamps.push_back(
+        static_cast<std::int64_t>(5e6 * static_cast<double>(i) + jitter(generator) + late));
+  }
+  StampSketch one;
+  for (std::size_t i = 0; i < stamps.size(); ++i) one.add(static_cast<std::int64_t>(i), stamps[i]);
+  for (const std::size_t run : {1U, 7U, 256U, 40000U}) {
+    StampSketch together;
+    for (std::size_t i = 0; i < stamps.size(); i += run)
+      together.add_run(static_cast<std::int64_t>(i),
+                       stamps.data() + i,
+                       std::min<std::size_t>(run, stamps.size() - i));
+    CAPTURE(run);
+    CHECK(together.interval_ns() == one.interval_ns());
+    CHECK(together.deviation(5e6).robust == one.deviation(5e6).robust);
+    CHECK(together.deviation(5e6).largest == one.deviation(5e6).largest);
+  }
+  CHECK(one.deviation(5e6).largest > 2.5e5);
+}
+
+TEST_CASE("what stamps need does not depend on where blocks of the file begin") {
+  // Every kind of irregular stamp, at the beginning, in the middle and at the end of the 256 that
+  // are looked at together, wherever these begin.
+  std::vector<std::int64_t> t;
+  std::int64_t now = 0;
+  for (std::size_t i = 0; i < 6000; ++i) {
+    now += 5000;
+    if (i % 257 == 100) now += 20000;               // four samples are missing
+    if (i % 263 == 50) t.push_back(now - 5000);     // a doubled stamp
+    if (i % 269 == 70) t.push_back(now - 40000);    // a step back
+    t.push_back(i % 271 == 90 ? now - 2000 : now);  // early
+  }
+  const std::string text = log_of(t);
+  ReadOptions options;
+  options.block_bytes = 1 << 20;
+  const Recording whole = read_text(text, options);
+  CHECK(count(whole, "gap") > 20);
+  CHECK(count(whole, "duplicate_timestamp") + count(whole, "backward_timestamp") > 30);
+  for (const std::size_t bytes : {40U, 3000U, 4096U, 9973U}) {
+    options.block_bytes = bytes;
+    const Recording r = read_text(text, options);
+    CAPTURE(bytes);
+    CHECK(r.info.samples == whole.info.samples);
+    CHECK(r.info.time.gaps == whole.info.time.gaps);
+    CHECK(r.info.time.missing_samples == whole.info.time.missing_samples);
+    CHECK(r.info.time.rate_hz == whole.info.time.rate_hz);
+    REQUIRE(r.info.warnings.list().size() == whole.info.warnings.list().size());
+    for (std::size_t k = 0; k < r.info.warnings.list().size(); ++k) {
+      CHECK(r.info.warnings.list()[k].code == whole.info.warnings.list()[k].code);
+      CHECK(r.info.warnings.list()[k].count == whole.info.warnings.list()[k].count);
+      CHECK(r.info.warnings.list()[k].places == whole.info.warnings.list()[k].places);
+    }
+    for (std::size_t i = 0; i < r.samples[0].size(); ++i) {
+      const double a = r.samples[0][i], b = whole.samples[0][i];
+      REQUIRE((a == b || (std::isnan(a) && std::isnan(b))));
+    }
+  }
 }

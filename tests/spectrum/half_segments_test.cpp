@@ -174,10 +174,12 @@ TEST_CASE("halves: a last one without a partner changes nothing") {
   std::vector<double> power, wanted;
   halves.take_power(*rest, power);
   same_power(power, power_by_segments({x.begin() + h, x.begin() + 3 * h}, n), 1e-12);
-  halves.push(halves.half_at(x.data() + 2 * h), halves.half_at(x.data() + 3 * h), rest.get(), rest.get());
+  halves.push(
+      halves.half_at(x.data() + 2 * h), halves.half_at(x.data() + 3 * h), rest.get(), rest.get());
   push_all(again, {x.begin(), x.begin() + 2 * h}, *other);
   again.take_power(*other, wanted);
-  again.push(again.half_at(x.data() + 2 * h), again.half_at(x.data() + 3 * h), other.get(), other.get());
+  again.push(
+      again.half_at(x.data() + 2 * h), again.half_at(x.data() + 3 * h), other.get(), other.get());
   again.take_power(*other, wanted);
   halves.take_power(*rest, power);
   CHECK(power == wanted);
