@@ -70,7 +70,7 @@ libchar::LogInfo transfer(Session& session,
                           std::unique_ptr<Writing>& sink) {
   const bool stamps = libchar::format_to_write(options.output, options.writing) == "csv" &&
                       options.writing.time_column;
-  if (stamps && options.log == "-") {
+  if (stamps && libchar::read_once(options.log)) {
     const libchar::Recording recording =
         libchar::read_recording(options.log, options.reading, session.terminal);
     sink = std::make_unique<Writing>(options, nullptr);

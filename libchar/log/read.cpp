@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -79,7 +80,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
                  options.format,
                  "use auto, csv, npy or raw"});
   }
-  if (path == "-") return *named("csv");
+  if (read_once(path)) return *named("csv");  // nobody looks into a pipe without taking from it
   const std::string front = front_of(path);
   for (const Format& format : table)
     if (has_suffix(path, format.suffixes)) return format;
@@ -218,6 +219,12 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
     quality_warnings(
         recording.info.channels[c], collector.meters[c].finish(), recording.info.warnings);
   return recording;
+}
+
+bool read_once(const std::string& path) {
+  std::error_code none;
+  const auto status = std::filesystem::status(path, none);
+  return path == "-" || std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
 }
 
 int threads_beside_reading(const LogInfo& log, int threads) {

@@ -52,6 +52,9 @@ struct BlockSink {
 /// Throws Error(input) with file, line and column (or byte); Error(usage) for options that do not fit the file.
 LogInfo read_log(const std::string& path, const ReadOptions& options, BlockSink& sink, Progress& progress = no_progress());
 
+/// Standard input, a named pipe, a device: what was read is gone, and only CSV is read from it unless the format is given.
+bool read_once(const std::string& path);
+
 /// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that reading ahead keeps busy. More would
 /// take turns with it, and its hash is one long chain that all others wait for in the end.
 int threads_beside_reading(const LogInfo& log, int threads);

@@ -50,7 +50,7 @@ class Stages : public BlockSink {
     std::vector<std::size_t> wanted;
     for (std::size_t c = 0; c < stages_.size(); ++c)
       if (stages_[c].needs_second_pass()) wanted.push_back(c);
-    if (wanted.empty() || path == "-") return;
+    if (wanted.empty() || read_once(path)) return;
     struct Again final : BlockSink {
       std::vector<ChannelStage*> stages;
       std::vector<std::size_t> channels;

@@ -91,6 +91,26 @@ TEST_CASE("a reader that goes away is no failure") {
   CHECK(ran.err.empty());
 }
 
+TEST_CASE("a log from another program, by the shell's <(…), is read as text") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "log.csv").string(), out = (folder / "out.csv").string();
+  {
+    std::ofstream file(log);
+    file << "t,x\n";
+    for (int i = 0; i < 3000; ++i) file << 0.01 * i << ',' << (i * 7919) % 1000 << '\n';
+  }
+  for (const char* script :
+       {R"("$0" inspect <(cat "$1") >/dev/null)", R"("$0" convert <(cat "$1") -o "$2" --quiet)",
+        R"("$0" characterize <(cat "$1") -o "$2.report" --quiet >/dev/null)"}) {
+    const auto ran = test::run_words({"bash", "-c", script, SENSORCHAR_PROGRAM, log, out});
+    INFO(script << ran.err);
+    CHECK(ran.code == 0);
+  }
+  std::ifstream written(out);
+  std::string text((std::istreambuf_iterator<char>(written)), {});
+  CHECK(std::count(text.begin(), text.end(), '\n') == 3001);
+}
+
 TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
   const test::TemporaryFolder folder;
   // With data the reading succeeds and writing must still not happen; without, the reading fails
