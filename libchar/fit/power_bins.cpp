@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/lanes.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/dct_means.hpp"
 #include "libchar/fit/line_clip.hpp"
@@ -159,6 +160,26 @@ Power transform(std::span<const double> points,
 
 }  // namespace
 
+namespace {
+
+/// Whole eights of samples less `shift` into eight sums; how many samples that were.
+LIBCHAR_WIDE_LANES std::size_t add_eights(const double* x,
+                                          std::size_t n,
+                                          double shift,
+                                          double* sums) {
+  Four low = LIBCHAR_FOUR(sums), high = LIBCHAR_FOUR(sums + 4);
+  std::size_t i = 0;
+  for (; i + 8 <= n; i += 8) {
+    low += LIBCHAR_FOUR(x + i) - shift;
+    high += LIBCHAR_FOUR(x + i + 4) - shift;
+  }
+  LIBCHAR_FOUR_TO(sums) = low;
+  LIBCHAR_FOUR_TO(sums + 4) = high;
+  return i;
+}
+
+}  // namespace
+
 struct PowerBinner::State {
   std::uint64_t block, per_mean;
   std::optional<Dct> plan;
@@ -170,7 +191,7 @@ struct PowerBinner::State {
   std::vector<double>
       means;         ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
   double shift = 0;  ///< first sample of the segment
-  std::array<double, 4> partial{};  ///< sums of the mean being filled
+  std::array<double, 8> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<Power> done;  ///< of finished segments (their tails and series of means)
 
@@ -226,19 +247,19 @@ struct PowerBinner::State {
 
   // At most up to the end of the mean.
   void add_to_mean(std::span<const double> run) {
-    // Four sums, by position in the mean: the bits do not depend on how the samples came.
+    // Eight sums, by position in the mean: the bits do not depend on how the samples came.
     std::size_t i = 0;
-    for (; i < run.size() && (partial_count + i) % 4 != 0; ++i)
-      partial[(partial_count + i) % 4] += run[i] - shift;
-    for (; i + 4 <= run.size(); i += 4)
-      for (std::size_t lane = 0; lane < 4; ++lane) partial[lane] += run[i + lane] - shift;
+    for (; i < run.size() && (partial_count + i) % partial.size() != 0; ++i)
+      partial[(partial_count + i) % partial.size()] += run[i] - shift;
+    i += add_eights(run.data() + i, run.size() - i, shift, partial.data());
     for (std::size_t lane = 0; i < run.size(); ++i, ++lane) partial[lane] += run[i] - shift;
     partial_count += run.size();
     segment_samples += run.size();
     samples += run.size();
     if (partial_count == per_mean) {
-      means.push_back(((partial[0] + partial[2]) + (partial[1] + partial[3])) /
-                      std::sqrt(static_cast<double>(per_mean)));
+      const double sum = ((partial[0] + partial[4]) + (partial[2] + partial[6])) +
+                         ((partial[1] + partial[5]) + (partial[3] + partial[7]));
+      means.push_back(sum / std::sqrt(static_cast<double>(per_mean)));
       partial.fill(0);
       partial_count = 0;
     }

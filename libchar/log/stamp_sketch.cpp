@@ -1,7 +1,11 @@
 #include "libchar/log/stamp_sketch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
+
+#include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
@@ -23,16 +27,51 @@ void StampSketch::begin_cell(const Pair& pair) {
   low_ = high_ = residual(pair);
 }
 
+// Lowest and highest of stamps[i] - first - slope (index + i). AVX2 turns no 64-bit integer into a
+// double; below 2^51 the mantissa of 1.5 2^52 does it, exactly.
+LIBCHAR_WIDE_LANES void StampSketch::extremes(
+    const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 51U;
+  const std::int64_t first = stamps[0] - origin_.stamp, last = stamps[n - 1] - origin_.stamp;
+  const std::int64_t index = from.index - origin_.index;
+  std::size_t i = 0;
+  // Stamps rise, or the run would not be one.
+  if (first > -kLargest && last < kLargest) {
+    using FourStamps [[gnu::vector_size(32)]] = std::int64_t;
+    using FourStampsInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] =
+        std::int64_t;
+    constexpr double kMantissa = 6755399441055744.0;  // 1.5 2^52
+    const auto bits = std::bit_cast<std::int64_t>(kMantissa);
+    const Four steps = {0, 1, 2, 3};
+    Four lows = {low, low, low, low}, highs = {high, high, high, high};
+    for (; i + 4 <= n; i += 4) {
+      const FourStamps whole = *reinterpret_cast<const FourStampsInMemory*>(stamps + i);
+      const FourStamps shifted = (whole - origin_.stamp) + bits;
+      Four d;
+      std::memcpy(&d, &shifted, sizeof d);
+      const Four r = (d - kMantissa) -
+                     slope_ * (static_cast<double>(index + static_cast<std::int64_t>(i)) + steps);
+      lows = r < lows ? r : lows;
+      highs = r > highs ? r : highs;
+    }
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      low = std::min(low, lows[lane]);
+      high = std::max(high, highs[lane]);
+    }
+  }
+  for (; i < n; ++i) {
+    const double r = residual({from.index + static_cast<std::int64_t>(i), stamps[i]});
+    low = std::min(low, r);
+    high = std::max(high, r);
+  }
+}
+
 void StampSketch::add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n) {
   while (n > 0) {
     // Most stretches hold no new extreme: two of them are looked for before one by one.
     const auto m = static_cast<std::size_t>(std::min<std::uint64_t>(n, in_cell_));
     double low = low_, high = high_;
-    for (std::size_t i = 0; i < m; ++i) {
-      const double r = residual({index + static_cast<std::int64_t>(i), stamps[i]});
-      low = r < low ? r : low;
-      high = r > high ? r : high;
-    }
+    if (m > 0) extremes(stamps, m, {index, stamps[0]}, low, high);
     const bool none = m > 0 && low == low_ && high == high_;
     const std::size_t taken = std::max<std::size_t>(m, 1);
     if (none)

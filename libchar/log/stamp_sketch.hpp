@@ -28,7 +28,7 @@ class StampSketch {
       cells_.back().high = {index, stamp};
     }
   }
-  /// n stamps of consecutive grid indices: the same as one by one.
+  /// n rising stamps of consecutive grid indices: the same as one by one.
   void add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n);
   /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
   double interval_ns() const;
@@ -50,6 +50,8 @@ class StampSketch {
            slope_ * static_cast<double>(pair.index - origin_.index);
   }
   void begin_cell(const Pair& pair);
+  void extremes(
+      const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const;
   void thin();
   std::vector<Cell> cells_;
   Pair origin_;                // the very first
