@@ -32,8 +32,17 @@ std::string as_csv(const Characterization& result) {
   std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms\n";
   for (const ChannelResult& c : result.channels)
     for (const AllanPoint& p : c.allan.points)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_cell(c.channel.name), csv_cell(c.channel.unit), shortest(p.tau_s), shortest(p.deviation),
-                          shortest(p.ci68.low), shortest(p.ci68.high), shortest(p.ci95.low), shortest(p.ci95.high), shortest(p.edf), p.terms);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
+                          csv_cell(c.channel.name),
+                          csv_cell(c.channel.unit),
+                          shortest(p.tau_s),
+                          shortest(p.deviation),
+                          shortest(p.ci68.low),
+                          shortest(p.ci68.high),
+                          shortest(p.ci95.low),
+                          shortest(p.ci95.high),
+                          shortest(p.edf),
+                          p.terms);
   return text;
 }
 
@@ -59,10 +68,20 @@ void run_allan(Session& session, const AllanVerb& verb) {
   bool any = false;
   for (const ChannelResult& c : result.channels) {
     any = any || !c.allan.points.empty();
-    for (const std::string& problem : c.problems) session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
-    for (const std::string& note : c.allan.notes) session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(note)));
+    for (const std::string& problem : c.problems)
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
+    for (const std::string& note : c.allan.notes)
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(note)));
   }
-  if (!any) throw Error({ErrorKind::numeric, "E0710", verb.log, "no channel gives an Allan deviation", "", result.log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate"});
+  if (!any)
+    throw Error({ErrorKind::numeric,
+                 "E0710",
+                 verb.log,
+                 "no channel gives an Allan deviation",
+                 "",
+                 result.log.time.rate_hz > 0
+                     ? ""
+                     : "the sampling rate is not known: a log without time stamps needs --rate"});
   const std::string text = verb.json ? dump_json(as_json(session, result)) : as_csv(result);
   if (verb.output.empty()) {
     print(text);
@@ -76,8 +95,16 @@ void run_allan(Session& session, const AllanVerb& verb) {
 
 void add_allan(CLI::App& app, Session& session) {
   auto verb = std::make_shared<AllanVerb>();
-  CLI::App* sub = add_verb(app, session, "allan", "Allan deviation of every channel, with chi-square intervals, as CSV or JSON", [&session, verb] { run_allan(session, *verb); });
-  sub->add_option("LOG", verb->log, "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")->required();
+  CLI::App* sub =
+      add_verb(app,
+               session,
+               "allan",
+               "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
+               [&session, verb] { run_allan(session, *verb); });
+  sub->add_option("LOG",
+                  verb->log,
+                  "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      ->required();
   sub->add_option("-o,--output", verb->output, "write there instead of to stdout");
   sub->add_flag("--force", verb->force, "overwrite the output file");
   sub->add_flag("--json", verb->json, "one JSON document instead of CSV");

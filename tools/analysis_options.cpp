@@ -13,7 +13,10 @@ namespace {
 
 using namespace libchar;
 
-[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& got, const std::string& hint) {
+[[noreturn]] void refuse(const std::string& option,
+                         const std::string& what,
+                         const std::string& got,
+                         const std::string& hint) {
   throw Error({ErrorKind::usage, "", option, what, got, hint});
 }
 
@@ -40,7 +43,10 @@ void read_taus(const std::string& text, AllanOptions& allan) {
     try {
       for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
     } catch (const Error&) {
-      refuse("--taus", "octave, decade, dense or a list of times was expected", text, "for example --taus 0.1s,1s,10s");
+      refuse("--taus",
+             "octave, decade, dense or a list of times was expected",
+             text,
+             "for example --taus 0.1s,1s,10s");
     }
   }
 }
@@ -57,7 +63,11 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
     bool known = false;
     for (std::size_t t = 0; t < kTerms; ++t)
       if (word == kTermNames[t].letter || word == kTermNames[t].key) known = wanted[t] = true;
-    if (!known) refuse("--terms", "a list of Q, B, K, Qz, R (or the long names) was expected", word, "for example --terms Q,B,K,R");
+    if (!known)
+      refuse("--terms",
+             "a list of Q, B, K, Qz, R (or the long names) was expected",
+             word,
+             "for example --terms Q,B,K,R");
   }
   return wanted;
 }
@@ -65,50 +75,105 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
 }  // namespace
 
 void add_data_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb, "--data", a.data, {"rate", "phase", "frequency"}, "what the samples are: the quantity itself, its integral, or a frequency in Hz (default: rate)");
-  add_number(verb, "--nominal-frequency", a.nominal_frequency, "with --data frequency: the frequency that counts as zero deviation, Hz (default: values are fractional)", 0);
-  add_bytes(verb, "--memory", a.options.memory_bytes, "samples kept in memory at most; a longer log streams through fixed-size stages (default: 1GiB)");
+  add_choice(verb,
+             "--data",
+             a.data,
+             {"rate", "phase", "frequency"},
+             "what the samples are: the quantity itself, its integral, or a frequency in Hz "
+             "(default: rate)");
+  add_number(verb,
+             "--nominal-frequency",
+             a.nominal_frequency,
+             "with --data frequency: the frequency that counts as zero deviation, Hz (default: "
+             "values are fractional)",
+             0);
+  add_bytes(verb,
+            "--memory",
+            a.options.memory_bytes,
+            "samples kept in memory at most; a longer log streams through fixed-size stages "
+            "(default: 1GiB)");
 }
 
 void add_allan_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb, "--type", a.type, {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"}, "deviation (default: oadev, overlapping Allan)");
-  verb.add_option("--taus", a.taus, "averaging times: octave, decade, dense, or a list such as 0.1s,1s,1min (default: octave)");
+  add_choice(verb,
+             "--type",
+             a.type,
+             {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
+             "deviation (default: oadev, overlapping Allan)");
+  verb.add_option(
+      "--taus",
+      a.taus,
+      "averaging times: octave, decade, dense, or a list such as 0.1s,1s,1min (default: octave)");
   add_duration(verb, "--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
   add_duration(verb, "--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
-  verb.add_flag("--full-overlap", a.options.full_overlap, "use every term however long the record is (default: every (m/4)th term beyond 4 million samples)");
+  verb.add_flag("--full-overlap",
+                a.options.full_overlap,
+                "use every term however long the record is (default: every (m/4)th term beyond 4 "
+                "million samples)");
 }
 
 void add_spectrum_options(CLI::App& verb, AnalysisOptions& a) {
   add_choice(verb, "--sides", a.sides, {"one", "two"}, "one- or two-sided spectrum (default: one)");
-  add_choice(verb, "--scaling", a.scaling, {"psd", "ps", "lsd", "ls"}, "density U²/Hz, power U², and their roots (default: psd)");
-  verb.add_option("--segment", a.segment, "samples per segment (default: N/4, a quarter of the record)");
-  add_number(verb, "--overlap", a.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
-  add_choice(verb, "--window", a.window, {"hann", "rectangular", "blackman_harris", "flat_top"}, "window (default: hann)");
-  add_choice(verb, "--detrend", a.detrend, {"none", "constant", "linear"}, "what is removed from each segment (default: constant)");
+  add_choice(verb,
+             "--scaling",
+             a.scaling,
+             {"psd", "ps", "lsd", "ls"},
+             "density U²/Hz, power U², and their roots (default: psd)");
+  verb.add_option(
+      "--segment", a.segment, "samples per segment (default: N/4, a quarter of the record)");
+  add_number(
+      verb, "--overlap", a.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  add_choice(verb,
+             "--window",
+             a.window,
+             {"hann", "rectangular", "blackman_harris", "flat_top"},
+             "window (default: hann)");
+  add_choice(verb,
+             "--detrend",
+             a.detrend,
+             {"none", "constant", "linear"},
+             "what is removed from each segment (default: constant)");
 }
 
 void add_fit_options(CLI::App& verb, AnalysisOptions& a) {
-  verb.add_option("--terms", a.terms, "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and R join when an alarm asks)");
-  add_number(verb, "--threshold", a.threshold, "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)", 0);
-  verb.add_flag("--no-remedies", a.no_remedies, "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
+  verb.add_option("--terms",
+                  a.terms,
+                  "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and "
+                  "R join when an alarm asks)");
+  add_number(verb,
+             "--threshold",
+             a.threshold,
+             "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)",
+             0);
+  verb.add_flag("--no-remedies",
+                a.no_remedies,
+                "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
 }
 
 CharacterizeOptions finish(const AnalysisOptions& a) {
   CharacterizeOptions o = a.options;
-  o.data = a.data == "phase" ? SampleKind::phase : a.data == "frequency" ? SampleKind::frequency : SampleKind::rate;
+  o.data = a.data == "phase"       ? SampleKind::phase
+           : a.data == "frequency" ? SampleKind::frequency
+                                   : SampleKind::rate;
   o.nominal_frequency = a.nominal_frequency.value_or(0);
-  if (a.nominal_frequency && o.data != SampleKind::frequency) refuse("--nominal-frequency", "goes with --data frequency only", "", "");
+  if (a.nominal_frequency && o.data != SampleKind::frequency)
+    refuse("--nominal-frequency", "goes with --data frequency only", "", "");
   o.allan.type = *deviation_type(a.type);
   read_taus(a.taus, o.allan);
   o.allan.tau_min_s = a.tau_min_s.value_or(0);
   o.allan.tau_max_s = a.tau_max_s.value_or(0);
   o.spectrum.sides = a.sides == "two" ? Sides::two : Sides::one;
-  o.spectrum.scaling = a.scaling == "ps" ? Scaling::ps : a.scaling == "lsd" ? Scaling::lsd : a.scaling == "ls" ? Scaling::ls : Scaling::psd;
+  o.spectrum.scaling = a.scaling == "ps"    ? Scaling::ps
+                       : a.scaling == "lsd" ? Scaling::lsd
+                       : a.scaling == "ls"  ? Scaling::ls
+                                            : Scaling::psd;
   o.spectrum.segment = read_segment(a.segment);
   if (a.overlap) o.spectrum.overlap = *a.overlap;
   o.spectrum.window = *window_named(a.window);
-  o.spectrum.detrend = a.detrend == "none" ? Detrend::none : a.detrend == "linear" ? Detrend::linear : Detrend::constant;
+  o.spectrum.detrend = a.detrend == "none"     ? Detrend::none
+                       : a.detrend == "linear" ? Detrend::linear
+                                               : Detrend::constant;
   o.fit.terms = read_terms(a.terms);
   if (a.threshold) o.fit.threshold = *a.threshold;
   o.fit.remedies = !a.no_remedies;
@@ -124,19 +189,36 @@ Json settings_json(const CharacterizeOptions& o) {
   const char* const grids[] = {"octave", "decade", "dense", "list"};
   const char* const scalings[] = {"psd", "ps", "lsd", "ls"};
   const char* const detrends[] = {"none", "constant", "linear"};
-  Json settings = {
-      {"data", data[static_cast<int>(o.data)]},
-      {"nominal_frequency_hz", o.nominal_frequency},
-      {"memory_bytes", o.memory_bytes},
-      {"allan", {{"type", std::string(name_of(o.allan.type))}, {"taus", grids[static_cast<int>(o.allan.grid)]}, {"taus_s", o.allan.taus_s},
-                 {"tau_min_s", o.allan.tau_min_s}, {"tau_max_s", o.allan.tau_max_s}, {"full_overlap", o.full_overlap}}},
-      {"spectrum", {{"sides", o.spectrum.sides == Sides::one ? "one" : "two"}, {"scaling", scalings[static_cast<int>(o.spectrum.scaling)]},
-                    {"segment", o.spectrum.segment}, {"overlap", o.spectrum.overlap}, {"window", std::string(name_of(o.spectrum.window))},
-                    {"detrend", detrends[static_cast<int>(o.spectrum.detrend)]}}},
-      {"fit", {{"terms", terms}, {"threshold", o.fit.threshold}, {"remedies", o.fit.remedies}, {"second_opinion", o.fit.second_opinion},
-               {"profile_above", o.fit.profile_above}}},
-      {"reading", {{"channels", o.reading.channels}, {"time_column", o.reading.time_column}, {"time_unit", o.reading.time_unit},
-                   {"delimiter", o.reading.delimiter}, {"decimal", o.reading.decimal}, {"header", o.reading.header}}}};
+  Json settings = {{"data", data[static_cast<int>(o.data)]},
+                   {"nominal_frequency_hz", o.nominal_frequency},
+                   {"memory_bytes", o.memory_bytes},
+                   {"allan",
+                    {{"type", std::string(name_of(o.allan.type))},
+                     {"taus", grids[static_cast<int>(o.allan.grid)]},
+                     {"taus_s", o.allan.taus_s},
+                     {"tau_min_s", o.allan.tau_min_s},
+                     {"tau_max_s", o.allan.tau_max_s},
+                     {"full_overlap", o.full_overlap}}},
+                   {"spectrum",
+                    {{"sides", o.spectrum.sides == Sides::one ? "one" : "two"},
+                     {"scaling", scalings[static_cast<int>(o.spectrum.scaling)]},
+                     {"segment", o.spectrum.segment},
+                     {"overlap", o.spectrum.overlap},
+                     {"window", std::string(name_of(o.spectrum.window))},
+                     {"detrend", detrends[static_cast<int>(o.spectrum.detrend)]}}},
+                   {"fit",
+                    {{"terms", terms},
+                     {"threshold", o.fit.threshold},
+                     {"remedies", o.fit.remedies},
+                     {"second_opinion", o.fit.second_opinion},
+                     {"profile_above", o.fit.profile_above}}},
+                   {"reading",
+                    {{"channels", o.reading.channels},
+                     {"time_column", o.reading.time_column},
+                     {"time_unit", o.reading.time_unit},
+                     {"delimiter", o.reading.delimiter},
+                     {"decimal", o.reading.decimal},
+                     {"header", o.reading.header}}}};
   if (o.reading.rate_hz) settings["reading"]["rate_hz"] = *o.reading.rate_hz;
   if (o.reading.from_s) settings["reading"]["from_s"] = *o.reading.from_s;
   if (o.reading.to_s) settings["reading"]["to_s"] = *o.reading.to_s;

@@ -39,12 +39,14 @@ struct ChannelFit {
 
 std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log) {
   CharacterizeOptions options = finish(verb.analysis);
-  options.wanted = {.quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
+  options.wanted = {
+      .quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
   Characterization result = characterize(verb.input, options, session.terminal);
   log = result.log;
   std::vector<ChannelFit> fits;
   for (ChannelResult& c : result.channels) {
-    for (const std::string& problem : c.problems) session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
+    for (const std::string& problem : c.problems)
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
     if (c.fit) fits.push_back({c.channel, std::move(*c.fit)});
   }
   return fits;
@@ -61,7 +63,13 @@ Table plain_table(Session& session, const FitVerb& verb, ReadOptions reading) {
   reading.time_column = "none";
   reading.rate_hz = 1;  // rows of a curve have no time
   const Recording read = read_recording(verb.input, reading, session.terminal);
-  if (read.samples.size() < 2) throw Error({ErrorKind::input, "", verb.input, "a curve needs two columns: averaging time or frequency, and values", "", ""});
+  if (read.samples.size() < 2)
+    throw Error({ErrorKind::input,
+                 "",
+                 verb.input,
+                 "a curve needs two columns: averaging time or frequency, and values",
+                 "",
+                 ""});
   Table table{{}, {}, read.info};
   for (std::size_t c = 1; c < read.samples.size(); ++c) {
     DigitisedCurve curve;
@@ -77,24 +85,34 @@ Table plain_table(Session& session, const FitVerb& verb, ReadOptions reading) {
   return table;
 }
 
-Table named_table(const FitVerb& verb, const CurveTable& named, const std::vector<std::string>& wanted) {
+Table named_table(const FitVerb& verb,
+                  const CurveTable& named,
+                  const std::vector<std::string>& wanted) {
   Table table;
   table.info.file = verb.input;
   table.info.bytes = named.bytes;
   table.info.sha256 = named.sha256;
   for (const NamedCurve& n : named.curves) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), n.name) == wanted.end()) continue;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), n.name) == wanted.end())
+      continue;
     table.channels.push_back({n.name, n.unit, false});
     table.curves.push_back(n.curve);
   }
-  if (table.curves.empty()) throw Error({ErrorKind::usage, "", verb.input, "no curve of this name", wanted.front(), "the first one is " + named.curves.front().name});
+  if (table.curves.empty())
+    throw Error({ErrorKind::usage,
+                 "",
+                 verb.input,
+                 "no curve of this name",
+                 wanted.front(),
+                 "the first one is " + named.curves.front().name});
   return table;
 }
 
 std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInfo& log) {
   const CharacterizeOptions options = finish(verb.analysis);
   const auto named = read_curve_table(verb.input, verb.curve == "allan");
-  Table table = named ? named_table(verb, *named, options.reading.channels) : plain_table(session, verb, options.reading);
+  Table table = named ? named_table(verb, *named, options.reading.channels)
+                      : plain_table(session, verb, options.reading);
   log = table.info;
   std::vector<ChannelFit> fits;
   for (std::size_t c = 0; c < table.curves.size(); ++c) {
@@ -112,40 +130,61 @@ std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInf
 }
 
 std::string obtained_from(const FitVerb& verb) {
-  return verb.curve == "none" ? "fit of a recording" : verb.curve == "allan" ? "fit of an Allan curve" : "fit of a spectrum";
+  return verb.curve == "none"    ? "fit of a recording"
+         : verb.curve == "allan" ? "fit of an Allan curve"
+                                 : "fit of a spectrum";
 }
 
 // One sensor model a channel; all are written before the first gets its name.
 void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
   std::error_code problem;
   std::filesystem::create_directories(verb.models, problem);
-  if (problem) throw Error({ErrorKind::output, "E0505", verb.models, "cannot make this folder: " + problem.message(), "", ""});
+  if (problem)
+    throw Error({ErrorKind::output,
+                 "E0505",
+                 verb.models,
+                 "cannot make this folder: " + problem.message(),
+                 "",
+                 ""});
   std::vector<WholeFile> files;
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
     const std::string name = unused_file_name_for(c.channel.name, taken);
-    const std::string path = (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
+    const std::string path =
+        (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
     refuse_same_file(verb.input, path);
-    files.emplace_back(path, verb.force).write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
+    files.emplace_back(path, verb.force)
+        .write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
   }
   for (WholeFile& file : files) file.commit();
 }
 
 void run_fit(Session& session, const FitVerb& verb) {
   LogInfo log;
-  const std::vector<ChannelFit> fits = verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
+  const std::vector<ChannelFit> fits =
+      verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
   session.terminal.clear();
   report_warnings(session, log);
-  if (fits.empty()) throw Error({ErrorKind::numeric, "E0711", verb.input, "no channel could be fitted", "", log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate"});
+  if (fits.empty())
+    throw Error({ErrorKind::numeric,
+                 "E0711",
+                 verb.input,
+                 "no channel could be fitted",
+                 "",
+                 log.time.rate_hz > 0
+                     ? ""
+                     : "the sampling rate is not known: a log without time stamps needs --rate"});
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});
     Json channels = Json::array();
-    for (const ChannelFit& c : fits) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    for (const ChannelFit& c : fits)
+      channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
     document.update(noise_fit_document(std::move(channels)));
     text = dump_json(document);
   } else {
-    for (const ChannelFit& c : fits) text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
+    for (const ChannelFit& c : fits)
+      text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
   }
   if (verb.output.empty()) {
     print(text);
@@ -155,7 +194,14 @@ void run_fit(Session& session, const FitVerb& verb) {
   }
   if (!verb.models.empty()) write_models(verb, fits, log);
   for (const ChannelFit& c : fits) {
-    if (!c.fit.converged) throw Error({ErrorKind::numeric, "E0712", verb.input, fmt::format("the fit of {} did not converge; its result is marked", c.channel.name), "", ""});
+    if (!c.fit.converged)
+      throw Error(
+          {ErrorKind::numeric,
+           "E0712",
+           verb.input,
+           fmt::format("the fit of {} did not converge; its result is marked", c.channel.name),
+           "",
+           ""});
   }
 }
 
@@ -163,14 +209,39 @@ void run_fit(Session& session, const FitVerb& verb) {
 
 void add_fit(CLI::App& app, Session& session) {
   auto verb = std::make_shared<FitVerb>();
-  CLI::App* sub = add_verb(app, session, "fit", "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere", [&session, verb] { run_fit(session, *verb); });
-  sub->add_option("LOG|CURVE", verb->input, "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging time or frequency, then values")->required();
-  add_choice(*sub, "--curve", verb->curve, {"none", "allan", "psd"}, "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
+  CLI::App* sub = add_verb(
+      app,
+      session,
+      "fit",
+      "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
+      [&session, verb] { run_fit(session, *verb); });
+  sub->add_option("LOG|CURVE",
+                  verb->input,
+                  "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging "
+                  "time or frequency, then values")
+      ->required();
+  add_choice(*sub,
+             "--curve",
+             verb->curve,
+             {"none", "allan", "psd"},
+             "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
   add_choice(*sub, "--sides", verb->analysis.sides, {"one", "two"}, "of a --curve psd (one)");
-  add_choice(*sub, "--quantity", verb->quantity, {"auto", "root", "power"}, "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");
-  add_duration(*sub, "--duration", verb->duration_s, "length of the record behind a --curve allan: gives honest intervals");
+  add_choice(*sub,
+             "--quantity",
+             verb->quantity,
+             {"auto", "root", "power"},
+             "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
+             "root, psd power)");
+  add_duration(*sub,
+               "--duration",
+               verb->duration_s,
+               "length of the record behind a --curve allan: gives honest intervals");
   sub->add_option("-o,--output", verb->output, "write there instead of to stdout");
-  sub->add_option("--models", verb->models, "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and model --to")->type_name("FOLDER");
+  sub->add_option(
+         "--models",
+         verb->models,
+         "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and model --to")
+      ->type_name("FOLDER");
   sub->add_flag("--force", verb->force, "overwrite the output files");
   sub->add_flag("--json", verb->json, "one JSON document instead of a table");
   add_reading_options(*sub, session, verb->analysis.options.reading);

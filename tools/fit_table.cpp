@@ -27,39 +27,74 @@ std::string habits(const Coefficient& term, std::size_t i, const std::string& un
   std::string text;
   for (const HabitualValue& habit : habitual_units(kTermNames[i].key, unit)) {
     const double value = term.value ? *term.value : term.upper95.value_or(0);
-    text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", term.value ? "" : "≤ ", significant(habit.factor * value, 4), habit.symbol);
+    text += fmt::format("{}{}{} {}",
+                        text.empty() ? "" : ", ",
+                        term.value ? "" : "≤ ",
+                        significant(habit.factor * value, 4),
+                        habit.symbol);
   }
   return text;
 }
 
 std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const std::string& unit) {
-  const std::string value = term.value ? significant(*term.value, 5) : term.upper95 ? "≤ " + significant(*term.upper95, 3) : "–";
-  const std::string interval = term.value ? fmt::format("{} … {}", significant(term.ci95.low, 4), significant(term.ci95.high, 4)) : "";
+  const std::string value = term.value     ? significant(*term.value, 5)
+                            : term.upper95 ? "≤ " + significant(*term.upper95, 3)
+                                           : "–";
+  const std::string interval =
+      term.value
+          ? fmt::format("{} … {}", significant(term.ci95.low, 4), significant(term.ci95.high, 4))
+          : "";
   std::string status(name_of(term.status));
   std::replace(status.begin(), status.end(), '_', ' ');
-  return {fmt::format("{} {}", kTermNames[i].key, kTermNames[i].letter), value, interval, term_unit(kTermNames[i].key, printable(unit)), status,
-          term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "", term.seconds_for_10_percent ? length_for_people(*term.seconds_for_10_percent) : "",
+  return {fmt::format("{} {}", kTermNames[i].key, kTermNames[i].letter),
+          value,
+          interval,
+          term_unit(kTermNames[i].key, printable(unit)),
+          status,
+          term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "",
+          term.seconds_for_10_percent ? length_for_people(*term.seconds_for_10_percent) : "",
           habits(term, i, unit)};
 }
 
 }  // namespace
 
 std::string fit_for_people(const Channel& channel, const NoiseFit& fit) {
-  std::string text = fmt::format("{}{}\n", printable(channel.name), channel.unit.empty() ? "" : fmt::format(" [{}]", printable(channel.unit)));
-  std::vector<std::vector<std::string>> rows = {{"term", "value", "95 % interval", "unit", "status", "at best", "10 % needs", "in other words"}};
+  std::string text =
+      fmt::format("{}{}\n",
+                  printable(channel.name),
+                  channel.unit.empty() ? "" : fmt::format(" [{}]", printable(channel.unit)));
+  std::vector<std::vector<std::string>> rows = {{"term",
+                                                 "value",
+                                                 "95 % interval",
+                                                 "unit",
+                                                 "status",
+                                                 "at best",
+                                                 "10 % needs",
+                                                 "in other words"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (fit.term[i].status != Status::not_fitted) rows.push_back(row_of(fit.term[i], i, channel.unit));
+    if (fit.term[i].status != Status::not_fitted)
+      rows.push_back(row_of(fit.term[i], i, channel.unit));
   }
   text += table(rows, "  ", true);
-  if (fit.bandwidth_hz) text += fmt::format("  low-pass corner {} Hz ({} … {})\n", significant(*fit.bandwidth_hz, 4), significant(fit.bandwidth_ci95->low, 4), significant(fit.bandwidth_ci95->high, 4));
+  if (fit.bandwidth_hz)
+    text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
+                        significant(*fit.bandwidth_hz, 4),
+                        significant(fit.bandwidth_ci95->low, 4),
+                        significant(fit.bandwidth_ci95->high, 4));
   // A curve without uncertainties is scaled to its own scatter: its chi-square says nothing.
   const bool judged = fit.goodness.p < 1 || fit.goodness.chi2 != fit.goodness.dof;
   text += "  " + fit.method;
   if (judged)
-    text += fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}", significant(fit.goodness.chi2, 4), significant(fit.goodness.dof, 4), significant(fit.goodness.p, 2));
+    text += fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}",
+                        significant(fit.goodness.chi2, 4),
+                        significant(fit.goodness.dof, 4),
+                        significant(fit.goodness.p, 2));
   text += "\n";
-  if (fit.second_opinion) text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n", fit.second_opinion->sentence);
-  for (const Remedy& remedy : fit.remedies) text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
+  if (fit.second_opinion)
+    text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n",
+                        fit.second_opinion->sentence);
+  for (const Remedy& remedy : fit.remedies)
+    text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
   for (const std::string& sentence : fit.sentences) text += fmt::format("  {}\n", sentence);
   return text;
 }

@@ -37,7 +37,9 @@ std::vector<std::string> channel_row(const libchar::Channel& channel,
           channel.unit.empty() ? "-" : libchar::printable(channel.unit, 20),
           std::to_string(q.missing),
           beside_noise(q.mean, noise),
-          constant ? "constant" : q.samples < 2 ? "-" : libchar::significant(noise, 4),
+          constant        ? "constant"
+          : q.samples < 2 ? "-"
+                          : libchar::significant(noise, 4),
           beside_noise(q.minimum, noise),
           beside_noise(q.maximum, noise),
           q.resolution ? libchar::significant(*q.resolution, 4) : "-",

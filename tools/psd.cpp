@@ -10,11 +10,11 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/spectrum/spectrum.hpp"
-#include "numbers.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/model_curve.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+#include "numbers.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"
 
@@ -86,7 +86,12 @@ std::uint64_t segment_of(const std::string& text, double rate_hz) {
 
 void check_rate(const LogInfo& info) {
   if (info.time.rate_hz > 0) return;
-  throw Error({ErrorKind::numeric, "", info.file, "the sampling rate is not known", "", "a log without time stamps needs --rate"});
+  throw Error({ErrorKind::numeric,
+               "",
+               info.file,
+               "the sampling rate is not known",
+               "",
+               "a log without time stamps needs --rate"});
 }
 
 // A channel that gives no spectrum is named and left out; the others are still of use.

@@ -110,12 +110,18 @@ void add_accepting_flag(CLI::App& verb,
 }  // namespace
 
 void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options) {
-  verb.add_option("--names", options.names, "names for the channels that are read, in order, where the log has none (default: c0, c1…)")
+  verb.add_option("--names",
+                  options.names,
+                  "names for the channels that are read, in order, where the log has none "
+                  "(default: c0, c1…)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,…")
       ->group("Reading");
-  verb.add_option("--units", options.units, "units of the channels that are read, in order, or one for all (default: as in the log)")
+  verb.add_option(
+          "--units",
+          options.units,
+          "units of the channels that are read, in order, or one for all (default: as in the log)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("UNIT,…")
@@ -176,7 +182,8 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };
   const auto list = [&](const char* flag, const std::vector<std::string>& items) {
-    if (!items.empty()) flags += fmt::format(" {} {}", flag, shell_word(fmt::format("{}", fmt::join(items, ","))));
+    if (!items.empty())
+      flags += fmt::format(" {} {}", flag, shell_word(fmt::format("{}", fmt::join(items, ","))));
   };
   list("-c", options.channels);
   list("--names", options.names);

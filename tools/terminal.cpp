@@ -124,7 +124,9 @@ void Terminal::note(std::string_view line) {
   say(line);
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows, std::string_view indent, bool words_last) {
+std::string table(const std::vector<std::vector<std::string>>& rows,
+                  std::string_view indent,
+                  bool words_last) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);

@@ -67,8 +67,10 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
                     " of the listed averaging times left out: longer than the record allows (" +
                     significant(largest * dt_s, 4) + " s)");
   if (moved > 0)
-    notes.push_back(std::to_string(moved) + " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
-                    significant(dt_s, 4) + " s)");
+    notes.push_back(
+        std::to_string(moved) +
+        " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
+        significant(dt_s, 4) + " s)");
   return factors;
 }
 

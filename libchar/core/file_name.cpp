@@ -8,13 +8,15 @@ namespace {
 constexpr std::size_t kLongest = 100;  // bytes; file systems take 255, and suffixes follow
 
 bool plain_ascii(std::uint32_t c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+         c == '_' || c == '-';
 }
 
 // What beyond ASCII is no letter, digit or sign with a shape of its own: controls, blanks, invisible and private characters.
 bool unusual(std::uint32_t c) {
-  return c <= 0xA0 || c == 0xAD || c == 0x061C || c == 0x1680 || c == 0x180E || (c >= 0x2000 && c <= 0x206F) || c == 0x3000 ||
-         (c >= 0xE000 && c <= 0xF8FF) || c == 0xFEFF || (c >= 0xFFF0 && c <= 0xFFFF) || c >= 0xE0000;
+  return c <= 0xA0 || c == 0xAD || c == 0x061C || c == 0x1680 || c == 0x180E ||
+         (c >= 0x2000 && c <= 0x206F) || c == 0x3000 || (c >= 0xE000 && c <= 0xF8FF) ||
+         c == 0xFEFF || (c >= 0xFFF0 && c <= 0xFFFF) || c >= 0xE0000;
 }
 
 void append_utf8(std::string& text, std::uint32_t c) {
@@ -28,7 +30,9 @@ void append_utf8(std::string& text, std::uint32_t c) {
 
 // Small letters for capitals of the scripts that have them in pairs: Latin, Greek, Cyrillic.
 std::uint32_t small(std::uint32_t c) {
-  if ((c >= 'A' && c <= 'Z') || (c >= 0xC0 && c <= 0xDE && c != 0xD7) || (c >= 0x391 && c <= 0x3A9) || (c >= 0x410 && c <= 0x42F)) return c + 0x20;
+  if ((c >= 'A' && c <= 'Z') || (c >= 0xC0 && c <= 0xDE && c != 0xD7) ||
+      (c >= 0x391 && c <= 0x3A9) || (c >= 0x410 && c <= 0x42F))
+    return c + 0x20;
   if (c >= 0x400 && c <= 0x40F) return c + 0x50;
   const bool even_capitals = (c >= 0x100 && c <= 0x137) || (c >= 0x14A && c <= 0x177);
   const bool odd_capitals = (c >= 0x139 && c <= 0x148) || (c >= 0x179 && c <= 0x17E);

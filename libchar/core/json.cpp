@@ -250,8 +250,12 @@ Json parse_json(std::string_view text, const std::string& file) {
   return guard.take();
 }
 
-Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json json_number(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
+Json json_number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json json_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : Json(nullptr);
+}
 
 Json with_valid_text(Json document) {
   if (!all_utf8(document)) escape_strings(document);

@@ -18,10 +18,10 @@ class Moments {
   double mean() const;            ///< 0 when there is no sample
   double variance() const;        ///< divided by n - 1; 0 when n < 2
   double standard_deviation() const;
-  double skewness() const;         ///< 0 for constant data
-  double kurtosis() const;         ///< 3 for a Gaussian; 0 for constant data
-  double minimum() const;          ///< +inf when there is no sample
-  double maximum() const;          ///< -inf when there is no sample
+  double skewness() const;  ///< 0 for constant data
+  double kurtosis() const;  ///< 3 for a Gaussian; 0 for constant data
+  double minimum() const;   ///< +inf when there is no sample
+  double maximum() const;   ///< -inf when there is no sample
 
  private:
   static constexpr int kBlock = 4096;

@@ -25,9 +25,15 @@ struct Row {
 const std::array kUnits = {
     Row{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
     Row{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
-    Row{"deg/s", Quantity::angular_rate, kDegree, "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
+    Row{"deg/s",
+        Quantity::angular_rate,
+        kDegree,
+        "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
     Row{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
-    Row{"deg/h", Quantity::angular_rate, kDegree / 3600, "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
+    Row{"deg/h",
+        Quantity::angular_rate,
+        kDegree / 3600,
+        "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
     Row{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
     Row{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
     Row{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
@@ -97,7 +103,8 @@ std::string normal(std::string_view text) {
 // "MT" is no millitesla and "mHz" no megahertz: a factor of 1e9 is not guessed.
 bool mistakes_prefix(std::string_view text, std::string_view symbol) {
   const bool word = symbol == "min" || symbol.starts_with("m/") || text.starts_with("Milli");
-  return !word && ((text.front() == 'M' && symbol.front() == 'm') || (text.front() == 'm' && symbol.front() == 'M'));
+  return !word && ((text.front() == 'M' && symbol.front() == 'm') ||
+                   (text.front() == 'm' && symbol.front() == 'M'));
 }
 
 bool listed(std::string_view spellings, std::string_view wanted) {
@@ -117,7 +124,8 @@ std::optional<Unit> with_factor(std::string_view text) {
   const std::string_view front = text.substr(0, blank);
   const std::size_t slash = front.find('/');
   const auto numerator = parse_double(front.substr(0, slash));
-  const auto denominator = slash == std::string_view::npos ? std::optional(1.0) : parse_double(front.substr(slash + 1));
+  const auto denominator =
+      slash == std::string_view::npos ? std::optional(1.0) : parse_double(front.substr(slash + 1));
   if (!numerator || !denominator || *denominator == 0 || *numerator == 0) return std::nullopt;
   auto unit = find_unit(text.substr(blank + 1));
   if (!unit) return std::nullopt;
@@ -135,7 +143,9 @@ std::optional<Unit> find_unit(std::string_view text) {
   // capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
   for (const Row& row : kUnits)
-    if (listed(row.spellings, wanted) && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol)) return Unit{row.symbol, row.quantity, row.to_si};
+    if (listed(row.spellings, wanted) &&
+        !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
+      return Unit{row.symbol, row.quantity, row.to_si};
   return with_factor(text);
 }
 
@@ -151,9 +161,13 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
               {deg * root2, "deg/s/√Hz", "noise density, one-sided"},
               {si, "rad/s/√Hz", "noise density, two-sided (Kalibr and kin)"}};
     if (term == "bias_instability")
-      return {{deg * hour, "deg/h", "bias instability B"}, {deg * hour * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), "deg/h", "flicker floor 0.664·B"}};
+      return {{deg * hour, "deg/h", "bias instability B"},
+              {deg * hour * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
+               "deg/h",
+               "flicker floor 0.664·B"}};
     if (term == "random_walk")
-      return {{deg * hour * root_hour, "deg/h/√h", "rate random walk"}, {si, "rad/s²/√Hz", "bias random walk (Kalibr and kin)"}};
+      return {{deg * hour * root_hour, "deg/h/√h", "rate random walk"},
+              {si, "rad/s²/√Hz", "bias random walk (Kalibr and kin)"}};
     if (term == "quantization") return {{deg * hour, "arcsec", "quantization (angle)"}};
     if (term == "rate_ramp") return {{deg * hour * hour, "deg/h/h", "rate ramp"}};
   }
@@ -164,20 +178,29 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
               {g * 1e6 * root2, "µg/√Hz", "noise density, one-sided"},
               {si, "m/s²/√Hz", "noise density, two-sided (Kalibr and kin)"}};
     if (term == "bias_instability")
-      return {{g * 1e6, "µg", "bias instability B"}, {g * 1e6 * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), "µg", "flicker floor 0.664·B"}};
-    if (term == "random_walk") return {{g * 1e6 * root_hour, "µg/√h", "acceleration random walk"}, {si, "m/s³/√Hz", "bias random walk (Kalibr and kin)"}};
+      return {{g * 1e6, "µg", "bias instability B"},
+              {g * 1e6 * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
+               "µg",
+               "flicker floor 0.664·B"}};
+    if (term == "random_walk")
+      return {{g * 1e6 * root_hour, "µg/√h", "acceleration random walk"},
+              {si, "m/s³/√Hz", "bias random walk (Kalibr and kin)"}};
     if (term == "quantization") return {{si, "m/s", "quantization (velocity)"}};
     if (term == "rate_ramp") return {{g * 1e6 * hour, "µg/h", "acceleration ramp"}};
   }
   if (term == "white_noise") return {{root2, unit->symbol + "/√Hz", "noise density, one-sided"}};
-  if (term == "bias_instability") return {{std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), unit->symbol, "flicker floor 0.664·B"}};
+  if (term == "bias_instability")
+    return {{std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
+             unit->symbol,
+             "flicker floor 0.664·B"}};
   return {};
 }
 
 std::string term_unit(std::string_view term, std::string_view unit) {
   std::string u(unit.empty() ? "U" : unit);
   // "1/16.4 deg/s·√s" would read as something else.
-  if (u.find(' ') != std::string::npos && u.front() != '(' && term != "bias_instability") u = "(" + u + ")";
+  if (u.find(' ') != std::string::npos && u.front() != '(' && term != "bias_instability")
+    u = "(" + u + ")";
   if (term == "white_noise") return u + "·√s";
   if (term == "random_walk") return u + "/√s";
   if (term == "quantization") return u + "·s";

@@ -8,12 +8,25 @@
 
 namespace libchar {
 
-enum class Quantity { angular_rate, acceleration, magnetic_field, pressure, temperature, voltage, angle, time, frequency, concentration, ratio };
+enum class Quantity {
+  angular_rate,
+  acceleration,
+  magnetic_field,
+  pressure,
+  temperature,
+  voltage,
+  angle,
+  time,
+  frequency,
+  concentration,
+  ratio
+};
 
 struct Unit {
   std::string symbol;  ///< canonical spelling, e.g. "deg/s"
   Quantity quantity = Quantity::ratio;
-  double to_si = 1;  ///< multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
+  double to_si =
+      1;  ///< multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
 };
 
 /// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as people write

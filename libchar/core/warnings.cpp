@@ -7,13 +7,17 @@
 namespace libchar {
 
 Warning& Warnings::entry(std::string_view code, std::string_view message) {
-  const auto found = std::find_if(list_.begin(), list_.end(), [&](const Warning& w) { return w.code == code; });
+  const auto found =
+      std::find_if(list_.begin(), list_.end(), [&](const Warning& w) { return w.code == code; });
   if (found != list_.end()) return *found;
   list_.push_back({std::string(code), std::string(message), 0, {}});
   return list_.back();
 }
 
-void Warnings::add(std::string_view code, std::string_view message, std::string_view place, std::uint64_t count) {
+void Warnings::add(std::string_view code,
+                   std::string_view message,
+                   std::string_view place,
+                   std::uint64_t count) {
   Warning& w = entry(code, message);
   w.count += count;
   if (!place.empty() && w.places.size() < 3) w.places.emplace_back(place);
@@ -29,7 +33,8 @@ void Warnings::merge(const Warnings& other) {
 }
 
 const Warning* Warnings::find(std::string_view code) const {
-  const auto found = std::find_if(list_.begin(), list_.end(), [&](const Warning& w) { return w.code == code; });
+  const auto found =
+      std::find_if(list_.begin(), list_.end(), [&](const Warning& w) { return w.code == code; });
   return found == list_.end() ? nullptr : &*found;
 }
 
@@ -39,7 +44,8 @@ std::string one_line(const Warning& warning, std::string_view file) {
   line += printable(warning.message);
   if (!warning.places.empty()) {
     line += warning.count > warning.places.size() ? " (first: " : " (";
-    for (std::size_t i = 0; i < warning.places.size(); ++i) line += (i ? ", " : "") + printable(warning.places[i]);
+    for (std::size_t i = 0; i < warning.places.size(); ++i)
+      line += (i ? ", " : "") + printable(warning.places[i]);
     line += ")";
   }
   return line;

@@ -19,7 +19,10 @@ struct Warning {
 class Warnings {
  public:
   /// Counts `count` more cases of the kind `code`. The message of the first call for a code is kept.
-  void add(std::string_view code, std::string_view message, std::string_view place = {}, std::uint64_t count = 1);
+  void add(std::string_view code,
+           std::string_view message,
+           std::string_view place = {},
+           std::uint64_t count = 1);
   void merge(const Warnings& other);
   const std::vector<Warning>& list() const { return list_; }
   bool empty() const { return list_.empty(); }

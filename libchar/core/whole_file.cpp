@@ -36,11 +36,18 @@ bool is_special(const std::string& path) {
 }  // namespace
 
 void WholeFile::fail(std::string_view doing) const {
-  throw Error({ErrorKind::output, "E0501", path_, fmt::format("cannot {}: {}", doing, std::strerror(errno)), "", ""});
+  throw Error({ErrorKind::output,
+               "E0501",
+               path_,
+               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
+               "",
+               ""});
 }
 
-WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
-  if (path_.empty()) throw Error({ErrorKind::output, "E0502", "", "an output file needs a name", "", ""});
+WholeFile::WholeFile(std::string path, bool overwrite)
+    : path_(std::move(path)), overwrite_(overwrite) {
+  if (path_.empty())
+    throw Error({ErrorKind::output, "E0502", "", "an output file needs a name", "", ""});
   if (is_special(path_)) {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail("open for writing");
@@ -48,9 +55,19 @@ WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)),
   }
   struct stat status {};
   if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
-    throw Error({ErrorKind::output, "E0502", path_, "is a folder, a file was expected", "", "name a file inside it"});
+    throw Error({ErrorKind::output,
+                 "E0502",
+                 path_,
+                 "is a folder, a file was expected",
+                 "",
+                 "name a file inside it"});
   if (!overwrite_ && exists(path_))
-    throw Error({ErrorKind::output, "E0503", path_, "exists already and is left as it is", "", "choose another name or pass --force"});
+    throw Error({ErrorKind::output,
+                 "E0503",
+                 path_,
+                 "exists already and is left as it is",
+                 "",
+                 "choose another name or pass --force"});
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
@@ -94,7 +111,8 @@ void WholeFile::flush() {
 void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
   flush();
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t n = ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    const ssize_t n = ::pwrite(
+        descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail("write");
     done += static_cast<std::size_t>(n);
@@ -147,7 +165,9 @@ void WholeFile::commit() {
 void commit_with_description(WholeFile& data, WholeFile& description) {
   data.prepare();
   description.prepare();
-  if (!is_special(description.path())) ::unlink(description.path().c_str());  // prepare() has refused it where it must not be overwritten
+  if (!is_special(description.path()))
+    ::unlink(
+        description.path().c_str());  // prepare() has refused it where it must not be overwritten
   data.commit();
   try {
     description.commit();
@@ -164,10 +184,16 @@ void write_whole_file(const std::string& path, std::string_view bytes, bool over
 }
 
 void refuse_same_file(const std::string& input, const std::string& output) {
-  struct stat a {}, b {};
+  struct stat a {
+  }, b{};
   if (::stat(input.c_str(), &a) != 0 || ::stat(output.c_str(), &b) != 0) return;
   if (a.st_dev == b.st_dev && a.st_ino == b.st_ino && S_ISREG(a.st_mode))
-    throw Error({ErrorKind::output, "E0504", output, "is the input itself; an input is never overwritten", "", "choose another name"});
+    throw Error({ErrorKind::output,
+                 "E0504",
+                 output,
+                 "is the input itself; an input is never overwritten",
+                 "",
+                 "choose another name"});
 }
 
 }  // namespace libchar

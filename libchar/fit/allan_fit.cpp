@@ -108,7 +108,9 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
         *term.value);
   }
   if (second.agrees && second.goodness.p < 0.01) {
-    second.sentence = fmt::format("agrees on the coefficients, but does not describe the Allan curve itself (p = {:.2g})", second.goodness.p);
+    second.sentence = fmt::format(
+        "agrees on the coefficients, but does not describe the Allan curve itself (p = {:.2g})",
+        second.goodness.p);
   } else if (second.agrees) {
     second.sentence = "agrees";
   }

@@ -18,7 +18,8 @@ namespace libchar {
 namespace {
 
 constexpr double kConfidence = 0.997;
-constexpr double kRelevant = 1.2;  // ratio of deviations below which a difference is not worth a word
+constexpr double kRelevant =
+    1.2;  // ratio of deviations below which a difference is not worth a word
 constexpr double kFewestDof = 2;
 
 struct Clash {
@@ -70,19 +71,32 @@ void doubt(NoiseFit& fit, std::size_t term, const std::string& sentence) {
 void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
   if (allan.type != DeviationType::oadev && allan.type != DeviationType::adev) return;
   if (const auto clash = worst_clash(fit, allan))
-    doubt(fit, clash->term,
-          fmt::format("At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
+    doubt(fit,
+          clash->term,
+          fmt::format("At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
+                      "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
                       "{} is not borne out there and is marked undetermined.",
-                      clash->tau_s, clash->model, clash->measured.low, clash->measured.high, people_name(static_cast<Term>(clash->term))));
+                      clash->tau_s,
+                      clash->model,
+                      clash->measured.low,
+                      clash->measured.high,
+                      people_name(static_cast<Term>(clash->term))));
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& first = fit.term[t];
     const std::optional<double>& second = fit.second_opinion->value[t];
     if (first.status != Status::detected || !second) continue;
-    const double apart = std::abs(*second - *first.value) / std::hypot(fit.second_opinion->sd[t], first.relative_sd * *first.value);
+    const double apart = std::abs(*second - *first.value) /
+                         std::hypot(fit.second_opinion->sd[t], first.relative_sd * *first.value);
     const double ratio = std::max(*second, *first.value) / std::min(*second, *first.value);
     if (apart > 3 && ratio > kRelevant)
-      doubt(fit, t, fmt::format("{} is marked undetermined: the fit does not describe the record, and the Allan curve gives {:.3g} instead of {:.3g}.", people_name(static_cast<Term>(t)), *second, *first.value));
+      doubt(fit,
+            t,
+            fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
+                        "Allan curve gives {:.3g} instead of {:.3g}.",
+                        people_name(static_cast<Term>(t)),
+                        *second,
+                        *first.value));
   }
 }
 

@@ -67,7 +67,8 @@ std::string unit_under_density(std::string unit) {
 }
 
 struct Columns {
-  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute;
+  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative,
+      absolute;
   bool percent = false;  // the relative error is written in percent
 };
 
@@ -88,9 +89,27 @@ Columns columns_of(const Row& header, bool is_allan) {
   c.dof = find(header, {"edf", "dof"});
   c.low = find(header, {"low68"});
   c.high = find(header, {"high68"});
-  c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd", "relative_uncertainty", "rel_unc"});
+  c.relative = find(header,
+                    {"rel_err",
+                     "relative_error",
+                     "rel_error",
+                     "relative error",
+                     "relative_sd",
+                     "rel_sd",
+                     "relative_uncertainty",
+                     "rel_unc"});
   c.percent = c.relative && header[*c.relative].find('%') != std::string::npos;
-  c.absolute = find(header, {"error", "err", "sd", "std", "stderr", "standard_error", "standard error", "uncertainty", "deviation_sd", "dev_err"});
+  c.absolute = find(header,
+                    {"error",
+                     "err",
+                     "sd",
+                     "std",
+                     "stderr",
+                     "standard_error",
+                     "standard error",
+                     "uncertainty",
+                     "deviation_sd",
+                     "dev_err"});
   return c;
 }
 
@@ -101,23 +120,38 @@ std::string whole_text(const std::string& path) {
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > kMaxBytes)
-    throw Error({ErrorKind::input, "E0801", path, fmt::format("a table of curves of more than {} bytes", kMaxBytes), "", "is this a log? then leave --curve out"});
+    throw Error({ErrorKind::input,
+                 "E0801",
+                 path,
+                 fmt::format("a table of curves of more than {} bytes", kMaxBytes),
+                 "",
+                 "is this a log? then leave --curve out"});
   return text;
 }
 
 // One row into its curve; the place is of the cell that does not fit.
 class Reader {
  public:
-  Reader(std::string file, const Columns& columns, std::size_t width, bool is_allan) : file_(std::move(file)), columns_(columns), width_(width), is_allan_(is_allan) {}
+  Reader(std::string file, const Columns& columns, std::size_t width, bool is_allan)
+      : file_(std::move(file)), columns_(columns), width_(width), is_allan_(is_allan) {}
 
   void take(const Row& row, std::size_t line) {
     line_ = line;
     if (row.size() != width_)
-      throw Error({ErrorKind::input, "E0304", fmt::format("{}:{}:1", file_, line), fmt::format("{} fields, {} expected", row.size(), width_), "", ""});
-    if (columns_.kind && is_allan_ != (row[*columns_.kind].find("dev") != std::string::npos || row[*columns_.kind] == "allan")) return;
-    NamedCurve& target = curve_of(columns_.channel ? row[*columns_.channel] : "curve", columns_.unit ? unit_under_density(row[*columns_.unit]) : "");
+      throw Error({ErrorKind::input,
+                   "E0304",
+                   fmt::format("{}:{}:1", file_, line),
+                   fmt::format("{} fields, {} expected", row.size(), width_),
+                   "",
+                   ""});
+    if (columns_.kind && is_allan_ != (row[*columns_.kind].find("dev") != std::string::npos ||
+                                       row[*columns_.kind] == "allan"))
+      return;
+    NamedCurve& target = curve_of(columns_.channel ? row[*columns_.channel] : "curve",
+                                  columns_.unit ? unit_under_density(row[*columns_.unit]) : "");
     const bool by_root = columns_.root.has_value();
-    const double x = number(row, *columns_.x), y = number(row, by_root ? *columns_.root : *columns_.power);
+    const double x = number(row, *columns_.x),
+                 y = number(row, by_root ? *columns_.root : *columns_.power);
     if (x <= 0) return;  // the spectrum at zero frequency says nothing about noise
     target.curve.root = by_root;
     target.curve.x.push_back(x);
@@ -136,23 +170,32 @@ class Reader {
     if (const auto value = parse_double(row[c])) return *value;
     std::size_t column = 1;
     for (std::size_t i = 0; i < c; ++i) column += row[i].size() + 1;
-    throw Error({ErrorKind::input, "E0311", fmt::format("{}:{}:{}", file_, line_, column), "a number was expected", row[c], ""});
+    throw Error({ErrorKind::input,
+                 "E0311",
+                 fmt::format("{}:{}:{}", file_, line_, column),
+                 "a number was expected",
+                 row[c],
+                 ""});
   }
 
   // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
   std::optional<double> relative_sd(const Row& row, double y) const {
-    const auto cell = [&](const std::optional<std::size_t>& column) { return column ? parse_double(row[*column]) : std::nullopt; };
+    const auto cell = [&](const std::optional<std::size_t>& column) {
+      return column ? parse_double(row[*column]) : std::nullopt;
+    };
     if (const auto dof = cell(columns_.dof); dof && *dof > 0) return 1 / std::sqrt(2 * *dof);
     const double of_root = columns_.root ? 1 : 0.5;
     const auto low = cell(columns_.low), high = cell(columns_.high);
     if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
-    if (const auto sd = cell(columns_.relative); sd && *sd > 0) return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0)
+      return of_root * *sd * (columns_.percent ? 0.01 : 1);
     if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
     return std::nullopt;
   }
 
   NamedCurve& curve_of(const std::string& name, const std::string& unit) {
-    const auto found = std::find_if(curves_.begin(), curves_.end(), [&](const NamedCurve& c) { return c.name == name; });
+    const auto found = std::find_if(
+        curves_.begin(), curves_.end(), [&](const NamedCurve& c) { return c.name == name; });
     if (found != curves_.end()) return *found;
     curves_.push_back({name, unit, {}});
     curves_.back().curve.is_allan = is_allan_;
@@ -193,7 +236,12 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
   if (!reader) return std::nullopt;
   auto curves = reader->finish();
   if (curves.empty())
-    throw Error({ErrorKind::input, "E0802", path, is_allan ? "the table holds no Allan curve" : "the table holds no spectrum", "", is_allan ? "--curve psd?" : "--curve allan?"});
+    throw Error({ErrorKind::input,
+                 "E0802",
+                 path,
+                 is_allan ? "the table holds no Allan curve" : "the table holds no spectrum",
+                 "",
+                 is_allan ? "--curve psd?" : "--curve allan?"});
   Sha256 hash;
   hash.update(text);
   return CurveTable{std::move(curves), text.size(), hash.finish()};

@@ -25,8 +25,9 @@ Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) 
 }
 
 Json goodness_json(const Goodness& goodness) {
-  return {
-      {"chi2", json_number(goodness.chi2)}, {"dof", json_number(goodness.dof)}, {"p", json_number(goodness.p)}};
+  return {{"chi2", json_number(goodness.chi2)},
+          {"dof", json_number(goodness.dof)},
+          {"p", json_number(goodness.p)}};
 }
 
 Json second_json(const SecondOpinion& second) {
@@ -45,7 +46,8 @@ Json second_json(const SecondOpinion& second) {
 // Column by column: five arrays take a third of the bytes of as many objects.
 Json residuals_json(const std::vector<FitResidual>& residuals) {
   Json json;
-  for (const char* key : {"frequency_hz", "measured", "model", "dof", "z"}) json[key] = Json::array();
+  for (const char* key : {"frequency_hz", "measured", "model", "dof", "z"})
+    json[key] = Json::array();
   for (const FitResidual& r : residuals) {
     json["frequency_hz"].push_back(json_number(r.frequency_hz));
     json["measured"].push_back(json_number(r.measured));
@@ -97,7 +99,10 @@ Json no_fit_json(const std::string& name, const std::string& unit) {
 }
 
 Json noise_fit_document(Json channels) {
-  return {{"format", "noise-fit"}, {"version", 1}, {"density_sides", "two"}, {"channels", std::move(channels)}};
+  return {{"format", "noise-fit"},
+          {"version", 1},
+          {"density_sides", "two"},
+          {"channels", std::move(channels)}};
 }
 
 }  // namespace libchar

@@ -139,7 +139,10 @@ void answer_humps(Attempt& now) {
   now = attempt(std::move(kept), now.fit.rate_hz, now.fit.samples, now.options);
   now.fit.remedies.push_back(
       {"lines",
-       fmt::format("{} bin{} a quarter and six standard deviations above {} neighbours", count, count == 1 ? "" : "s", count == 1 ? "its" : "their"),
+       fmt::format("{} bin{} a quarter and six standard deviations above {} neighbours",
+                   count,
+                   count == 1 ? "" : "s",
+                   count == 1 ? "its" : "their"),
        fmt::format("{} bin{} of broad humps left out", count, count == 1 ? "" : "s"),
        count});
 }
@@ -346,8 +349,7 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   binner.push(data);
-  NoiseFit fit =
-      fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options);
+  NoiseFit fit = fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options);
   fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
   return fit;
 }

@@ -41,7 +41,12 @@ std::optional<std::size_t> find_column(const std::vector<std::string>& names,
                                  const std::string& what,
                                  const std::string& file,
                                  const ReadOptions& options) {
-  throw Error({ErrorKind::usage, "E0320", file, "has no " + what, wanted, channel_hint(wanted, names, options)});
+  throw Error({ErrorKind::usage,
+               "E0320",
+               file,
+               "has no " + what,
+               wanted,
+               channel_hint(wanted, names, options)});
 }
 
 }  // namespace
@@ -50,9 +55,10 @@ std::string channel_hint(const std::string& wanted,
                          const std::vector<std::string>& names,
                          const ReadOptions& options) {
   const std::size_t shown = std::min<std::size_t>(names.size(), 12);
-  const std::string all = fmt::format("{}{}",
-                                      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-                                      shown < names.size() ? ", …" : "");
+  const std::string all = fmt::format(
+      "{}{}",
+      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      shown < names.size() ? ", …" : "");
   if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
     return "-c chooses by the names in the log, " + all + ", and --names then name what was chosen";
   const auto near = nearest(wanted, names);
@@ -66,7 +72,7 @@ bool is_time_name(std::string_view name) {
   };
   const auto [stem, unit] = split_unit(name);
   return known(ascii_lower(name)) || (known(stem) && (unit.empty() || nanoseconds_in(unit) != 0 ||
-                                                unit == "sec" || unit == "stamp"));
+                                                      unit == "sec" || unit == "stamp"));
 }
 
 std::string time_unit_of_name(std::string_view name) {

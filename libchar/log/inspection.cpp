@@ -51,7 +51,8 @@ Json channel_json(const Channel& channel, const ChannelQuality& q) {
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
+  out["difference_kurtosis"] =
+      q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
   out["suggestions"] = q.suggestions;
   return out;

@@ -16,14 +16,17 @@ struct ChannelQuality {
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;
   double mean = 0, standard_deviation = 0, minimum = 0, maximum = 0;
-  std::optional<double> resolution;      ///< least step between distinct values (LSB), when the values lie on a grid
-  std::uint64_t distinct_values = 0;     ///< counted up to 4096, then 4096
-  std::uint64_t saturated = 0;           ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
-  std::uint64_t longest_stuck = 0;       ///< longest run of one value
-  double difference_kurtosis = 3;        ///< kurtosis of first differences: 3 Gaussian, above = spikes
-  bool float32 = false;                  ///< every value is exactly representable in 32 bits
-  double float32_step = 0;               ///< spacing of 32-bit floats at the largest magnitude
-  std::vector<std::string> suggestions;  ///< in sentences ("2 distinct values: quantization-limited, record with more gain")
+  std::optional<double>
+      resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
+  std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
+  std::uint64_t saturated =
+      0;  ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
+  std::uint64_t longest_stuck = 0;  ///< longest run of one value
+  double difference_kurtosis = 3;   ///< kurtosis of first differences: 3 Gaussian, above = spikes
+  bool float32 = false;             ///< every value is exactly representable in 32 bits
+  double float32_step = 0;          ///< spacing of 32-bit floats at the largest magnitude
+  std::vector<std::string>
+      suggestions;  ///< in sentences ("2 distinct values: quantization-limited, record with more gain")
 };
 
 /// Streaming, constant memory; the result does not depend on block boundaries.

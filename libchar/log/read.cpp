@@ -98,16 +98,24 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
 void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   const auto refuse = [&](const char* flag, std::size_t given) {
     std::string read;
-    for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c) read += (c == 0 ? "" : ", ") + channels[c].name;
+    for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c)
+      read += (c == 0 ? "" : ", ") + channels[c].name;
     throw Error({ErrorKind::usage,
                  "",
                  flag,
-                 fmt::format("{} given, and {} channel{} read: {}{}", given, channels.size(), channels.size() == 1 ? " is" : "s are", read, channels.size() > 12 ? ", …" : ""),
+                 fmt::format("{} given, and {} channel{} read: {}{}",
+                             given,
+                             channels.size(),
+                             channels.size() == 1 ? " is" : "s are",
+                             read,
+                             channels.size() > 12 ? ", …" : ""),
                  "",
                  "one for each channel that is read, in that order"});
   };
-  if (!options.names.empty() && options.names.size() != channels.size()) refuse("--names", options.names.size());
-  if (options.units.size() > 1 && options.units.size() != channels.size()) refuse("--units", options.units.size());
+  if (!options.names.empty() && options.names.size() != channels.size())
+    refuse("--names", options.names.size());
+  if (options.units.size() > 1 && options.units.size() != channels.size())
+    refuse("--units", options.units.size());
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (!options.names.empty()) channels[c].name = options.names[c];
     if (!options.units.empty()) channels[c].unit = options.units[options.units.size() == 1 ? 0 : c];
@@ -170,7 +178,12 @@ LogInfo read_log(const std::string& path,
   info.samples = known.samples;
   if (known.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
   if (known.samples == 0 && (options.from_s || options.to_s))
-    throw Error({ErrorKind::usage, "E0319", info.file, "the window of --from and --to holds no sample", "", "inspect says how long the log is"});
+    throw Error({ErrorKind::usage,
+                 "E0319",
+                 info.file,
+                 "the window of --from and --to holds no sample",
+                 "",
+                 "inspect says how long the log is"});
   TimeBase time = info.time;
   if (known.time.from_stamps || known.time.rate_hz > 0) {
     time = known.time;
@@ -224,7 +237,8 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
 bool read_once(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
-  return path == "-" || std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
+  return path == "-" || std::filesystem::is_fifo(status) ||
+         std::filesystem::is_character_file(status);
 }
 
 int threads_beside_reading(const LogInfo& log, int threads) {

@@ -13,32 +13,42 @@
 namespace libchar {
 
 struct ReadOptions {
-  std::vector<std::string> channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
-  std::vector<std::string> names;  ///< new names of the channels read, in order; empty = as in the log
-  std::vector<std::string> units;  ///< units of the channels read, in order, or one for all; empty = as in the log
-  std::optional<double> from_s;       ///< first instant to use, seconds after the first stamp
-  std::optional<double> to_s;         ///< first instant not to use
-  std::optional<double> rate_hz;      ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
-  std::string time_column = "auto";   ///< "auto", "none", a name, or c0-style position among all columns
-  std::string time_unit = "auto";     ///< "auto", "s", "ms", "us", "ns"
-  std::string format = "auto";        ///< "auto", "csv", "npy", "raw"
-  std::string delimiter = "auto";     ///< "auto", ",", ";", "tab", "space", or one character
-  std::string decimal = "auto";       ///< "auto", "point", "comma"
-  std::string header = "auto";        ///< "auto", "yes", "no"
-  std::string encoding = "utf-8";     ///< "utf-8", "latin1" (CSV header only)
-  std::uint64_t skip_rows = 0;        ///< lines to skip before the header (CSV)
-  bool overflow_as_missing = false;   ///< a number out of double's range counts as missing instead of ending the reading
-  bool skip_repeated_header = false;  ///< header lines inside the data (concatenated logs) are counted and skipped
-  std::size_t block_bytes = std::size_t{1} << 21U;  ///< bytes of file per block; results never depend on it (tests use 1…70000)
-  int threads = 0;                    ///< 0 = all cores; results never depend on it
-  bool hash = true;                   ///< compute LogInfo::sha256
+  std::vector<std::string>
+      channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
+  std::vector<std::string>
+      names;  ///< new names of the channels read, in order; empty = as in the log
+  std::vector<std::string>
+      units;  ///< units of the channels read, in order, or one for all; empty = as in the log
+  std::optional<double> from_s;  ///< first instant to use, seconds after the first stamp
+  std::optional<double> to_s;    ///< first instant not to use
+  std::optional<double>
+      rate_hz;  ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
+  std::string time_column =
+      "auto";  ///< "auto", "none", a name, or c0-style position among all columns
+  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns"
+  std::string format = "auto";     ///< "auto", "csv", "npy", "raw"
+  std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character
+  std::string decimal = "auto";    ///< "auto", "point", "comma"
+  std::string header = "auto";     ///< "auto", "yes", "no"
+  std::string encoding = "utf-8";  ///< "utf-8", "latin1" (CSV header only)
+  std::uint64_t skip_rows = 0;     ///< lines to skip before the header (CSV)
+  bool overflow_as_missing =
+      false;  ///< a number out of double's range counts as missing instead of ending the reading
+  bool skip_repeated_header =
+      false;  ///< header lines inside the data (concatenated logs) are counted and skipped
+  std::size_t block_bytes =
+      std::size_t{1}
+      << 21U;        ///< bytes of file per block; results never depend on it (tests use 1…70000)
+  int threads = 0;   ///< 0 = all cores; results never depend on it
+  bool hash = true;  ///< compute LogInfo::sha256
 };
 
 /// `rows` grid points of every selected channel. Valid only during the call that delivers it.
 struct SampleBlock {
-  std::uint64_t first = 0;                  ///< grid index of the first sample
+  std::uint64_t first = 0;  ///< grid index of the first sample
   std::size_t rows = 0;
-  std::vector<const double*> channels;      ///< one pointer per selected channel, `rows` doubles each, NaN = missing
+  std::vector<const double*>
+      channels;  ///< one pointer per selected channel, `rows` doubles each, NaN = missing
 };
 
 /// Receives a log in order. `begin` sees channels and what is known so far (the rate may still be refined at the end).
@@ -50,7 +60,10 @@ struct BlockSink {
 
 /// Streams a log once through `sink` in constant memory. "-" reads standard input (CSV only).
 /// Throws Error(input) with file, line and column (or byte); Error(usage) for options that do not fit the file.
-LogInfo read_log(const std::string& path, const ReadOptions& options, BlockSink& sink, Progress& progress = no_progress());
+LogInfo read_log(const std::string& path,
+                 const ReadOptions& options,
+                 BlockSink& sink,
+                 Progress& progress = no_progress());
 
 /// Standard input, a named pipe, a device: what was read is gone, and only CSV is read from it unless the format is given.
 bool read_once(const std::string& path);
@@ -60,6 +73,8 @@ bool read_once(const std::string& path);
 int threads_beside_reading(const LogInfo& log, int threads);
 
 /// The same, whole, in memory.
-Recording read_recording(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
+Recording read_recording(const std::string& path,
+                         const ReadOptions& options = {},
+                         Progress& progress = no_progress());
 
 }  // namespace libchar

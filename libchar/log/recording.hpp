@@ -16,22 +16,25 @@ namespace libchar {
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 struct Channel {
-  std::string name;  ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
-  std::string unit;  ///< as written in the log, "" when it says nothing
+  std::string
+      name;  ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
+  std::string unit;      ///< as written in the log, "" when it says nothing
   bool integer = false;  ///< every value is an integer written as one (counts)
 };
 
 /// The time axis: sample k of the grid stands at t0 + k / rate.
 struct TimeBase {
-  double rate_hz = 0;         ///< 0 when unknown (no stamps and no --rate)
-  bool from_stamps = false;   ///< rate found by robust slope of the stamps; else given by the user or the file
+  double rate_hz = 0;  ///< 0 when unknown (no stamps and no --rate)
+  bool from_stamps =
+      false;  ///< rate found by robust slope of the stamps; else given by the user or the file
   std::string column;         ///< name of the time column, "" when there is none
   std::string unit;           ///< "s", "ms", "us", "ns", "" when there is none
   bool unit_guessed = false;  ///< the unit was inferred from the magnitude of the stamps, not read
-  std::optional<std::int64_t> start_ns;  ///< stamp of the first sample in ns, when the log has stamps
-  double jitter_s = 0;        ///< robust standard deviation (1.4826 MAD) of stamp minus grid
-  double max_deviation_s = 0; ///< largest |stamp minus grid|
-  std::uint64_t gaps = 0;             ///< stretches of missing grid points
+  std::optional<std::int64_t>
+      start_ns;                ///< stamp of the first sample in ns, when the log has stamps
+  double jitter_s = 0;         ///< robust standard deviation (1.4826 MAD) of stamp minus grid
+  double max_deviation_s = 0;  ///< largest |stamp minus grid|
+  std::uint64_t gaps = 0;      ///< stretches of missing grid points
   std::uint64_t missing_samples = 0;  ///< grid points without a row
 };
 
@@ -41,15 +44,18 @@ struct LogInfo {
   std::string format;  ///< "csv", "npy", "raw"
   std::string sha256;  ///< of the whole file; "" when only part of a pipe was read
   std::uint64_t bytes = 0;
-  std::uint64_t rows = 0;     ///< data rows in the file; before its end as the first ones let expect, 0 when there is no telling
-  std::uint64_t samples = 0;  ///< grid points delivered (rows used + missing)
+  std::uint64_t rows =
+      0;  ///< data rows in the file; before its end as the first ones let expect, 0 when there is no telling
+  std::uint64_t samples = 0;     ///< grid points delivered (rows used + missing)
   bool read_ahead = false;       ///< other threads read and parse while the caller works
   std::uint64_t first_line = 0;  ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
   TimeBase time;
-  Warnings warnings;                 ///< every repair, counted by kind with its first places
-  std::vector<std::string> guesses;  ///< what was inferred and not read, in sentences ("time unit: us, from the magnitude of the stamps")
-  std::vector<std::string> dialect;  ///< what was understood of the file ("delimiter ;", "decimal comma", "header in line 3")
+  Warnings warnings;  ///< every repair, counted by kind with its first places
+  std::vector<std::string>
+      guesses;  ///< what was inferred and not read, in sentences ("time unit: us, from the magnitude of the stamps")
+  std::vector<std::string>
+      dialect;  ///< what was understood of the file ("delimiter ;", "decimal comma", "header in line 3")
 };
 
 /// A whole recording in memory, each channel contiguous.

@@ -7,8 +7,8 @@ namespace libchar {
 
 std::string_view chart_js();          ///< Chart.js 3, minified, from Debian's libjs-chart.js
 std::string_view chart_js_licence();  ///< its copyright file, whole
-std::string_view page_common_js();  ///< stands in front of each page's own script
-std::string_view page_js();         ///< of a characterization
+std::string_view page_common_js();    ///< stands in front of each page's own script
+std::string_view page_js();           ///< of a characterization
 std::string_view page_css();
 std::string_view replay_page_js();
 std::string_view replay_page_css();  ///< goes behind page_css

@@ -13,13 +13,15 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kPlottedBins = 400;  // enough for a log–log plot, small enough for a page of many channels
+constexpr std::size_t kPlottedBins =
+    400;  // enough for a log–log plot, small enough for a page of many channels
 constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
 Mixture plain_white(const AllanCurve& curve) {
   Mixture theta{};
-  if (!curve.points.empty()) theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
+  if (!curve.points.empty())
+    theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
   return theta;
 }
 
@@ -30,7 +32,9 @@ WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
 
 // Half segments that may serve as blocks of the fit: long enough for their sixteen coefficients left to the series of means to be
 // few, short enough for many of them in a record.
-bool serves_as_block(std::uint64_t half) { return half >= 4096 && half <= (std::uint64_t{1} << 16U); }
+bool serves_as_block(std::uint64_t half) {
+  return half >= 4096 && half <= (std::uint64_t{1} << 16U);
+}
 
 // Whole halves go to the fit with the transform that the spectrum makes of them.
 struct HalvesToBins final : HalfListener {
@@ -72,7 +76,8 @@ void ChannelStage::as_rate(std::span<const double> samples) {
   differenced_.clear();
   if (options_->data == SampleKind::frequency) {
     const double nominal = options_->nominal_frequency;
-    for (const double f : samples) differenced_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
+    for (const double f : samples)
+      differenced_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
     return;
   }
   for (const double x : samples) {
@@ -113,13 +118,21 @@ void ChannelStage::reserve(std::size_t samples) {
 void ChannelStage::stop_keeping() {
   if (!keeping_) return;
   if (options_->data == SampleKind::phase)
-    throw Error({ErrorKind::usage, "E0701", "", "phase data longer than the memory budget cannot be streamed", "", "raise --memory"});
+    throw Error({ErrorKind::usage,
+                 "E0701",
+                 "",
+                 "phase data longer than the memory budget cannot be streamed",
+                 "",
+                 "raise --memory"});
   keeping_ = false;
   streams_.emplace();
   const std::uint64_t segment = options_->spectrum.segment;
-  streams_->spectrum.emplace(with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
+  streams_->spectrum.emplace(
+      with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
   const std::uint64_t half = streams_->spectrum->half();
-  streams_->shared_blocks = options_->wanted.spectrum && (options_->wanted.fit || options_->wanted.allan) && serves_as_block(half);
+  streams_->shared_blocks = options_->wanted.spectrum &&
+                            (options_->wanted.fit || options_->wanted.allan) &&
+                            serves_as_block(half);
   if (streams_->shared_blocks) streams_->bins = PowerBinner(half);
   const std::vector<double> kept = std::move(kept_);
   kept_ = {};
@@ -128,7 +141,8 @@ void ChannelStage::stop_keeping() {
 }
 
 bool ChannelStage::needs_second_pass() const {
-  if (keeping_ || !options_->fit.remedies || !(options_->wanted.fit || options_->wanted.allan)) return false;
+  if (keeping_ || !options_->fit.remedies || !(options_->wanted.fit || options_->wanted.allan))
+    return false;
   const ChannelQuality quality = quality_.finish();
   return quality.difference_kurtosis > spike_alarm(quality.samples);
 }
@@ -162,7 +176,10 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
     });
   if (options_->wanted.fit || options_->wanted.allan)
     attempt(result, "noise fit", [&] {
-      result.fit = fit_record(kept_, rate_hz, octaves && !result.allan.points.empty() ? &result.allan : nullptr, options_->fit);
+      result.fit = fit_record(kept_,
+                              rate_hz,
+                              octaves && !result.allan.points.empty() ? &result.allan : nullptr,
+                              options_->fit);
     });
 }
 
@@ -187,15 +204,23 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
         streams_->bins.push(streams_->spectrum->rest());
         streams_->bins.set_taken_power(streams_->spectrum->block_power());
       }
-      result.fit = fit_binned(streams_->bins, rate_hz, quality.samples, result.allan.points.empty() ? nullptr : &result.allan, options_->fit);
+      result.fit = fit_binned(streams_->bins,
+                              rate_hz,
+                              quality.samples,
+                              result.allan.points.empty() ? nullptr : &result.allan,
+                              options_->fit);
       if (streams_->cleaner && streams_->cleaner->count() > 0)
-        result.fit->remedies.insert(result.fit->remedies.begin(), spikes_remedy(quality.difference_kurtosis, spike_alarm(quality.samples), streams_->cleaner->count()));
+        result.fit->remedies.insert(result.fit->remedies.begin(),
+                                    spikes_remedy(quality.difference_kurtosis,
+                                                  spike_alarm(quality.samples),
+                                                  streams_->cleaner->count()));
     });
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string ChannelStage::unit_of_rate(const std::string& unit) const {
-  if (options_->data == SampleKind::phase) return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  if (options_->data == SampleKind::phase)
+    return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
   return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "1" : unit;
 }
 
@@ -205,7 +230,9 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   result.channel.unit = unit_of_rate(channel.unit);
   if (options_->wanted.quality) result.quality = quality_.finish();
   if (rate_hz <= 0) {
-    result.problems.push_back("no curves and no fit: the sampling rate is not known (a log without time stamps needs --rate)");
+    result.problems.push_back(
+        "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
+        "--rate)");
     return result;
   }
   if (options_->data == SampleKind::phase)

@@ -55,7 +55,7 @@ class ChannelStage {
   bool keeping_ = true;
   std::vector<double> kept_;
   std::optional<ChannelStreams> streams_;
-  std::vector<double> differenced_;       // scratch of as_rate
+  std::vector<double> differenced_;  // scratch of as_rate
   std::optional<double> previous_phase_;
   std::uint64_t samples_ = 0;
 };

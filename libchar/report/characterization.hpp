@@ -26,7 +26,8 @@ enum class SampleKind {
 /// What is to be computed; nothing else is.
 struct Wanted {
   bool quality = true;
-  bool allan = true;     ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
+  bool allan =
+      true;  ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
 };
@@ -39,9 +40,14 @@ struct CharacterizeOptions {
   AllanOptions allan;
   WelchOptions spectrum;
   FitOptions fit;
-  std::uint64_t memory_bytes = std::uint64_t{1} << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
-  std::uint64_t exact_samples = std::uint64_t{1} << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
-  bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
+  std::uint64_t memory_bytes =
+      std::uint64_t{1}
+      << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
+  std::uint64_t exact_samples =
+      std::uint64_t{1}
+      << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
+  bool full_overlap =
+      false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
 
 struct ChannelVerification;
@@ -49,12 +55,14 @@ struct ChannelVerification;
 struct ChannelResult {
   Channel channel;
   ChannelQuality quality;
-  AllanCurve allan;                 ///< with intervals for the fitted mixture; no points when the record is too short
-  Spectrum spectrum;                ///< log-binned for plots and curves.csv, at most 400 bins
+  AllanCurve
+      allan;  ///< with intervals for the fitted mixture; no points when the record is too short
+  Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<std::string> problems;  ///< why something is absent, in sentences
-  std::shared_ptr<const ChannelVerification> verification;  ///< when it was asked for (verification.hpp)
+  std::shared_ptr<const ChannelVerification>
+      verification;  ///< when it was asked for (verification.hpp)
 };
 
 struct Characterization {
@@ -66,6 +74,8 @@ struct Characterization {
 };
 
 /// Reads the log once (a second time only when a remedy asks for it) and computes what the report shows.
-Characterization characterize(const std::string& path, const CharacterizeOptions& options, Progress& progress = no_progress());
+Characterization characterize(const std::string& path,
+                              const CharacterizeOptions& options,
+                              Progress& progress = no_progress());
 
 }  // namespace libchar

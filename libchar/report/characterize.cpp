@@ -18,7 +18,9 @@ class Stages : public BlockSink {
  public:
   explicit Stages(const CharacterizeOptions& options) : options_(options) {
     const bool whole_record_needed = options.wanted.spectrum && options.spectrum.segment == 0;
-    budget_ = whole_record_needed || options.full_overlap ? options.memory_bytes : std::min(options.memory_bytes, kSmallLogBytes);
+    budget_ = whole_record_needed || options.full_overlap
+                  ? options.memory_bytes
+                  : std::min(options.memory_bytes, kSmallLogBytes);
   }
 
   void begin(const LogInfo& so_far) override {
@@ -30,7 +32,8 @@ class Stages : public BlockSink {
       return;
     }
     // No value takes less than a byte of the file, and no more than the budget is kept.
-    const std::uint64_t most = std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
+    const std::uint64_t most =
+        std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
     for (ChannelStage& stage : stages_) stage.reserve(most);
   }
 
@@ -56,10 +59,14 @@ class Stages : public BlockSink {
       std::vector<std::size_t> channels;
       int threads = 0;
       tbb::task_arena arena;
-      void begin(const LogInfo& so_far) override { arena.initialize(threads_beside_reading(so_far, threads)); }
+      void begin(const LogInfo& so_far) override {
+        arena.initialize(threads_beside_reading(so_far, threads));
+      }
       void block(const SampleBlock& samples) override {
         arena.execute([&] {
-          tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t k) { stages[k]->push({samples.channels[channels[k]], samples.rows}); });
+          tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t k) {
+            stages[k]->push({samples.channels[channels[k]], samples.rows});
+          });
         });
       }
     } again;
@@ -81,7 +88,9 @@ class Stages : public BlockSink {
     for (std::size_t first = 0; first < stages_.size(); first += group) {
       progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");
       const std::size_t last = std::min(stages_.size(), first + group);
-      tbb::parallel_for(first, last, [&](std::size_t c) { results[c] = stages_[c].finish(log.channels[c], log.time.rate_hz); });
+      tbb::parallel_for(first, last, [&](std::size_t c) {
+        results[c] = stages_[c].finish(log.channels[c], log.time.rate_hz);
+      });
     }
     return results;
   }
@@ -92,8 +101,10 @@ class Stages : public BlockSink {
   bool surely_too_long(const LogInfo& so_far) const {
     constexpr double kDoubt = 4;
     const bool window = options_.reading.from_s || options_.reading.to_s;
-    const double bytes = static_cast<double>(so_far.rows) * static_cast<double>(so_far.channels.size()) * sizeof(double);
-    return !window && options_.data != SampleKind::phase && bytes > kDoubt * static_cast<double>(budget_);
+    const double bytes = static_cast<double>(so_far.rows) *
+                         static_cast<double>(so_far.channels.size()) * sizeof(double);
+    return !window && options_.data != SampleKind::phase &&
+           bytes > kDoubt * static_cast<double>(budget_);
   }
 
   const CharacterizeOptions& options_;
@@ -104,7 +115,9 @@ class Stages : public BlockSink {
 
 }  // namespace
 
-Characterization characterize(const std::string& path, const CharacterizeOptions& given, Progress& progress) {
+Characterization characterize(const std::string& path,
+                              const CharacterizeOptions& given,
+                              Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   AllanCovarianceCache covariances;
   CharacterizeOptions options = given;

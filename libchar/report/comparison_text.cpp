@@ -90,19 +90,21 @@ Json comparison_json(const Comparison& c) {
 }
 
 std::string comparison_markdown(const Comparison& c) {
-  std::string out = fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
-                                markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                                markdown_text(comparison_verdict(c)),
-                                markdown_text(c.a.file),
-                                markdown_text(c.a.program),
-                                markdown_text(c.b.file),
-                                markdown_text(c.b.program));
+  std::string out =
+      fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
+                  markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
+                  markdown_text(comparison_verdict(c)),
+                  markdown_text(c.a.file),
+                  markdown_text(c.a.program),
+                  markdown_text(c.b.file),
+                  markdown_text(c.b.program));
   const char* heads[] = {"These are not two replays of one scene:", "What else differs:"};
   const std::vector<std::string>* lists[] = {&c.unlike, &c.remarks};
   for (std::size_t i = 0; i < 2; ++i) {
     if (lists[i]->empty()) continue;
     out += fmt::format("\n{}\n\n", heads[i]);
-    for (const std::string& sentence : *lists[i]) out += fmt::format("- {}\n", markdown_text(sentence));
+    for (const std::string& sentence : *lists[i])
+      out += fmt::format("- {}\n", markdown_text(sentence));
   }
   const char* score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
   out += fmt::format(

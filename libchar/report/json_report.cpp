@@ -84,8 +84,8 @@ Json json_without_times(const Characterization& result) {
   }
   out["recording"] = recording_json(log, qualities);
 
-  Json allan = frame("allan"), spectrum = frame("spectrum"), fit = noise_fit_document(Json::array()),
-       quality = Json::object();
+  Json allan = frame("allan"), spectrum = frame("spectrum"),
+       fit = noise_fit_document(Json::array()), quality = Json::object();
   const bool any = !result.channels.empty();
   allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
   spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
@@ -108,7 +108,8 @@ Json json_without_times(const Characterization& result) {
       })) {
     out["verification"] = {{"channels", Json::array()}};
     for (const ChannelResult& c : result.channels)
-      out["verification"]["channels"].push_back(c.verification ? verification_json(c) : Json(nullptr));
+      out["verification"]["channels"].push_back(c.verification ? verification_json(c)
+                                                               : Json(nullptr));
   }
   return out;
 }

@@ -138,7 +138,8 @@ Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
   out["distinct_values"] = q.distinct_values;
   out["saturated"] = q.saturated;
   out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] = q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
+  out["difference_kurtosis"] =
+      q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
   out["float32"] = q.float32;
   out["float32_step"] = json_number(q.float32_step);
   out["suggestions"] = strings(q.suggestions);

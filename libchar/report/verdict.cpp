@@ -1,7 +1,5 @@
 #include "libchar/report/verdict.hpp"
 
-#include "libchar/report/verification.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/report/model_curve.hpp"
 #include "libchar/report/people.hpp"
+#include "libchar/report/verification.hpp"
 
 namespace libchar {
 namespace {
@@ -36,10 +35,12 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
                          value,
                          people(100 * c.relative_sd, 2));
     case Status::undetermined:
-      return fmt::format("{} {} = {}, but undetermined: the record cannot tell it from another term, or contradicts it.",
-                         term_title(term),
-                         name.letter,
-                         value);
+      return fmt::format(
+          "{} {} = {}, but undetermined: the record cannot tell it from another term, or "
+          "contradicts it.",
+          term_title(term),
+          name.letter,
+          value);
     case Status::not_detected:
       return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
     case Status::given:

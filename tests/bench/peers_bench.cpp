@@ -69,7 +69,9 @@ double allan_variance_of(const std::vector<double>& sums, std::size_t m, std::si
     const double d = sums[i + 2 * m] - 2 * sums[i + m] + sums[i];
     sum += d * d;
   }
-  return terms == 0 ? 0 : sum / (2 * static_cast<double>(terms) * static_cast<double>(m) * static_cast<double>(m));
+  return terms == 0 ? 0
+                    : sum / (2 * static_cast<double>(terms) * static_cast<double>(m) *
+                             static_cast<double>(m));
 }
 
 Curve logarithmic_points(const std::vector<double>& sums, double rate_hz, double largest) {
@@ -108,19 +110,24 @@ Values allan_variance_ros(const std::vector<double>& y, double rate_hz) {
     k += log_sd - half;
     lowest = std::min(lowest, std::sqrt(curve.variance[i]));
   }
-  return {std::exp(q / short_ones), lowest, std::sqrt(3.0) * std::exp(k / static_cast<double>(curve.tau.size()))};
+  return {std::exp(q / short_ones),
+          lowest,
+          std::sqrt(3.0) * std::exp(k / static_cast<double>(curve.tau.size()))};
 }
 
 // AVAR of unit coefficients, continuous asymptotes: quantization, white, flicker, walk, ramp.
 Eigen::Matrix<double, 1, 5> units(double tau) {
-  return {3 / (tau * tau), 1 / tau, 2 * std::numbers::ln2 / std::numbers::pi, tau / 3, tau * tau / 2};
+  return {
+      3 / (tau * tau), 1 / tau, 2 * std::numbers::ln2 / std::numbers::pi, tau / 3, tau * tau / 2};
 }
 
 // Σ (Σ θ u / v - 1)² over θ >= 0: of all 31 subsets the best whose solution is not negative.
 Eigen::VectorXd relative_nnls(const Curve& curve) {
   const auto n = static_cast<Eigen::Index>(curve.tau.size());
   Eigen::MatrixXd a(n, 5);
-  for (Eigen::Index i = 0; i < n; ++i) a.row(i) = units(curve.tau[static_cast<std::size_t>(i)]) / curve.variance[static_cast<std::size_t>(i)];
+  for (Eigen::Index i = 0; i < n; ++i)
+    a.row(i) =
+        units(curve.tau[static_cast<std::size_t>(i)]) / curve.variance[static_cast<std::size_t>(i)];
   Eigen::VectorXd best = Eigen::VectorXd::Zero(5);
   double lowest = static_cast<double>(n);
   for (unsigned subset = 1; subset < 32; ++subset) {
@@ -135,7 +142,8 @@ Eigen::VectorXd relative_nnls(const Curve& curve) {
     if (x.minCoeff() < 0 || misfit >= lowest) continue;
     lowest = misfit;
     best.setZero();
-    for (std::size_t c = 0; c < columns.size(); ++c) best[columns[c]] = x[static_cast<Eigen::Index>(c)] / scale[static_cast<Eigen::Index>(c)];
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      best[columns[c]] = x[static_cast<Eigen::Index>(c)] / scale[static_cast<Eigen::Index>(c)];
   }
   return best;
 }
@@ -155,7 +163,8 @@ Fitted log_least_squares(const Curve& curve, const Eigen::VectorXd& start, doubl
   Eigen::VectorXd scale(5);
   for (Eigen::Index c = 0; c < 5; ++c) {
     scale[c] = INFINITY;
-    for (Eigen::Index i = 0; i < n; ++i) scale[c] = std::min(scale[c], curve.variance[static_cast<std::size_t>(i)] / unit(i, c));
+    for (Eigen::Index i = 0; i < n; ++i)
+      scale[c] = std::min(scale[c], curve.variance[static_cast<std::size_t>(i)] / unit(i, c));
   }
   Eigen::VectorXd c = (start.cwiseQuotient(scale)).cwiseMax(least).cwiseSqrt();
   const auto residuals = [&](const Eigen::VectorXd& at, Eigen::MatrixXd* jacobian) {
@@ -163,7 +172,9 @@ Fitted log_least_squares(const Curve& curve, const Eigen::VectorXd& start, doubl
     for (Eigen::Index i = 0; i < n; ++i) {
       const double model = unit.row(i) * at.cwiseAbs2().cwiseProduct(scale);
       r[i] = std::log10(model / curve.variance[static_cast<std::size_t>(i)]);
-      if (jacobian != nullptr) jacobian->row(i) = (2 / (model * std::numbers::ln10)) * unit.row(i).transpose().cwiseProduct(scale).cwiseProduct(at);
+      if (jacobian != nullptr)
+        jacobian->row(i) = (2 / (model * std::numbers::ln10)) *
+                           unit.row(i).transpose().cwiseProduct(scale).cwiseProduct(at);
     }
     return r;
   };
@@ -195,7 +206,8 @@ Values coefficients(const Eigen::VectorXd& theta) {
 }
 
 Values relative_fit(const std::vector<double>& y, double rate_hz) {
-  return coefficients(relative_nnls(logarithmic_points(centred_sums(y), rate_hz, static_cast<double>(y.size()) / 10)));
+  return coefficients(relative_nnls(
+      logarithmic_points(centred_sums(y), rate_hz, static_cast<double>(y.size()) / 10)));
 }
 
 Values imu_utils(const std::vector<double>& y, double rate_hz) {
@@ -213,7 +225,9 @@ Values imu_utils(const std::vector<double>& y, double rate_hz) {
 Values ours(const std::vector<double>& y, double rate_hz) {
   const AllanCurve curve = allan_deviation(y, 1 / rate_hz);
   const NoiseFit fit = fit_record(y, rate_hz, &curve);
-  return {fit[Term::white].value.value_or(0), fit[Term::flicker].value.value_or(0), fit[Term::walk].value.value_or(0)};
+  return {fit[Term::white].value.value_or(0),
+          fit[Term::flicker].value.value_or(0),
+          fit[Term::walk].value.value_or(0)};
 }
 
 // ---- the comparison ----
@@ -223,8 +237,10 @@ struct Method {
   Values (*estimate)(const std::vector<double>&, double);
 };
 
-const std::vector<Method> kMethods = {
-    {"sensorchar", ours}, {"imu_utils", imu_utils}, {"allan_variance_ros", allan_variance_ros}, {"relative NNLS", relative_fit}};
+const std::vector<Method> kMethods = {{"sensorchar", ours},
+                                      {"imu_utils", imu_utils},
+                                      {"allan_variance_ros", allan_variance_ros},
+                                      {"relative NNLS", relative_fit}};
 
 struct Tally {
   Values sum{}, error{};  // error: sum of squares about the truth
@@ -233,8 +249,11 @@ struct Tally {
 
 std::string cell(const Tally& t, std::size_t k, int n, double truth, double reference) {
   const double rms = std::sqrt(t.error[k] / n), mean = t.sum[k] / n;
-  const std::string ratio = reference > 0 ? fmt::format("{:.3g} ×", rms / reference) : rms > 0 ? "–" : "0";
-  return truth > 0 ? fmt::format("{:.4g} ± {:.2g} ({})", mean, rms, ratio) : fmt::format("{:.2g} (absent)", mean);
+  const std::string ratio = reference > 0 ? fmt::format("{:.3g} ×", rms / reference)
+                            : rms > 0     ? "–"
+                                          : "0";
+  return truth > 0 ? fmt::format("{:.4g} ± {:.2g} ({})", mean, rms, ratio)
+                   : fmt::format("{:.2g} (absent)", mean);
 }
 
 void run_scene(const Scene& scene, std::uint64_t seed, int records) {
@@ -252,11 +271,21 @@ void run_scene(const Scene& scene, std::uint64_t seed, int records) {
       }
     }
   }
-  fmt::print("\n{}: Q {:g}, B {:g}, K {:g}; {} samples at {:g} Hz, {} records\n\n", scene.name, scene.truth[0], scene.truth[1], scene.truth[2], scene.samples, scene.rate_hz, records);
+  fmt::print("\n{}: Q {:g}, B {:g}, K {:g}; {} samples at {:g} Hz, {} records\n\n",
+             scene.name,
+             scene.truth[0],
+             scene.truth[1],
+             scene.truth[2],
+             scene.samples,
+             scene.rate_hz,
+             records);
   fmt::print("| method | Q | B | K | ms |\n|---|---|---|---|---|\n");
   for (std::size_t k = 0; k < kMethods.size(); ++k) {
     fmt::print("| {} |", kMethods[k].name);
-    for (std::size_t t = 0; t < 3; ++t) fmt::print(" {} |", cell(tallies[k], t, records, scene.truth[t], std::sqrt(tallies[0].error[t] / records)));
+    for (std::size_t t = 0; t < 3; ++t)
+      fmt::print(
+          " {} |",
+          cell(tallies[k], t, records, scene.truth[t], std::sqrt(tallies[0].error[t] / records)));
     fmt::print(" {:.0f} |\n", 1e3 * tallies[k].seconds / records);
   }
 }
@@ -264,8 +293,12 @@ void run_scene(const Scene& scene, std::uint64_t seed, int records) {
 // ---- published curves ----
 
 void run_curves(const std::filesystem::path& folder) {
-  fmt::print("\nrms of log10(model/measured deviation) on the curves that imu_utils published, mean of three axes:\n\n");
-  fmt::print("| IMU | sensor | imu_utils | ours, all terms | ours, decided | worst axis, decided ÷ imu_utils |\n|---|---|---|---|---|---|\n");
+  fmt::print(
+      "\nrms of log10(model/measured deviation) on the curves that imu_utils published, mean of "
+      "three axes:\n\n");
+  fmt::print(
+      "| IMU | sensor | imu_utils | ours, all terms | ours, decided | worst axis, decided ÷ "
+      "imu_utils |\n|---|---|---|---|---|---|\n");
   for (const std::string imu : {"16448", "A3", "BMI160", "N3", "gx4", "xsens"})
     for (const std::string kind : {"acc", "gyr"}) {
       double theirs = 0, all_terms = 0, decided = 0, worst = 0;
@@ -275,14 +308,21 @@ void run_curves(const std::filesystem::path& folder) {
         curve.y = numbers(folder / ("data_" + imu + "_" + kind + "_" + axis + ".txt"));
         FitOptions all;
         all.threshold = 0;
-        const double t = rms_log10(curve.y, numbers(folder / ("data_" + imu + "_sim_" + kind + "_" + axis + ".txt")));
+        const double t = rms_log10(
+            curve.y, numbers(folder / ("data_" + imu + "_sim_" + kind + "_" + axis + ".txt")));
         const double d = rms_log10(fit_curve(curve));
         theirs += t / 3;
         all_terms += rms_log10(fit_curve(curve, all)) / 3;
         decided += d / 3;
         worst = std::max(worst, d / t);
       }
-      fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} |\n", imu, kind, theirs, all_terms, decided, worst);
+      fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} |\n",
+                 imu,
+                 kind,
+                 theirs,
+                 all_terms,
+                 decided,
+                 worst);
     }
 }
 
@@ -292,8 +332,10 @@ int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 12;
   const std::string wanted = argc > 2 ? argv[2] : "";
   for (std::size_t s = 0; s < kScenes.size(); ++s)
-    if (wanted.empty() || wanted.find(static_cast<char>('0' + s)) != std::string::npos) run_scene(kScenes[s], 20 + s, records);
-  const std::filesystem::path curves = std::filesystem::path(LIBCHAR_SHARED_DIR) / "oracle/allan/imu_utils_mit";
+    if (wanted.empty() || wanted.find(static_cast<char>('0' + s)) != std::string::npos)
+      run_scene(kScenes[s], 20 + s, records);
+  const std::filesystem::path curves =
+      std::filesystem::path(LIBCHAR_SHARED_DIR) / "oracle/allan/imu_utils_mit";
   if (std::filesystem::exists(curves))
     run_curves(curves);
   else

@@ -21,7 +21,8 @@ TEST_CASE("fit LOG gives the coefficients as a table and as JSON") {
   const Json document = parse_json(json.out, "stdout");
   CHECK(document["format"] == "noise-fit");
   CHECK(document["channels"][0]["name"] == "gx");
-  CHECK(document["channels"][0]["white_noise"]["value"].get<double>() == Approx(1e-2).epsilon(0.03));
+  CHECK(document["channels"][0]["white_noise"]["value"].get<double>() ==
+        Approx(1e-2).epsilon(0.03));
   CHECK(document["channels"][0]["random_walk"]["value"].is_null());
   const auto table = test::run({"fit", path, "--rate", "100"});
   CHECK(table.code == 0);

@@ -18,14 +18,16 @@ struct Example {
 };
 
 std::vector<Example> examples() {
-  std::istringstream page(test::slurp(std::filesystem::path(LIBCHAR_SOURCE_DIR) / "docs/formats.md"));
+  std::istringstream page(
+      test::slurp(std::filesystem::path(LIBCHAR_SOURCE_DIR) / "docs/formats.md"));
   std::vector<Example> found;
   bool inside = false;
   for (std::string line; std::getline(page, line);) {
     if (line.rfind("```csv ", 0) == 0) {
       found.emplace_back();
       std::istringstream words(line.substr(7));
-      for (std::string word; words >> word;) found.back().expected[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
+      for (std::string word; words >> word;)
+        found.back().expected[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
       inside = true;
     } else if (line == "```") {
       inside = false;
@@ -52,18 +54,22 @@ void check_read(const Example& example, const Json& recording) {
   std::string channels;
   for (const Json& c : recording.at("channels")) {
     const std::string unit = c.at("unit").get<std::string>();
-    channels += (channels.empty() ? "" : ",") + c.at("name").get<std::string>() + (unit.empty() ? "" : "[" + unit + "]");
+    channels += (channels.empty() ? "" : ",") + c.at("name").get<std::string>() +
+                (unit.empty() ? "" : "[" + unit + "]");
   }
   CHECK(channels == example.expected.at("channels"));
-  if (example.expected.count("rate") > 0) CHECK(recording.at("rate_hz").get<double>() == Approx(std::stod(example.expected.at("rate"))));
+  if (example.expected.count("rate") > 0)
+    CHECK(recording.at("rate_hz").get<double>() == Approx(std::stod(example.expected.at("rate"))));
   CHECK(recording.at("samples") == std::stoi(example.expected.at("samples")));
   std::string repairs;
-  for (const auto& repair : recording.at("repairs").items()) repairs += (repairs.empty() ? "" : ",") + repair.key();
+  for (const auto& repair : recording.at("repairs").items())
+    repairs += (repairs.empty() ? "" : ",") + repair.key();
   CHECK(repairs == (example.expected.count("repairs") > 0 ? example.expected.at("repairs") : ""));
   const std::string guesses = recording.at("guesses").dump();
   CHECK((guesses == "[]") == (example.expected.count("guesses") == 0));
   if (example.expected.count("guesses") > 0)
-    for (const std::string& guess : split(example.expected.at("guesses"))) CHECK(guesses.find("\"" + spaced(guess)) != std::string::npos);
+    for (const std::string& guess : split(example.expected.at("guesses")))
+      CHECK(guesses.find("\"" + spaced(guess)) != std::string::npos);
 }
 
 }  // namespace

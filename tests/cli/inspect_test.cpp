@@ -90,7 +90,9 @@ TEST_CASE("one row with a stamp has no rate, and --rate would not give it one") 
   std::ofstream(log) << "t,x\n1.0,2.0\n";
   const auto ran = test::run({"inspect", log});
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("next: one row with a time stamp gives no sampling rate") && !Contains("--rate"));
+  CHECK_THAT(
+      ran.out,
+      Contains("next: one row with a time stamp gives no sampling rate") && !Contains("--rate"));
 }
 
 TEST_CASE("a constant channel has no kurtosis") {
@@ -100,7 +102,8 @@ TEST_CASE("a constant channel has no kurtosis") {
   const auto ran = test::run({"inspect", log});
   CHECK_THAT(ran.out, Contains("constant"));
   const auto json = test::run({"inspect", "--json", log});
-  const libchar::Json channels = libchar::parse_json(json.out, "stdout")["recordings"][0]["channels"];
+  const libchar::Json channels =
+      libchar::parse_json(json.out, "stdout")["recordings"][0]["channels"];
   CHECK(channels[0]["difference_kurtosis"].is_null());
   CHECK(channels[1]["difference_kurtosis"].is_number());
 }
@@ -110,7 +113,8 @@ TEST_CASE("the suggested command names each list once, and works") {
   std::ofstream(folder / "x.csv") << "0,1,2\n0.1,2,1\n0.2,1,4\n0.3,2,2\n";
   test::RunOptions options;
   options.folder = folder.path().string();
-  const auto ran = test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
+  const auto ran =
+      test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains(" --names 'a b,c' --units deg/s,g --time-column c0"));
 }

@@ -100,7 +100,8 @@ TEST_CASE("a log from another program, by the shell's <(…), is read as text") 
     for (int i = 0; i < 3000; ++i) file << 0.01 * i << ',' << (i * 7919) % 1000 << '\n';
   }
   for (const char* script :
-       {R"("$0" inspect <(cat "$1") >/dev/null)", R"("$0" convert <(cat "$1") -o "$2" --quiet)",
+       {R"("$0" inspect <(cat "$1") >/dev/null)",
+        R"("$0" convert <(cat "$1") -o "$2" --quiet)",
         R"("$0" characterize <(cat "$1") -o "$2.report" --quiet >/dev/null)"}) {
     const auto ran = test::run_words({"bash", "-c", script, SENSORCHAR_PROGRAM, log, out});
     INFO(script << ran.err);

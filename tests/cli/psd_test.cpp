@@ -146,8 +146,8 @@ TEST_CASE("psd writes whole files, keeps old ones, and refuses what cannot be") 
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "4"}).code == 2);
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "x"}).code == 2);
   CHECK(test::run({"psd", log, "--rate", "100", "--overlap", "1"}).code == 2);
-  CHECK(test::run({"psd", log, "--rate", "100", "--window", "han"})
-            .err.find("did you mean hann") != std::string::npos);
+  CHECK(test::run({"psd", log, "--rate", "100", "--window", "han"}).err.find("did you mean hann") !=
+        std::string::npos);
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "30000"}).code == 4);
   CHECK(test::run({"psd", (folder / "absent.csv").string(), "--rate", "100"}).code == 3);
 }

@@ -8,7 +8,8 @@ using namespace libchar;
 TEST_CASE("printable escapes everything a terminal would obey") {
   CHECK(printable("plain °/√h") == "plain °/√h");
   CHECK(printable("a\x1b[31mb\n") == "a\\x1B[31mb\\n");
-  CHECK(printable("a\xE2\x80\xAE" "b") == "a\\u{202E}b");
+  CHECK(printable("a\xE2\x80\xAE"
+                  "b") == "a\\u{202E}b");
   CHECK(printable("\xB0") == "\\xB0");
   CHECK(printable("\xC2\x9B") == "\\x9B");
   CHECK(printable("abcdef", 3) == "abc…");
@@ -19,7 +20,9 @@ TEST_CASE("numbers read back to the same double, in YAML as numbers") {
   CHECK(shortest_yaml(200) == "200.0");
   CHECK(shortest_yaml(1e-5) == "1.0e-05");
   CHECK(parse_double(shortest(1.0 / 3)) == 1.0 / 3);
-  for (const char* bad : {"1,5", "0x1p3", "1.5abc", "1e400", "1e-400", "", " 1", "+1", "nan", "inf"}) CHECK_FALSE(parse_double(bad));
+  for (const char* bad :
+       {"1,5", "0x1p3", "1.5abc", "1e400", "1e-400", "", " 1", "+1", "nan", "inf"})
+    CHECK_FALSE(parse_double(bad));
 }
 
 TEST_CASE("spelling help finds slips, not strangers") {

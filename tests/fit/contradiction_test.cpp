@@ -17,7 +17,14 @@ AllanCurve curve_of(const Mixture& theta) {
   curve.dt_s = 0.01;
   curve.samples = kSamples;
   for (std::uint64_t m = 1; 2 * m <= kSamples / 4; m *= 2)
-    curve.points.push_back({m, static_cast<double>(m) * 0.01, std::sqrt(allan_variance(theta, static_cast<double>(m), 0.01)), kSamples - 2 * m + 1, 0, {}, {}, true});
+    curve.points.push_back({m,
+                            static_cast<double>(m) * 0.01,
+                            std::sqrt(allan_variance(theta, static_cast<double>(m), 0.01)),
+                            kSamples - 2 * m + 1,
+                            0,
+                            {},
+                            {},
+                            true});
   return curve;
 }
 
@@ -43,7 +50,9 @@ TEST_CASE("a fit that the Allan curve bears out is left alone") {
   for (std::size_t t = 0; t < 3; ++t) CHECK(fit.term[t].status == Status::detected);
 }
 
-TEST_CASE("a random walk that the Allan curve does not show is undetermined, and the reader is told where") {
+TEST_CASE(
+    "a random walk that the Allan curve does not show is undetermined, and the reader is told "
+    "where") {
   NoiseFit fit = fit_of({1e-4, 0, 1e-5, 0, 0});
   answer_contradictions(fit, curve_of({1e-4, 0, 1e-8, 0, 0}));
   REQUIRE(fit.sentences.size() == 1);

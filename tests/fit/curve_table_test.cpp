@@ -30,7 +30,8 @@ std::string fault_of(const std::string& text) {
 
 TEST_CASE("a published table with a channel column gives one curve a channel") {
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
-  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  const auto table =
+      read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 6);
   const NamedCurve& first = table->curves[0];
@@ -42,7 +43,8 @@ TEST_CASE("a published table with a channel column gives one curve a channel") {
 }
 
 TEST_CASE("names of columns as people write them, with units, quotes, BOM, other delimiters") {
-  const auto table = read("\xEF\xBB\xBF# made by hand\r\n\"Tau [s]\";\"AVAR\"\r\n0.1;4\r\n0.2;2\r\n\r\n", true);
+  const auto table =
+      read("\xEF\xBB\xBF# made by hand\r\n\"Tau [s]\";\"AVAR\"\r\n0.1;4\r\n0.2;2\r\n\r\n", true);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 1);
   CHECK_FALSE(table->curves[0].curve.root);
@@ -56,8 +58,13 @@ TEST_CASE("degrees of freedom become the relative uncertainty of the deviation")
   CHECK(table->curves[0].curve.relative_sd == std::vector<double>{0.1, 0.25});
 }
 
-TEST_CASE("a density in the square of a unit is a curve of a channel in that unit, and zero frequency is left out") {
-  const auto table = read("curve,channel,unit,x,value\noadev,a,deg/s,1,2\npsd,a,(deg/s)²/Hz,0,9\npsd,a,(deg/s)²/Hz,1,3\n", false);
+TEST_CASE(
+    "a density in the square of a unit is a curve of a channel in that unit, and zero frequency is "
+    "left out") {
+  const auto table = read(
+      "curve,channel,unit,x,value\noadev,a,deg/s,1,2\npsd,a,(deg/s)²/Hz,0,9\npsd,a,(deg/s)²/"
+      "Hz,1,3\n",
+      false);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 1);
   CHECK(table->curves[0].unit == "deg/s");
@@ -70,19 +77,24 @@ TEST_CASE("a table of bare numbers is not a named one") {
 }
 
 TEST_CASE("rows that do not fit are named with their place") {
-  CHECK(fault_of("tau_s,adev\n1,2\n2,x1\n").find("curve.csv:3:3: error E0311") != std::string::npos);
+  CHECK(fault_of("tau_s,adev\n1,2\n2,x1\n").find("curve.csv:3:3: error E0311") !=
+        std::string::npos);
   CHECK(fault_of("tau_s,adev\n1,2,3\n").find("curve.csv:2:1: error E0304") != std::string::npos);
   CHECK(fault_of("tau_s,adev\n").find("holds no Allan curve") != std::string::npos);
 }
 
 TEST_CASE("relative and absolute errors are read, whatever they are called") {
-  const auto sd = [](const std::string& text) { return read(text, true)->curves.at(0).curve.relative_sd; };
+  const auto sd = [](const std::string& text) {
+    return read(text, true)->curves.at(0).curve.relative_sd;
+  };
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau;adev;Relative error [%]\n1;2;25\n2;1;50\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,adev,error\n1,2,0.5\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
-  CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") == std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
+  CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") ==
+        std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,\n").empty());  // not for every point: for none
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
-  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  const auto table =
+      read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
   CHECK(table->curves[0].curve.relative_sd.at(0) == 0.0005674816915767);
 }

@@ -70,7 +70,8 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
         "channels tells the sum of "
         "their variances, not which is the noisier)");
   CHECK(why_not(needing({.noise_levels = true}), two) ==
-        "foo needs a noise level (above zero) for each channel; give a sensor model, noise or a rest");
+        "foo needs a noise level (above zero) for each channel; give a sensor model, noise or a "
+        "rest");
   two.noise_levels = Eigen::Vector2d(1, 0);
   CHECK_FALSE(why_not(needing({.noise_levels = true}), two).empty());
   two.noise_levels = Eigen::Vector2d(1, 2);

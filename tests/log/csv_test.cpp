@@ -319,8 +319,10 @@ TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
       }
 }
 
-TEST_CASE("a last line without line end is kept and said, unless its last cell is seen to be whole") {
-  for (const char* text : {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
+TEST_CASE(
+    "a last line without line end is kept and said, unless its last cell is seen to be whole") {
+  for (const char* text :
+       {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
     const Recording r = read_text(text);
     INFO(text);
     CHECK(r.samples[0].back() == 4);
@@ -328,7 +330,11 @@ TEST_CASE("a last line without line end is kept and said, unless its last cell i
     REQUIRE(count(r, "no_final_newline") == 1);
     CHECK_THAT(r.info.warnings.find("no_final_newline")->places[0], Catch::StartsWith("line 4"));
   }
-  for (const char* text : {"t,x\n1,2\n2,3\n3,4\n", "t,x\n1,2\n2,3\n3,\"4\"", "t,x,\n1,2,\n2,3,\n3,4,", "t,x\n1,2\n2,3\n3,4\n# end", "t,x\n1,2\n2,3\n3,4\n  "}) {
+  for (const char* text : {"t,x\n1,2\n2,3\n3,4\n",
+                           "t,x\n1,2\n2,3\n3,\"4\"",
+                           "t,x,\n1,2,\n2,3,\n3,4,",
+                           "t,x\n1,2\n2,3\n3,4\n# end",
+                           "t,x\n1,2\n2,3\n3,4\n  "}) {
     INFO(text);
     CHECK(count(read_text(text), "no_final_newline") == 0);
   }
@@ -338,11 +344,13 @@ TEST_CASE("a delimiter that does not fit is answered with the one that does") {
   ReadOptions options;
   options.delimiter = ";";
   CHECK_THAT(failure("t,x,y\n1,2,3\n2,3,4\n", options),
-             Catch::StartsWith("log.csv:2:1 ") && Catch::Contains("looks separated by commas (3 columns): leave --delimiter out"));
+             Catch::StartsWith("log.csv:2:1 ") &&
+                 Catch::Contains("looks separated by commas (3 columns): leave --delimiter out"));
   // One column of decimal commas is what was asked for.
   CHECK(read_text("x\n1,5\n2,25\n", options).samples[0] == std::vector<double>{1.5, 2.25});
   options.delimiter = ",";
-  CHECK_THAT(failure("a;b\n1;2\n3;4\n", options), Catch::Contains("separated by semicolons (2 columns)"));
+  CHECK_THAT(failure("a;b\n1;2\n3;4\n", options),
+             Catch::Contains("separated by semicolons (2 columns)"));
 }
 
 TEST_CASE("binary content is called binary, whatever its first lines look like") {
@@ -371,13 +379,17 @@ TEST_CASE("names that are given go by what is read") {
   ReadOptions options;
   options.names = {"a", "b", "c"};
   options.channels = {"gz"};
-  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options), Catch::Contains("3 given, and 1 channel is read: gz"));
-  options.channels = {"a"};
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
-             Catch::Contains("-c chooses by the names in the log, gx, gy, gz, and --names then name what was chosen"));
+             Catch::Contains("3 given, and 1 channel is read: gz"));
+  options.channels = {"a"};
+  CHECK_THAT(
+      failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
+      Catch::Contains(
+          "-c chooses by the names in the log, gx, gy, gz, and --names then name what was chosen"));
 }
 
 TEST_CASE("web pages and JSON documents are called by their names") {
-  CHECK_THAT(failure("<!DOCTYPE html>\n<html>404</html>\n"), Catch::Contains("E0301") && Catch::Contains("HTML"));
+  CHECK_THAT(failure("<!DOCTYPE html>\n<html>404</html>\n"),
+             Catch::Contains("E0301") && Catch::Contains("HTML"));
   CHECK_THAT(failure("\n{\"a\": 1}\n"), Catch::Contains("E0301") && Catch::Contains("JSON"));
 }

@@ -26,19 +26,23 @@ Parsed parse(std::string text, bool crlf = false) {
   Parsed out;
   out.values.assign(1000, 0);
   out.stamps.assign(1000, 0);
-  const PlainColumn columns[] = {{.use = PlainColumn::Use::stamp, .stamps = out.stamps.data()},
-                                 {.use = PlainColumn::Use::value, .values = out.values.data(), .fractional = &out.fractional}};
+  const PlainColumn columns[] = {
+      {.use = PlainColumn::Use::stamp, .stamps = out.stamps.data()},
+      {.use = PlainColumn::Use::value, .values = out.values.data(), .fractional = &out.fractional}};
   std::vector<std::uint32_t> scratch;
   out.result = parse_plain_rows({text.data(), size}, ',', crlf, columns, 1000, scratch);
   return out;
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 }  // namespace
 
 TEST_CASE("plain rows: known numbers") {
-  if (parse("0,1\n").result.rows == 0) return;  // a processor without AVX2: the general parser does all
+  if (parse("0,1\n").result.rows == 0)
+    return;  // a processor without AVX2: the general parser does all
   const Parsed p = parse("0.001,-1.5\n-2,-0\n1e0,3\n");
   REQUIRE(p.result.rows == 2);  // a stamp with an exponent is left to the general parser
   CHECK(p.result.consumed == 17);
@@ -50,7 +54,8 @@ TEST_CASE("plain rows: known numbers") {
   CHECK_FALSE(parse("0,1\n0,-20\n").fractional);
   CHECK(parse("0,5.\n").fractional);
   CHECK(parse("0,1e3\n").fractional);
-  CHECK_FALSE(parse("0,1\n0,\n").fractional);  // found by fuzzing: a refused field made its column fractional
+  CHECK_FALSE(parse("0,1\n0,\n")
+                  .fractional);  // found by fuzzing: a refused field made its column fractional
   CHECK_FALSE(parse("0,00000000000000000007\n").fractional);  // the same, 20 digits
   CHECK(parse("0,1\r\n", true).result.rows == 1);
   CHECK(parse("0,1\n", true).result.rows == 0);
@@ -58,8 +63,26 @@ TEST_CASE("plain rows: known numbers") {
 }
 
 TEST_CASE("plain rows: whatever is not a plain row is not taken") {
-  for (const char* text : {"0,\n", "0,nan\n", "0,1,2\n", "0\n", "0,\"1\"\n", "0,+1\n", "0,1 \n", "0, 1\n", "0,1.2.3\n", "0,.\n", "0,-\n", "0,0x1\n", "0,1e400\n",
-                           "#,1\n", "\n", "0,--1\n", "0;1\n", "9223372036854775808,1\n", "0.0000000001,1\n", "0,1_0\n"}) {
+  for (const char* text : {"0,\n",
+                           "0,nan\n",
+                           "0,1,2\n",
+                           "0\n",
+                           "0,\"1\"\n",
+                           "0,+1\n",
+                           "0,1 \n",
+                           "0, 1\n",
+                           "0,1.2.3\n",
+                           "0,.\n",
+                           "0,-\n",
+                           "0,0x1\n",
+                           "0,1e400\n",
+                           "#,1\n",
+                           "\n",
+                           "0,--1\n",
+                           "0;1\n",
+                           "9223372036854775808,1\n",
+                           "0.0000000001,1\n",
+                           "0,1_0\n"}) {
     CAPTURE(text);
     CHECK(parse(text).result.rows == 0);
   }
@@ -73,12 +96,23 @@ TEST_CASE("plain rows: the same bits as std::from_chars on random numbers of eve
     std::vector<double> expected;
     for (int row = 0; row < 1000; ++row) {
       char number[64];
-      const double value = (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5) * std::pow(10.0, static_cast<double>(random() % 12));
+      const double value = (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5) *
+                           std::pow(10.0, static_cast<double>(random() % 12));
       switch (random() % 4) {
-        case 0: std::snprintf(number, sizeof number, "%.*f", static_cast<int>(random() % 15), value); break;
-        case 1: std::snprintf(number, sizeof number, "%.*g", static_cast<int>(1 + random() % 17), value); break;
-        case 2: std::snprintf(number, sizeof number, "%lld", static_cast<long long>(random() >> (11 + random() % 50))); break;
-        default: *std::to_chars(number, number + sizeof number, value).ptr = '\0';
+        case 0:
+          std::snprintf(number, sizeof number, "%.*f", static_cast<int>(random() % 15), value);
+          break;
+        case 1:
+          std::snprintf(number, sizeof number, "%.*g", static_cast<int>(1 + random() % 17), value);
+          break;
+        case 2:
+          std::snprintf(number,
+                        sizeof number,
+                        "%lld",
+                        static_cast<long long>(random() >> (11 + random() % 50)));
+          break;
+        default:
+          *std::to_chars(number, number + sizeof number, value).ptr = '\0';
       }
       text += "5," + std::string(number) + "\n";
       double reference = 0;
@@ -89,20 +123,38 @@ TEST_CASE("plain rows: the same bits as std::from_chars on random numbers of eve
     REQUIRE(p.result.rows == 1000);
     REQUIRE(p.result.consumed == text.size());
     for (std::size_t i = 0; i < 1000; ++i)
-      if (!same_bits(p.values[i], expected[i])) FAIL("row " << i << ": " << p.values[i] << " against " << expected[i]);
+      if (!same_bits(p.values[i], expected[i]))
+        FAIL("row " << i << ": " << p.values[i] << " against " << expected[i]);
   }
 }
 
 TEST_CASE("plain rows: one unusual field among plain ones is found in whatever row it stands") {
   if (parse("0,1\n").result.rows == 0) return;
   std::mt19937_64 random(8);
-  for (const char* unusual : {"", "nan", "1.2.3", ".", "-", "-.", "1 ", "+1", "1_0", "--1", "\"1\"", "1/2", "1:2", ",", "1,2", "12345678901234567x", "x"}) {
+  for (const char* unusual : {"",
+                              "nan",
+                              "1.2.3",
+                              ".",
+                              "-",
+                              "-.",
+                              "1 ",
+                              "+1",
+                              "1_0",
+                              "--1",
+                              "\"1\"",
+                              "1/2",
+                              "1:2",
+                              ",",
+                              "1,2",
+                              "12345678901234567x",
+                              "x"}) {
     for (int at = 0; at < 23; ++at) {
       std::string text;
       std::vector<double> expected;
       for (int row = 0; row < 23; ++row) {
         char number[64];
-        std::snprintf(number, sizeof number, "%.9g", static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
+        std::snprintf(
+            number, sizeof number, "%.9g", static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
         text += "5," + std::string(row == at ? unusual : number) + "\n";
         expected.push_back(std::strtod(number, nullptr));
       }
@@ -121,8 +173,18 @@ TEST_CASE("plain rows: fields that fours cannot take, among those they can") {
     for (int row = 0; row < 12; ++row) text += "5," + (row == 6 ? special : "-1.5") + "\n";
     return text;
   };
-  for (const std::string special : {"1.", "-7.", "1e-3", "9007199254740991", "9007199254740990.5", "0.1234567890123456", "-0.12345678901234567", "0000000000000.25",
-                                    "-0", "-0.0", "999999999999999.9", "123456789.12345678"}) {
+  for (const std::string special : {"1.",
+                                    "-7.",
+                                    "1e-3",
+                                    "9007199254740991",
+                                    "9007199254740990.5",
+                                    "0.1234567890123456",
+                                    "-0.12345678901234567",
+                                    "0000000000000.25",
+                                    "-0",
+                                    "-0.0",
+                                    "999999999999999.9",
+                                    "123456789.12345678"}) {
     CAPTURE(special);
     const Parsed p = parse(rows_of(special));
     REQUIRE(p.result.rows == 12);

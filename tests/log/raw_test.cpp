@@ -182,6 +182,9 @@ TEST_CASE("YAML is read without the parts that bite") {
 }
 
 TEST_CASE("numbers in a sidecar beyond a double are refused as such, with their place") {
-  const std::string message = said(R"({"dtype": "f64", "endian": "little", "channels": 1, "rate_hz": 1e400})");
-  CHECK_THAT(message, Catch::Contains("E0602") && Catch::Contains("out of range") && Catch::Contains("1e400") && Catch::Contains(":1:"));
+  const std::string message =
+      said(R"({"dtype": "f64", "endian": "little", "channels": 1, "rate_hz": 1e400})");
+  CHECK_THAT(message,
+             Catch::Contains("E0602") && Catch::Contains("out of range") &&
+                 Catch::Contains("1e400") && Catch::Contains(":1:"));
 }

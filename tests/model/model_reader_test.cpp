@@ -177,7 +177,8 @@ TEST_CASE("model reader: every example of docs/models.md is read") {
   CHECK(examples == 2);
   // 5.5 mdps/√Hz one-sided, 7 deg/h read off the floor
   const std::size_t begin = page.find("```yaml\n") + 8;
-  const SensorModel sheet = parse_sensor_model(page.substr(begin, page.find("```", begin) - begin), "sheet");
+  const SensorModel sheet =
+      parse_sensor_model(page.substr(begin, page.find("```", begin) - begin), "sheet");
   CHECK(*sheet.noise[0].value == Approx(5.5e-3 * std::numbers::pi / 180 / std::numbers::sqrt2));
   CHECK(*sheet.noise[1].value == Approx(7.0 / 3600 * std::numbers::pi / 180 / 0.6642824703));
 }

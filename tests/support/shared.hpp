@@ -1,18 +1,22 @@
 #pragma once
 // Paths of the known answers and recordings that live beside the checkout (never inside it, for their licences).
 
+#include <stdlib.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 
-#include <stdlib.h>
-
 namespace test {
 
-inline std::filesystem::path shared(const std::string& name) { return std::filesystem::path(LIBCHAR_SHARED_DIR) / name; }
-inline std::filesystem::path fixture(const std::string& name) { return std::filesystem::path(LIBCHAR_FIXTURES_DIR) / name; }
+inline std::filesystem::path shared(const std::string& name) {
+  return std::filesystem::path(LIBCHAR_SHARED_DIR) / name;
+}
+inline std::filesystem::path fixture(const std::string& name) {
+  return std::filesystem::path(LIBCHAR_FIXTURES_DIR) / name;
+}
 
 inline std::string slurp(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -24,7 +28,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "libchar-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder");
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("cannot make a temporary folder");
     path_ = name;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -43,8 +48,8 @@ class TemporaryFolder {
 }  // namespace test
 
 /// First line of a test that reads the shared folder: without it the test says so and ends (a clone without the folder).
-#define NEEDS_SHARED(name)                                             \
-  if (!std::filesystem::exists(test::shared(name))) {                  \
-    WARN("skipped: " << test::shared(name).string() << " is absent");  \
-    return;                                                            \
+#define NEEDS_SHARED(name)                                            \
+  if (!std::filesystem::exists(test::shared(name))) {                 \
+    WARN("skipped: " << test::shared(name).string() << " is absent"); \
+    return;                                                           \
   }
