@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
-#include "libchar/report/characterization.hpp"
+#include "libchar/characterize/characterization.hpp"
 
 namespace sensorchar {
 

@@ -9,10 +9,10 @@
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "libchar/report/comparison.hpp"
-#include "libchar/report/comparison_check.hpp"
+#include "libchar/replay/comparison.hpp"
+#include "libchar/replay/comparison_check.hpp"
+#include "libchar/replay/verdict.hpp"
 #include "libchar/report/comparison_text.hpp"
-#include "libchar/report/replay_verdict.hpp"
 #include "verbs.hpp"
 
 namespace sensorchar {

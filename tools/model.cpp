@@ -11,7 +11,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/whole_file.hpp"
-#include "libchar/model/exports.hpp"
+#include "libchar/export/exports.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "numbers.hpp"

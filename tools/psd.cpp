@@ -6,14 +6,19 @@
 #include <cmath>
 #include <memory>
 
+#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
-#include "libchar/report/model_curve.hpp"
+#include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/window.hpp"
 #include "numbers.hpp"
 #include "reading_options.hpp"
 #include "verbs.hpp"

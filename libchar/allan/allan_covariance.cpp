@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "libchar/allan/lag_sum.hpp"
+#include "libchar/allan/detail/lag_sum.hpp"
 #include "libchar/core/error.hpp"
 
 namespace libchar {

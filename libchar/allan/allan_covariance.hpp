@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/term_covariance.hpp"
+#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
@@ -48,6 +48,10 @@ class AllanCovariance {
   std::vector<double> tau_;
   std::vector<Products> products_;  ///< of the lower triangle, row by row
 };
+
+/// Exact covariance of overlapping Allan variances at the points of `curve` (their m, terms,
+/// stride) for the mixture; cost independent of the record length (accuracy.md 3).
+Eigen::MatrixXd allan_covariance(const AllanCurve& curve, const Mixture& theta);
 
 /// Remembers what was prepared: the channels of one log have the same points and share it. May be used from several threads.
 class AllanCovarianceCache {

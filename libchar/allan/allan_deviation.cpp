@@ -25,8 +25,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/allan/anchored_phase.hpp"
-#include "libchar/allan/tau_grid.hpp"
+#include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/allan/detail/tau_grid.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 

@@ -2,13 +2,13 @@
 // The Allan family of deviations of a record.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
@@ -27,10 +27,6 @@ enum class TauGrid {
 
 std::string_view name_of(DeviationType type);  ///< "oadev"
 std::optional<DeviationType> deviation_type(std::string_view name);
-
-struct Interval {
-  double low = 0, high = 0;
-};
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor
@@ -72,25 +68,5 @@ struct AllanOptions {
 AllanCurve allan_deviation(std::span<const double> record,
                            double dt_s,
                            const AllanOptions& options = {});
-
-/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m
-/// >= 8 at stride m/4 (accuracy.md 9-10). One pass, no cumulative sum over the record. Result
-/// independent of block boundaries.
-class AllanPyramid {
- public:
-  AllanPyramid();
-  ~AllanPyramid();
-  AllanPyramid(AllanPyramid&&) noexcept;
-  AllanPyramid& operator=(AllanPyramid&&) noexcept;
-  void push(std::span<const double> samples);
-  AllanCurve finish(double dt_s) const;
-
- private:
-  struct State;
-  struct StateDeleter {
-    void operator()(State* state) const;
-  };
-  std::unique_ptr<State, StateDeleter> state_;
-};
 
 }  // namespace libchar

@@ -9,6 +9,8 @@
 // Squares are added in double within a block and in long double between blocks, whose wide exponent
 // also carries blocks that had to be scaled because their squares overflow or vanish.
 
+#include "libchar/allan/allan_pyramid.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +18,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/pyramid_kernels.hpp"
+#include "libchar/allan/detail/pyramid_kernels.hpp"
 #include "libchar/core/error.hpp"
 
 namespace libchar {

@@ -9,14 +9,15 @@
 // m >> 1; at small m it promises more than there is. Used here: the exact edf of the overlapping
 // deviation plus what the reflection adds to it for m >> 1, but not above it.
 
+#include "libchar/allan/equivalent_dof.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "libchar/allan/confidence.hpp"
-#include "libchar/allan/lag_sum.hpp"
+#include "libchar/allan/detail/lag_sum.hpp"
+#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/allan/term_covariance.hpp"
 
 namespace libchar {
 namespace {

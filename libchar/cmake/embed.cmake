@@ -1,5 +1,5 @@
 # Turns files into one C++ source that defines a string_view function for each, so that the pages need nothing at run time.
-#   cmake -DOUTPUT=assets.cpp -DHEADER=libchar/report/assets.hpp "-DNAMES=a|b" "-DFILES=/path/a|/path/b" -P embed.cmake
+#   cmake -DOUTPUT=assets.cpp -DHEADER=libchar/report/detail/assets.hpp "-DNAMES=a|b" "-DFILES=/path/a|/path/b" -P embed.cmake
 string(REPLACE "|" ";" names "${NAMES}")
 string(REPLACE "|" ";" files "${FILES}")
 set(source "// Written by libchar/cmake/embed.cmake at build time.\n#include \"${HEADER}\"\n\nnamespace libchar {\n")

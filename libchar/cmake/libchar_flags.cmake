@@ -5,13 +5,15 @@ target_compile_features(libchar_flags INTERFACE cxx_std_20)
 target_compile_options(
   libchar_flags
   INTERFACE -ffp-contract=off
+            $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> # for ccache
             -Wall
             -Wextra
             -Wpedantic
             -Wshadow
             -Wconversion
             -Wno-sign-conversion
-            $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely inside std::string (GCC bug 105329)
+            # GCC 12 warns falsely inside std::string (GCC bug 105329); what comes from a precompiled header is no system header to it.
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>
             -Wdouble-promotion
             -Wold-style-cast
             -Wnon-virtual-dtor
@@ -31,6 +33,9 @@ if(LIBCHAR_FUZZ)
   target_compile_options(libchar_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  # The same objects for every checkout (paths relative to it), and hits where a precompiled header is used.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
+      CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()

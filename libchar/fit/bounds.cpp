@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/fit/dct_means.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/dct_means.hpp"
 
 namespace libchar {
 namespace {

@@ -1,11 +1,18 @@
 #pragma once
 // Cramér-Rao bounds: what a record of a given length can give at best.
 
+#include <array>
 #include <optional>
 
-#include "libchar/fit/bin_likelihood.hpp"
+#include "libchar/fit/detail/bin_likelihood.hpp"
 
 namespace libchar {
+
+/// What a record of this length can give at best, before any fit, for assumed coefficients: relative sd per term (nothing if absent).
+std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta,
+                                                     double rate_hz,
+                                                     double samples,
+                                                     const std::array<bool, kTerms>& fitted);
 
 /// Record length at which the bound of `term` is `relative_sd`, at the same rate; nothing when 1e12
 /// s do not do.

@@ -5,6 +5,8 @@
 //   mixture, refined three times); neither                 equal relative errors, estimated from
 //   the scatter about the fit; neighbouring residuals that go the
 //                           same way count as fewer points, n (1-r)/(1+r).
+#include "libchar/fit/curve_fit.hpp"
+
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -13,14 +15,19 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/chi_square.hpp"
+#include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/coefficients.hpp"
-#include "libchar/fit/curve_likelihood.hpp"
-#include "libchar/fit/goodness.hpp"
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/detail/curve_likelihood.hpp"
+#include "libchar/fit/detail/goodness.hpp"
+#include "libchar/fit/detail/profile.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/profile.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/curve_fit.hpp"
 
 namespace libchar {
 

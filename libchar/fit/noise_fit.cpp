@@ -6,32 +6,22 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/interval.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/fit/allan_fit.hpp"
-#include "libchar/fit/coefficients.hpp"
-#include "libchar/fit/contradiction.hpp"
-#include "libchar/fit/goodness.hpp"
-#include "libchar/fit/low_pass.hpp"
+#include "libchar/fit/detail/allan_fit.hpp"
+#include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/detail/contradiction.hpp"
+#include "libchar/fit/detail/goodness.hpp"
+#include "libchar/fit/detail/low_pass.hpp"
+#include "libchar/fit/power_bins.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/fit/spike_cleaner.hpp"
 
 namespace libchar {
-
-std::string_view name_of(Status status) {
-  switch (status) {
-    case Status::detected:
-      return "detected";
-    case Status::not_detected:
-      return "not_detected";
-    case Status::undetermined:
-      return "undetermined";
-    case Status::given:
-      return "given";
-    case Status::not_fitted:
-      return "not_fitted";
-  }
-  return "";
-}
 
 namespace {
 

@@ -7,15 +7,17 @@
 // left to the second level, so that neighbouring blocks stay uncorrelated under flicker and walk
 // and the slow noise is seen with the full resolution of the segment; white noise is exactly
 // uncorrelated within each level. Memory: two blocks and 64 means per block.
+#include "libchar/fit/power_bins.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/fit/dct_means.hpp"
-#include "libchar/fit/line_clip.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/detail/dct_means.hpp"
+#include "libchar/fit/detail/line_clip.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/fit/noise_fit.hpp"
-
 namespace libchar {
 namespace {
 

@@ -40,4 +40,7 @@ class SpikeCleaner {
 /// equal (a coarse grid), where no limit makes sense.
 double spike_limit(std::span<const double> record, double mad_limit);
 
+/// Spikes: 3-sample test y - (y₋+y₊)/2 beyond 6 MAD, local maximum, replaced by the mean of its neighbours. Returns the count.
+std::uint64_t clean_spikes(std::span<double> record, double mad_limit = 6);
+
 }  // namespace libchar

@@ -1,4 +1,4 @@
-#include "libchar/log/raw_rows.hpp"
+#include "libchar/log/detail/row_source.hpp"
 
 namespace libchar {
 

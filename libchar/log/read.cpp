@@ -15,9 +15,9 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/quality.hpp"
-#include "libchar/log/raw_rows.hpp"
-#include "libchar/log/time_base.hpp"
+#include "libchar/log/time/time_base.hpp"
 
 namespace libchar {
 namespace {

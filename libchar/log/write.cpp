@@ -7,7 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/log_writers.hpp"
+#include "libchar/log/write/log_writers.hpp"
 
 namespace libchar {
 namespace {

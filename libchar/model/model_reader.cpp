@@ -14,7 +14,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/model/noise_units.hpp"
+#include "libchar/model/detail/noise_units.hpp"
 
 namespace libchar {
 namespace {

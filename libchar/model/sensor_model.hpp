@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/core/coefficient.hpp"
+#include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
 
@@ -74,8 +75,7 @@ struct SensorModel {
   Nonlinearity nonlinearity;
   Bias bias;
   double reference_temperature_degc = 25;
-  std::array<Coefficient, kTerms>
-      noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
+  Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
   NoiseSampling noise_sampling = NoiseSampling::per_sample;
   NoiseStart noise_start = NoiseStart::stationary;
   std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"

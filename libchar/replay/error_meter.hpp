@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/interval.hpp"
 
 namespace libchar {
 

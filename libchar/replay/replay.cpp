@@ -9,11 +9,11 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/replay/algorithm_run.hpp"
-#include "libchar/replay/blind_run.hpp"
-#include "libchar/replay/find_lag.hpp"
-#include "libchar/replay/judgement.hpp"
-#include "libchar/replay/plan.hpp"
+#include "libchar/replay/detail/algorithm_run.hpp"
+#include "libchar/replay/detail/blind_run.hpp"
+#include "libchar/replay/detail/find_lag.hpp"
+#include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/plan.hpp"
 
 namespace libchar {
 namespace {

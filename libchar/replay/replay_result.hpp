@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/interval.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/error_meter.hpp"
-#include "libchar/replay/scene.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "libchar/core/json.hpp"
-#include "libchar/report/comparison.hpp"
-#include "libchar/report/comparison_check.hpp"
+#include "libchar/replay/comparison.hpp"
+#include "libchar/replay/comparison_check.hpp"
 
 namespace libchar {
 

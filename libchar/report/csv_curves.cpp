@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/escape.hpp"
-#include "libchar/report/model_curve.hpp"
 #include "libchar/report/outputs.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
 namespace {

@@ -8,18 +8,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
-#include "libchar/report/assets.hpp"
+#include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/html_page.hpp"
+#include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/escape.hpp"
-#include "libchar/report/html_page.hpp"
-#include "libchar/report/html_parts.hpp"
 #include "libchar/report/json_pieces.hpp"
-#include "libchar/report/model_curve.hpp"
 #include "libchar/report/outputs.hpp"
-#include "libchar/report/people.hpp"
-#include "libchar/report/verdict.hpp"
 
 namespace libchar {
 namespace {

@@ -1,7 +1,8 @@
 #pragma once
 // One channel's share of each shared document (outputs_json.cpp), for those who assemble them.
 
-#include "libchar/report/characterization.hpp"
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
 

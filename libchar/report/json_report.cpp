@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/verification.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/report/detail/verification_json.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
-#include "libchar/report/model_curve.hpp"
 #include "libchar/report/outputs.hpp"
-#include "libchar/report/verdict.hpp"
-#include "libchar/report/verification.hpp"
 
 namespace libchar {
 namespace {

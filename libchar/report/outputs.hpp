@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/report/characterization.hpp"
+#include "libchar/characterize/characterization.hpp"
 
 namespace libchar {
 

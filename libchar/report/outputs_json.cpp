@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
-#include "libchar/report/model_curve.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {

@@ -7,16 +7,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
-#include "libchar/report/assets.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/html_page.hpp"
+#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/detail/replay_tables.hpp"
 #include "libchar/report/escape.hpp"
-#include "libchar/report/html_page.hpp"
-#include "libchar/report/html_parts.hpp"
-#include "libchar/report/people.hpp"
 #include "libchar/report/replay_json.hpp"
-#include "libchar/report/replay_tables.hpp"
-#include "libchar/report/replay_verdict.hpp"
 #include "libchar/report/replay_words.hpp"
 
 namespace libchar {

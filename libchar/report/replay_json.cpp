@@ -5,11 +5,12 @@
 
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/detail/replay_timeline.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
-#include "libchar/report/replay_timeline.hpp"
-#include "libchar/report/replay_verdict.hpp"
 #include "libchar/report/replay_words.hpp"
+#include "libchar/scene/scene_writer.hpp"
 
 namespace libchar {
 namespace {

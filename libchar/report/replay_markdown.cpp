@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libchar/core/text.hpp"
+#include "libchar/replay/verdict.hpp"
 #include "libchar/report/escape.hpp"
-#include "libchar/report/replay_verdict.hpp"
 
 namespace libchar {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/report/people.hpp"
 
 namespace libchar {
 namespace {

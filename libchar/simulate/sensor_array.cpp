@@ -14,7 +14,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/simulate/sensor_chain.hpp"
+#include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
 namespace {

@@ -10,6 +10,8 @@
 // tested). The amplitude is that of the whole main lobe: A^2 / 2 = sum (P_k - floor) df, true at
 // any frequency between bins.
 
+#include "libchar/spectrum/lines.hpp"
+
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -20,6 +22,7 @@
 
 #include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/window.hpp"
 
 namespace libchar {
 namespace {

@@ -8,6 +8,8 @@
 // of the level before, so that all levels together cost 8/7 of the first, and Welch's method with
 // short segments is enough at each.
 
+#include "libchar/spectrum/log_spectrum.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +17,7 @@
 #include <numbers>
 
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
 namespace {

@@ -1,6 +1,8 @@
 // Welch's method over a record in memory: choose the segment, then sum groups of segments, in
 // parallel and in order.
 
+#include "libchar/spectrum/welch.hpp"
+
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
@@ -15,8 +17,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/spectrum/half_segments.hpp"
-#include "libchar/spectrum/segments.hpp"
+#include "libchar/spectrum/detail/half_segments.hpp"
+#include "libchar/spectrum/detail/segments.hpp"
 
 namespace libchar {
 

@@ -1,6 +1,8 @@
 // Welch's method on samples as they come. By pairs of halves, where that is possible: each is
 // transformed once. Else one segment is kept, its tail is the head of the next.
 
+#include "libchar/spectrum/welch_stream.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +12,8 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/spectrum/half_segments.hpp"
-#include "libchar/spectrum/segments.hpp"
+#include "libchar/spectrum/detail/half_segments.hpp"
+#include "libchar/spectrum/detail/segments.hpp"
 
 namespace libchar {
 

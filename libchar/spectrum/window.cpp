@@ -3,11 +3,11 @@
 // 4-term; flat top: G. D'Antona and A. Ferrero, Digital Signal Processing for Measurement Systems,
 // 2006 (the five terms used by MATLAB and SciPy).
 
+#include "libchar/spectrum/window.hpp"
+
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
 namespace {

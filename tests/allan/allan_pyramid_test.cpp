@@ -1,5 +1,7 @@
 // The streaming curve against direct sums: values, counts, pieces, missing samples, extremes.
 
+#include "libchar/allan/allan_pyramid.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

@@ -8,6 +8,8 @@
 #include <map>
 #include <random>
 
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/shared.hpp"

@@ -11,7 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/moments.hpp"
 

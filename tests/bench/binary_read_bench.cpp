@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "libchar/log/raw_rows.hpp"
+#include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/write.hpp"
 
 namespace {

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/log/csv_dialect.hpp"
-#include "libchar/log/csv_rows.hpp"
+#include "libchar/log/csv/dialect.hpp"
+#include "libchar/log/csv/rows.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
 

@@ -7,8 +7,13 @@
 #include <cstdlib>
 #include <string>
 
-#include "libchar/fit/bin_likelihood.hpp"
+#include "libchar/core/coefficient.hpp"
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/detail/bin_likelihood.hpp"
+#include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/power_bins.hpp"
 #include "tests/support/noise.hpp"
 
 namespace {

@@ -21,12 +21,15 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/allan/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/fit/dct_means.hpp"
-#include "libchar/simulate/kasdin.hpp"
-#include "libchar/simulate/noise_generator.hpp"
+#include "libchar/core/chi_square.hpp"
+#include "libchar/fit/detail/dct_means.hpp"
+#include "libchar/simulate/detail/kasdin.hpp"
+#include "libchar/simulate/detail/noise_generator.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 using namespace libchar;

@@ -21,9 +21,12 @@
 #include <string>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
+#include "tests/support/places.hpp"
 
 namespace {
 
@@ -334,8 +337,7 @@ int main(int argc, char** argv) {
   for (std::size_t s = 0; s < kScenes.size(); ++s)
     if (wanted.empty() || wanted.find(static_cast<char>('0' + s)) != std::string::npos)
       run_scene(kScenes[s], 20 + s, records);
-  const std::filesystem::path curves =
-      std::filesystem::path(LIBCHAR_SHARED_DIR) / "oracle/allan/imu_utils_mit";
+  const std::filesystem::path curves = test::shared_folder() / "oracle/allan/imu_utils_mit";
   if (std::filesystem::exists(curves))
     run_curves(curves);
   else

@@ -13,7 +13,10 @@
 #include <vector>
 
 #include "libchar/spectrum/fft.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
 
 using namespace libchar;
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "libchar/core/json.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/run.hpp"
 
 using namespace libchar;
@@ -18,8 +19,7 @@ struct Example {
 };
 
 std::vector<Example> examples() {
-  std::istringstream page(
-      test::slurp(std::filesystem::path(LIBCHAR_SOURCE_DIR) / "docs/formats.md"));
+  std::istringstream page(test::slurp(test::source_folder() / "docs/formats.md"));
   std::vector<Example> found;
   bool inside = false;
   for (std::string line; std::getline(page, line);) {

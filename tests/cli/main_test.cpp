@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/places.hpp"
 #include "tests/support/run.hpp"
 
 using Catch::Contains;
@@ -82,11 +83,8 @@ TEST_CASE("control characters in a file name do not reach the terminal") {
 
 TEST_CASE("a reader that goes away is no failure") {
   const std::string log = test::fixture("npy/c_order.npy").string();
-  const auto ran = test::run_words({"bash",
-                                    "-c",
-                                    "set -o pipefail; \"$0\" inspect \"$1\" --json | true",
-                                    SENSORCHAR_PROGRAM,
-                                    log});
+  const auto ran = test::run_words(
+      {"bash", "-c", "set -o pipefail; \"$0\" inspect \"$1\" --json | true", test::program(), log});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
 }
@@ -103,7 +101,7 @@ TEST_CASE("a log from another program, by the shell's <(…), is read as text") 
        {R"("$0" inspect <(cat "$1") >/dev/null)",
         R"("$0" convert <(cat "$1") -o "$2" --quiet)",
         R"("$0" characterize <(cat "$1") -o "$2.report" --quiet >/dev/null)"}) {
-    const auto ran = test::run_words({"bash", "-c", script, SENSORCHAR_PROGRAM, log, out});
+    const auto ran = test::run_words({"bash", "-c", script, test::program(), log, out});
     INFO(script << ran.err);
     CHECK(ran.code == 0);
   }
@@ -121,13 +119,8 @@ TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
   const std::string fifo = (folder / "pipe").string();
   const std::string out = (folder / "out.npy").string();
   for (const char* data : {"x\\n", "x\\n1\\n2\\n"}) {
-    const auto ran = test::run_words({"bash",
-                                      "-c",
-                                      "rm -f \"$2\"; mkfifo \"$2\"; " + script,
-                                      SENSORCHAR_PROGRAM,
-                                      out,
-                                      fifo,
-                                      data});
+    const auto ran = test::run_words(
+        {"bash", "-c", "rm -f \"$2\"; mkfifo \"$2\"; " + script, test::program(), out, fifo, data});
     INFO(ran.err);
     CHECK(ran.code == 143);
     CHECK_FALSE(std::filesystem::exists(out));

@@ -7,6 +7,9 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/window.hpp"
 #include "tests/support/run.hpp"
 
 using namespace libchar;

@@ -5,6 +5,7 @@
 
 #include "libchar/core/json.hpp"
 #include "libchar/log/read.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/run.hpp"
 
 using Catch::Contains;
@@ -372,7 +373,7 @@ TEST_CASE("replay: stopped by Ctrl-C: exit code 130 and nothing is left") {
                                       "-s",
                                       signal,
                                       "0.7",
-                                      SENSORCHAR_PROGRAM,
+                                      test::program(),
                                       "replay",
                                       scene,
                                       "-o",

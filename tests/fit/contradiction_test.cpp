@@ -1,4 +1,4 @@
-#include "libchar/fit/contradiction.hpp"
+#include "libchar/fit/detail/contradiction.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,5 @@
+#include "libchar/fit/curve_fit.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -5,8 +7,11 @@
 #include <sstream>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 #include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"

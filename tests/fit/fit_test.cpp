@@ -4,9 +4,10 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/bin_likelihood.hpp"
+#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/detail/bin_likelihood.hpp"
+#include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/fit_json.hpp"
-#include "libchar/fit/polish.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
 #include "tests/support/noise.hpp"
 

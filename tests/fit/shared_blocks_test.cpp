@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/power_bins.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 using namespace libchar;

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "libchar/fusion/inverse_variance.hpp"
-#include "libchar/fusion/mean.hpp"
+#include "libchar/fusion/algorithms/inverse_variance.hpp"
+#include "libchar/fusion/algorithms/mean.hpp"
 #include "tests/fusion/vectors.hpp"
 
 using namespace libchar::fusion;

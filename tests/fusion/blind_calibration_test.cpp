@@ -1,7 +1,7 @@
 // Blind calibration: known answers for both gauges, the published recursion, and what taking off
 // the noise is worth.
 
-#include "libchar/fusion/blind_calibration.hpp"
+#include "libchar/fusion/algorithms/blind_calibration.hpp"
 
 #include <catch2/catch.hpp>
 

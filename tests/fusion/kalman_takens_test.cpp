@@ -1,6 +1,6 @@
 // Kalman-Takens against oracle/fusion/kalman_takens.csv; the search against sorting; its limits.
 
-#include "libchar/fusion/kalman_takens.hpp"
+#include "libchar/fusion/algorithms/kalman_takens.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

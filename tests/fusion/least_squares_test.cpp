@@ -1,11 +1,11 @@
 // Least squares: calibration and weights of the known answers; bounds.
 
-#include "libchar/fusion/least_squares.hpp"
+#include "libchar/fusion/algorithms/least_squares.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/bounds.hpp"
+#include "libchar/fusion/algorithms/bounds.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 

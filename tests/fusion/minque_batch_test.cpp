@@ -1,12 +1,12 @@
 // Batch MINQUE and REML, generalized least squares, identifiability: known answers.
 
-#include "libchar/fusion/minque_batch.hpp"
+#include "libchar/fusion/detail/minque_batch.hpp"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "libchar/fusion/generalized_least_squares.hpp"
+#include "libchar/fusion/detail/generalized_least_squares.hpp"
 #include "tests/fusion/vectors.hpp"
 
 using namespace libchar::fusion;

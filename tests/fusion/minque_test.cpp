@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "libchar/fusion/minque_batch.hpp"
+#include "libchar/fusion/detail/minque_batch.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 

@@ -1,13 +1,13 @@
 // The tanh network against oracle/fusion/mlp.csv; its training: what it reaches and what it
 // refuses.
 
-#include "libchar/fusion/perceptron.hpp"
+#include "libchar/fusion/algorithms/perceptron.hpp"
 
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/network_training.hpp"
+#include "libchar/fusion/detail/network_training.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 

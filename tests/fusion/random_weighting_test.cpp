@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/minque_batch.hpp"
+#include "libchar/fusion/detail/minque_batch.hpp"
 #include "tests/fusion/vectors.hpp"
 
 using namespace libchar::fusion;

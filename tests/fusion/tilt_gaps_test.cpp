@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/fusion/algorithms/tilt_kalman.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"
 

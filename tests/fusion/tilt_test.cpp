@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/tilt_complementary.hpp"
-#include "libchar/fusion/tilt_kalman.hpp"
+#include "libchar/fusion/algorithms/tilt_complementary.hpp"
+#include "libchar/fusion/algorithms/tilt_kalman.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 

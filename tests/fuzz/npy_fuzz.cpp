@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/raw_rows.hpp"
+#include "libchar/log/detail/row_source.hpp"
 #include "tests/support/memory_log.hpp"
 
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/raw_rows.hpp"
-#include "libchar/log/sidecar.hpp"
+#include "libchar/log/binary/sidecar.hpp"
+#include "libchar/log/detail/row_source.hpp"
 
 namespace {
 

@@ -11,7 +11,9 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/replay/scene.hpp"
+#include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/scene_writer.hpp"
 
 using namespace libchar;
 

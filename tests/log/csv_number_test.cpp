@@ -1,5 +1,3 @@
-#include "libchar/log/csv_number.hpp"
-
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -7,6 +5,8 @@
 #include <cmath>
 #include <random>
 #include <string>
+
+#include "libchar/log/csv/number.hpp"
 
 using namespace libchar::csv;
 

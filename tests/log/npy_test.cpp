@@ -9,7 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
-#include "libchar/log/npy_header.hpp"
+#include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/rows.hpp"
 #include "tests/support/shared.hpp"

@@ -1,4 +1,4 @@
-#include "libchar/log/plain_rows.hpp"
+#include "libchar/log/csv/plain_rows.hpp"
 
 #include <catch2/catch.hpp>
 #include <charconv>

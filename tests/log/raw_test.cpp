@@ -4,9 +4,9 @@
 #include <fstream>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/binary/sidecar.hpp"
+#include "libchar/log/binary/yaml_guard.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/log/sidecar.hpp"
-#include "libchar/log/yaml_guard.hpp"
 #include "tests/support/rows.hpp"
 #include "tests/support/shared.hpp"
 

@@ -1,6 +1,6 @@
 // The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on
 // made-up clocks.
-#include "libchar/log/time_base.hpp"
+#include "libchar/log/time/time_base.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "libchar/log/stamp_sketch.hpp"
+#include "libchar/log/time/stamp_sketch.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;

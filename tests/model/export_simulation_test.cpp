@@ -9,6 +9,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/json.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/model/imu_models.hpp"
 #include "tests/support/noise.hpp"

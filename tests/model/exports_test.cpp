@@ -12,10 +12,11 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
-#include "libchar/model/export_figures.hpp"
+#include "libchar/export/detail/export_figures.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "tests/model/imu_models.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -156,7 +157,7 @@ TEST_CASE("known answers: Basalt, ROS, MATLAB, PX4, gnss-ins-sim, RotorS") {
 
 TEST_CASE(
     "the table: every target writes version, recording and formula, and is in the documentation") {
-  const std::string page = test::slurp(std::string(LIBCHAR_SOURCE_DIR) + "/docs/exports.md");
+  const std::string page = test::slurp(test::source_folder().string() + "/docs/exports.md");
   std::set<std::string> names;
   CHECK(export_targets().size() == 15);
   for (const ExportTarget& target : export_targets()) {

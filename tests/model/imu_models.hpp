@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/model/exports.hpp"
+#include "libchar/export/exports.hpp"
 
 namespace test {
 

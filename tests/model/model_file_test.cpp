@@ -6,8 +6,8 @@
 #include <regex>
 #include <sstream>
 
+#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/model/from_fit.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/model/from_fit.hpp"
+#include "libchar/model/detail/noise_units.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/model/noise_units.hpp"
 #include "tests/report/synthetic.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -165,7 +166,7 @@ TEST_CASE("model reader: kind and axis from unit and name") {
 }
 
 TEST_CASE("model reader: every example of docs/models.md is read") {
-  const std::string page = test::slurp(std::string(LIBCHAR_SOURCE_DIR) + "/docs/models.md");
+  const std::string page = test::slurp(test::source_folder().string() + "/docs/models.md");
   std::size_t examples = 0;
   for (std::size_t at = 0; (at = page.find("```yaml\n", at)) != std::string::npos;) {
     const std::size_t begin = at + 8, end = page.find("```", begin);

@@ -1,10 +1,10 @@
-#include "libchar/replay/feed.hpp"
+#include "libchar/replay/detail/feed.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/replay/resampled.hpp"
-#include "libchar/replay/rest.hpp"
+#include "libchar/replay/detail/resampled.hpp"
+#include "libchar/replay/detail/rest.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

@@ -7,6 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/replay/replay.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

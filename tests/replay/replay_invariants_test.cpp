@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "libchar/replay/replay.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/support/shared.hpp"
 

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/replay/scene.hpp"
+#include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/support/shared.hpp"
 
 namespace test {

@@ -4,12 +4,13 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "libchar/scene/scene_writer.hpp"
 #include "tests/replay/scene_text.hpp"
+#include "tests/support/places.hpp"
 
 TEST_CASE("every example of docs/scenes.md is read as the page says") {
   const test::SceneBench bench;
-  std::istringstream page(
-      test::slurp(std::filesystem::path(LIBCHAR_SOURCE_DIR) / "docs/scenes.md"));
+  std::istringstream page(test::slurp(test::source_folder() / "docs/scenes.md"));
   std::string text, code;
   bool inside = false;
   int good = 0, bad = 0;

@@ -1,13 +1,13 @@
-#include "libchar/report/comparison.hpp"
+#include "libchar/replay/comparison.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/comparison_check.hpp"
+#include "libchar/replay/comparison_check.hpp"
+#include "libchar/replay/replay_summary.hpp"
 #include "libchar/report/comparison_text.hpp"
-#include "libchar/report/replay_summary.hpp"
 #include "tests/support/shared.hpp"
 
 using Catch::Contains;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "libchar/core/whole_file.hpp"
-#include "libchar/report/assets.hpp"
+#include "libchar/report/detail/assets.hpp"
 #include "libchar/report/outputs.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/shared.hpp"

@@ -10,6 +10,7 @@
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 int main(int argc, char** argv) {

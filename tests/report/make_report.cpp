@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/whole_file.hpp"
-#include "libchar/model/from_fit.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/outputs.hpp"
 #include "tests/report/synthetic.hpp"

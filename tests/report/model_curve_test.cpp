@@ -1,4 +1,4 @@
-#include "libchar/report/model_curve.hpp"
+#include "libchar/characterize/model_curve.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

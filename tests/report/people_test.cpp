@@ -1,7 +1,7 @@
-#include "libchar/report/people.hpp"
-
 #include <catch2/catch.hpp>
 #include <limits>
+
+#include "libchar/core/readable.hpp"
 
 using namespace libchar;
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "libchar/report/assets.hpp"
+#include "libchar/report/detail/assets.hpp"
 #include "libchar/report/replay_markdown.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

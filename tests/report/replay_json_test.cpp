@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/report/replay_timeline.hpp"
-#include "libchar/report/replay_verdict.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/detail/replay_timeline.hpp"
 #include "libchar/report/replay_words.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/report/replay_tables.hpp"
+#include "libchar/report/detail/replay_tables.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "libchar/report/characterization.hpp"
+#include "libchar/characterize/characterization.hpp"
 
 using namespace libchar;
 

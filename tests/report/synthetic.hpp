@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/report/characterization.hpp"
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/chi_square.hpp"
 
 namespace test {
 

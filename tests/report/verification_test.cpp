@@ -1,4 +1,4 @@
-#include "libchar/report/verification.hpp"
+#include "libchar/characterize/verification.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/coefficient.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 

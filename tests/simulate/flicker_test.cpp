@@ -1,4 +1,4 @@
-#include "libchar/simulate/flicker.hpp"
+#include "libchar/simulate/detail/flicker.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/simulate/kasdin.hpp"
+#include "libchar/simulate/detail/kasdin.hpp"
 
 using namespace libchar;
 

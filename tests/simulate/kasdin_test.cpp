@@ -1,4 +1,4 @@
-#include "libchar/simulate/kasdin.hpp"
+#include "libchar/simulate/detail/kasdin.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

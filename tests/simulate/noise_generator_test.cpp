@@ -1,4 +1,4 @@
-#include "libchar/simulate/noise_generator.hpp"
+#include "libchar/simulate/detail/noise_generator.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -10,12 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/chi_square.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/dct_means.hpp"
-#include "libchar/fit/low_pass.hpp"
+#include "libchar/fit/detail/dct_means.hpp"
+#include "libchar/fit/detail/low_pass.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 using namespace libchar;

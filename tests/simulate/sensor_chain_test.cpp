@@ -1,4 +1,4 @@
-#include "libchar/simulate/sensor_chain.hpp"
+#include "libchar/simulate/detail/sensor_chain.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

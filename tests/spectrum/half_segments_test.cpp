@@ -1,4 +1,4 @@
-#include "libchar/spectrum/half_segments.hpp"
+#include "libchar/spectrum/detail/half_segments.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,8 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/fft.hpp"
-#include "libchar/spectrum/segments.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
 
 using namespace libchar;
 

@@ -1,3 +1,5 @@
+#include "libchar/spectrum/lines.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -6,6 +8,8 @@
 
 #include "libchar/spectrum/fft.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/window.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

@@ -1,9 +1,13 @@
+#include "libchar/spectrum/log_spectrum.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/window.hpp"
 
 using namespace libchar;
 

@@ -1,3 +1,5 @@
+#include "libchar/spectrum/welch.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -9,6 +11,9 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/window.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/log/raw_rows.hpp"
+#include "libchar/log/detail/row_source.hpp"
 
 namespace test {
 

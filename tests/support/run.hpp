@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
 #include "tests/support/shared.hpp"
 
 namespace test {
@@ -61,7 +62,7 @@ inline Ran run_words(const std::vector<std::string>& words, const RunOptions& op
 
 /// Runs sensorchar with these arguments.
 inline Ran run(std::vector<std::string> arguments, const RunOptions& options = {}) {
-  arguments.insert(arguments.begin(), SENSORCHAR_PROGRAM);
+  arguments.insert(arguments.begin(), test::program());
   return run_words(arguments, options);
 }
 

@@ -9,13 +9,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/places.hpp"
+
 namespace test {
 
 inline std::filesystem::path shared(const std::string& name) {
-  return std::filesystem::path(LIBCHAR_SHARED_DIR) / name;
+  return test::shared_folder() / name;
 }
 inline std::filesystem::path fixture(const std::string& name) {
-  return std::filesystem::path(LIBCHAR_FIXTURES_DIR) / name;
+  return test::fixtures_folder() / name;
 }
 
 inline std::string slurp(const std::filesystem::path& path) {

@@ -9,12 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/fusion/blind_calibration.hpp"
-#include "libchar/fusion/least_squares.hpp"
+#include "libchar/fusion/algorithms/blind_calibration.hpp"
+#include "libchar/fusion/algorithms/least_squares.hpp"
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/noise_level.hpp"
-#include "libchar/replay/scene.hpp"
+#include "libchar/replay/detail/noise_level.hpp"
+#include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "libchar/simulate/sensor_array.hpp"
+#include "tests/support/places.hpp"
 
 namespace test::thesis {
 
@@ -32,7 +34,7 @@ struct Recorded {
 
 inline Recorded simulate(const std::string& file, std::uint64_t seed, bool flicker = true) {
   Recorded r;
-  r.scene = libchar::read_scene_file(std::string(LIBCHAR_FIXTURES_DIR) + "/scenes/" + file);
+  r.scene = libchar::read_scene_file(test::fixtures_folder().string() + "/scenes/" + file);
   libchar::ArraySimulation& s = *r.scene.simulate;
   s.seed = seed;
   if (!flicker)

@@ -1,0 +1,31 @@
+#pragma once
+// The overlapping Allan deviation of a stream, at octaves, in constant memory.
+
+#include <memory>
+#include <span>
+
+#include "libchar/allan/allan_deviation.hpp"
+
+namespace libchar {
+
+/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m
+/// >= 8 at stride m/4 (accuracy.md 9-10). One pass, no cumulative sum over the record. Result
+/// independent of block boundaries.
+class AllanPyramid {
+ public:
+  AllanPyramid();
+  ~AllanPyramid();
+  AllanPyramid(AllanPyramid&&) noexcept;
+  AllanPyramid& operator=(AllanPyramid&&) noexcept;
+  void push(std::span<const double> samples);
+  AllanCurve finish(double dt_s) const;
+
+ private:
+  struct State;
+  struct StateDeleter {
+    void operator()(State* state) const;
+  };
+  std::unique_ptr<State, StateDeleter> state_;
+};
+
+}  // namespace libchar

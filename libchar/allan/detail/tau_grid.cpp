@@ -1,0 +1,117 @@
+#include "libchar/allan/detail/tau_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kDenseUpTo = 1000;  // every m
+constexpr double kDensePerDecade = 200;     // beyond
+
+/// Largest m that leaves one term.
+std::uint64_t largest_factor(DeviationType type, std::uint64_t samples) {
+  if (type == DeviationType::totdev) return samples > 0 ? samples - 1 : 0;
+  std::uint64_t m = samples / 2 + 1;
+  if (type != DeviationType::adev && type != DeviationType::oadev) m = samples / 3 + 1;
+  while (m > 0 && term_span(type, m) > samples) --m;
+  return m;
+}
+
+std::vector<std::uint64_t> regular_grid(TauGrid grid, std::uint64_t largest) {
+  std::vector<std::uint64_t> factors;
+  if (grid == TauGrid::octave)
+    for (std::uint64_t m = 1; m <= largest; m *= 2) factors.push_back(m);
+  if (grid == TauGrid::decade)
+    for (std::uint64_t decade = 1; decade <= largest; decade *= 10)
+      for (const std::uint64_t m : {decade, 2 * decade, 4 * decade})
+        if (m <= largest) factors.push_back(m);
+  if (grid == TauGrid::dense) {
+    for (std::uint64_t m = 1; m <= std::min(largest, kDenseUpTo); ++m) factors.push_back(m);
+    for (double k = 1;; ++k) {
+      const double m =
+          std::round(static_cast<double>(kDenseUpTo) * std::pow(10, k / kDensePerDecade));
+      if (m > static_cast<double>(largest)) break;
+      factors.push_back(static_cast<std::uint64_t>(m));
+    }
+  }
+  return factors;
+}
+
+std::vector<std::uint64_t> listed(const std::vector<double>& taus,
+                                  double dt_s,
+                                  double largest,
+                                  std::vector<std::string>& notes) {
+  std::vector<std::uint64_t> factors;
+  std::uint64_t too_long = 0, moved = 0;
+  for (const double tau : taus) {
+    if (!(tau > 0) || !std::isfinite(tau))
+      throw Error({ErrorKind::usage,
+                   "",
+                   "",
+                   "an averaging time must be a positive number of seconds",
+                   shortest(tau),
+                   ""});
+    const double m = std::max(1.0, std::round(tau / dt_s));
+    moved += std::abs(m * dt_s / tau - 1) > 1e-6 ? 1 : 0;
+    if (m > largest)
+      ++too_long;
+    else
+      factors.push_back(static_cast<std::uint64_t>(m));
+  }
+  if (too_long > 0)
+    notes.push_back(std::to_string(too_long) +
+                    " of the listed averaging times left out: longer than the record allows (" +
+                    significant(largest * dt_s, 4) + " s)");
+  if (moved > 0)
+    notes.push_back(
+        std::to_string(moved) +
+        " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
+        significant(dt_s, 4) + " s)");
+  return factors;
+}
+
+}  // namespace
+
+std::uint64_t term_span(DeviationType type, std::uint64_t m) {
+  switch (type) {
+    case DeviationType::mdev:
+    case DeviationType::tdev:
+      return 3 * m - 1;
+    case DeviationType::hdev:
+    case DeviationType::ohdev:
+      return 3 * m;
+    case DeviationType::totdev:
+      return m + 1;
+    default:
+      return 2 * m;
+  }
+}
+
+std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
+                                             double dt_s,
+                                             std::uint64_t samples,
+                                             std::vector<std::string>& notes) {
+  const double duration = static_cast<double>(samples) * dt_s;
+  const double tau_max = options.tau_max_s > 0 ? options.tau_max_s : duration / 2;
+  // A hair of slack: tau_max and tau_min are decimal numbers, the multiples of dt are not.
+  const double slack = 1 + 1e-9;
+  const std::uint64_t largest = static_cast<std::uint64_t>(
+      std::min(static_cast<double>(largest_factor(options.type, samples)),
+               std::max(1.0, std::floor(tau_max / dt_s * slack))));
+  std::vector<std::uint64_t> factors =
+      options.grid == TauGrid::list
+          ? listed(options.taus_s, dt_s, static_cast<double>(largest), notes)
+          : regular_grid(options.grid, largest);
+  std::sort(factors.begin(), factors.end());
+  factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
+  std::erase_if(factors, [&](std::uint64_t m) {
+    return static_cast<double>(m) * dt_s * slack < options.tau_min_s;
+  });
+  return factors;
+}
+
+}  // namespace libchar

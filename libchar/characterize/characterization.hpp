@@ -1,0 +1,83 @@
+#pragma once
+// The main job: one pass over a log, curves, fit, and everything a report needs to show.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/json.hpp"
+#include "libchar/core/progress.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/log/quality.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+
+namespace libchar {
+
+/// How the samples of a channel are to be understood.
+enum class SampleKind {
+  rate,       ///< the quantity itself (angular rate, acceleration, fractional frequency…)
+  phase,      ///< its integral (angle, clock phase): differenced once, a point fewer
+  frequency,  ///< a frequency in its unit around `nominal_frequency`: y = (f - nominal) / nominal
+};
+
+/// What is to be computed; nothing else is.
+struct Wanted {
+  bool quality = true;
+  bool allan =
+      true;  ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
+  bool spectrum = true;
+  bool fit = true;
+};
+
+struct CharacterizeOptions {
+  ReadOptions reading;
+  Wanted wanted;
+  SampleKind data = SampleKind::rate;
+  double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
+  AllanOptions allan;
+  WelchOptions spectrum;
+  FitOptions fit;
+  std::uint64_t memory_bytes =
+      std::uint64_t{1}
+      << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
+  std::uint64_t exact_samples =
+      std::uint64_t{1}
+      << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
+  bool full_overlap =
+      false;  ///< every term of the overlapping Allan deviation whatever the record's length
+};
+
+struct ChannelVerification;
+
+struct ChannelResult {
+  Channel channel;
+  ChannelQuality quality;
+  AllanCurve
+      allan;  ///< with intervals for the fitted mixture; no points when the record is too short
+  Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
+  std::vector<SpectralLine> lines;
+  std::optional<NoiseFit> fit;
+  std::vector<std::string> problems;  ///< why something is absent, in sentences
+  std::shared_ptr<const ChannelVerification>
+      verification;  ///< when it was asked for (verification.hpp)
+};
+
+struct Characterization {
+  LogInfo log;
+  std::vector<ChannelResult> channels;
+  Json settings;                     ///< effective settings, for provenance
+  std::vector<std::string> command;  ///< as typed
+  double seconds = 0;                ///< measured; kept apart from everything else in the outputs
+};
+
+/// Reads the log once (a second time only when a remedy asks for it) and computes what the report shows.
+Characterization characterize(const std::string& path,
+                              const CharacterizeOptions& options,
+                              Progress& progress = no_progress());
+
+}  // namespace libchar

@@ -1,0 +1,247 @@
+#include "libchar/characterize/detail/channel_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "libchar/allan/confidence.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/fit/remedies.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kPlottedBins =
+    400;  // enough for a log–log plot, small enough for a page of many channels
+constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
+
+// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
+Mixture plain_white(const AllanCurve& curve) {
+  Mixture theta{};
+  if (!curve.points.empty())
+    theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
+  return theta;
+}
+
+WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
+  options.segment = segment;
+  return options;
+}
+
+// Half segments that may serve as blocks of the fit: long enough for their sixteen coefficients left to the series of means to be
+// few, short enough for many of them in a record.
+bool serves_as_block(std::uint64_t half) {
+  return half >= 4096 && half <= (std::uint64_t{1} << 16U);
+}
+
+// Whole halves go to the fit with the transform that the spectrum makes of them.
+struct HalvesToBins final : HalfListener {
+  explicit HalvesToBins(PowerBinner& into) : bins(into) {}
+  bool half(std::span<const double> samples, bool whole) override {
+    if (whole && bins.take_block(samples)) return true;
+    bins.push(samples);
+    return false;
+  }
+  PowerBinner& bins;
+};
+
+// A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
+template <class Step>
+void attempt(ChannelResult& result, const char* what, Step&& step) {
+  try {
+    step();
+  } catch (const Error& error) {
+    if (error.fault().kind != ErrorKind::numeric) throw;
+    result.problems.push_back(fmt::format("no {}: {}", what, error.fault().what));
+  }
+}
+
+}  // namespace
+
+void ChannelStage::push(std::span<const double> samples) {
+  const bool second = streams_ && streams_->cleaner;
+  if (!second) quality_.push(samples);
+  if (options_->data == SampleKind::rate) {
+    stream(samples);
+  } else {
+    as_rate(samples);
+    stream(differenced_);
+  }
+}
+
+// Phase becomes rate · dt (the division by dt waits for the final rate); frequency becomes fractional frequency.
+void ChannelStage::as_rate(std::span<const double> samples) {
+  differenced_.clear();
+  if (options_->data == SampleKind::frequency) {
+    const double nominal = options_->nominal_frequency;
+    for (const double f : samples)
+      differenced_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
+    return;
+  }
+  for (const double x : samples) {
+    if (previous_phase_) differenced_.push_back(x - *previous_phase_);
+    previous_phase_ = x;
+  }
+}
+
+void ChannelStage::stream(std::span<const double> samples) {
+  if (streams_ && streams_->cleaner) {
+    streams_->bins.push(streams_->cleaner->push(samples));
+    return;
+  }
+  samples_ += samples.size();
+  if (keeping_) {
+    kept_.insert(kept_.end(), samples.begin(), samples.end());
+    return;
+  }
+  const bool fit = options_->wanted.fit || options_->wanted.allan;
+  if (options_->wanted.allan) streams_->allan.push(samples);
+  if (streams_->shared_blocks) {
+    HalvesToBins listener(streams_->bins);
+    streams_->spectrum->push(samples, &listener);
+    return;
+  }
+  if (options_->wanted.spectrum) streams_->spectrum->push(samples);
+  if (fit) streams_->bins.push(samples);
+}
+
+void ChannelStage::reserve(std::size_t samples) {
+  try {
+    kept_.reserve(samples);
+  } catch (const std::bad_alloc&) {
+    // Where address space is short the record grows as it comes.
+  }
+}
+
+void ChannelStage::stop_keeping() {
+  if (!keeping_) return;
+  if (options_->data == SampleKind::phase)
+    throw Error({ErrorKind::usage,
+                 "E0701",
+                 "",
+                 "phase data longer than the memory budget cannot be streamed",
+                 "",
+                 "raise --memory"});
+  keeping_ = false;
+  streams_.emplace();
+  const std::uint64_t segment = options_->spectrum.segment;
+  streams_->spectrum.emplace(
+      with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
+  const std::uint64_t half = streams_->spectrum->half();
+  streams_->shared_blocks = options_->wanted.spectrum &&
+                            (options_->wanted.fit || options_->wanted.allan) &&
+                            serves_as_block(half);
+  if (streams_->shared_blocks) streams_->bins = PowerBinner(half);
+  const std::vector<double> kept = std::move(kept_);
+  kept_ = {};
+  samples_ = 0;
+  stream(kept);
+}
+
+bool ChannelStage::needs_second_pass() const {
+  if (keeping_ || !options_->fit.remedies || !(options_->wanted.fit || options_->wanted.allan))
+    return false;
+  const ChannelQuality quality = quality_.finish();
+  return quality.difference_kurtosis > spike_alarm(quality.samples);
+}
+
+void ChannelStage::begin_second_pass() {
+  streams_->bins = PowerBinner(kStreamedBlock);
+  streams_->shared_blocks = false;
+  streams_->cleaner.emplace();
+}
+
+void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+  const bool exact = kept_.size() <= options_->exact_samples;
+  AllanOptions allan = options_->allan;
+  allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+  const bool octaves = allan.type == DeviationType::oadev && allan.grid == TauGrid::octave;
+  if (options_->wanted.allan || options_->wanted.fit)
+    attempt(result, "Allan deviation", [&] {
+      if (exact || options_->full_overlap || !octaves) {
+        result.allan = allan_deviation(kept_, 1 / rate_hz, allan);
+      } else {
+        AllanPyramid pyramid;
+        pyramid.push(kept_);
+        result.allan = pyramid.finish(1 / rate_hz);
+      }
+    });
+  if (options_->wanted.spectrum)
+    attempt(result, "spectrum", [&] {
+      const Spectrum spectrum = welch(kept_, rate_hz, options_->spectrum);
+      result.lines = find_lines(spectrum);
+      result.spectrum = log_binned(spectrum, kPlottedBins);
+    });
+  if (options_->wanted.fit || options_->wanted.allan)
+    attempt(result, "noise fit", [&] {
+      result.fit = fit_record(kept_,
+                              rate_hz,
+                              octaves && !result.allan.points.empty() ? &result.allan : nullptr,
+                              options_->fit);
+    });
+}
+
+void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
+  if (options_->wanted.allan || options_->wanted.fit)
+    attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
+  if (streams_->shared_blocks) {
+    HalvesToBins listener(streams_->bins);
+    streams_->spectrum->end(&listener);
+  }
+  if (options_->wanted.spectrum)
+    attempt(result, "spectrum", [&] {
+      const Spectrum spectrum = streams_->spectrum->finish(rate_hz);
+      result.lines = find_lines(spectrum);
+      result.spectrum = log_binned(spectrum, kPlottedBins);
+    });
+  if (options_->wanted.fit || options_->wanted.allan)
+    attempt(result, "noise fit", [&] {
+      const ChannelQuality quality = quality_.finish();
+      if (streams_->cleaner) streams_->bins.push(streams_->cleaner->finish());
+      if (streams_->shared_blocks) {
+        streams_->bins.push(streams_->spectrum->rest());
+        streams_->bins.set_taken_power(streams_->spectrum->block_power());
+      }
+      result.fit = fit_binned(streams_->bins,
+                              rate_hz,
+                              quality.samples,
+                              result.allan.points.empty() ? nullptr : &result.allan,
+                              options_->fit);
+      if (streams_->cleaner && streams_->cleaner->count() > 0)
+        result.fit->remedies.insert(result.fit->remedies.begin(),
+                                    spikes_remedy(quality.difference_kurtosis,
+                                                  spike_alarm(quality.samples),
+                                                  streams_->cleaner->count()));
+    });
+}
+
+// Differenced phase and fractional frequency have other units than the samples in the log.
+std::string ChannelStage::unit_of_rate(const std::string& unit) const {
+  if (options_->data == SampleKind::phase)
+    return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "1" : unit;
+}
+
+ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
+  ChannelResult result;
+  result.channel = channel;
+  result.channel.unit = unit_of_rate(channel.unit);
+  if (options_->wanted.quality) result.quality = quality_.finish();
+  if (rate_hz <= 0) {
+    result.problems.push_back(
+        "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
+        "--rate)");
+    return result;
+  }
+  if (options_->data == SampleKind::phase)
+    for (double& y : kept_) y *= rate_hz;
+  keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
+  add_intervals(result.allan, result.fit ? result.fit->theta : plain_white(result.allan));
+  kept_ = {};
+  return result;
+}
+
+}  // namespace libchar

@@ -1,0 +1,65 @@
+#pragma once
+// One channel on its way through: keeps its samples while they fit, streams them through fixed-size stages when they do not.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/fit/spike_cleaner.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+
+namespace libchar {
+
+inline constexpr std::uint64_t kStreamedBlock = std::uint64_t{1} << 13U;
+
+/// The fixed-size stages of a channel whose samples are not kept.
+struct ChannelStreams {
+  AllanPyramid allan;
+  std::optional<WelchStream> spectrum;
+  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway. Where the
+  // spectrum goes by halves the blocks are these halves, and their transforms come from there.
+  PowerBinner bins{kStreamedBlock};
+  bool shared_blocks = false;
+  std::optional<SpikeCleaner> cleaner;  // in the second pass
+};
+
+class ChannelStage {
+ public:
+  explicit ChannelStage(const CharacterizeOptions& options) : options_(&options) {}
+
+  /// Takes samples as the log has them.
+  void push(std::span<const double> samples);
+  /// Moves what is kept into the streaming stages and keeps nothing from now on.
+  void stop_keeping();
+  std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
+  /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
+  void reserve(std::size_t samples);
+
+  /// After the last push: do spikes ask for a second pass over the log, which cleans them on the way into the fit? Never for
+  /// samples that were kept.
+  bool needs_second_pass() const;
+  void begin_second_pass();
+
+  /// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
+  ChannelResult finish(const Channel& channel, double rate_hz);
+
+ private:
+  std::string unit_of_rate(const std::string& unit) const;
+  void as_rate(std::span<const double> samples);
+  void stream(std::span<const double> samples);
+  void finish_kept(ChannelResult& result, double rate_hz);
+  void finish_streams(ChannelResult& result, double rate_hz);
+
+  const CharacterizeOptions* options_;
+  QualityMeter quality_;
+  bool keeping_ = true;
+  std::vector<double> kept_;
+  std::optional<ChannelStreams> streams_;
+  std::vector<double> differenced_;  // scratch of as_rate
+  std::optional<double> previous_phase_;
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace libchar

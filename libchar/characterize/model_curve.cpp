@@ -1,0 +1,173 @@
+#include "libchar/characterize/model_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/allan/noise_curves.hpp"
+
+namespace libchar {
+namespace {
+
+// Allan variance of white noise of unit two-sided density behind a sampled first-order low-pass (an
+// AR(1) sequence of lag-one correlation r and unit gain at f = 0): half the variance of the
+// difference of two adjacent means,
+//   s^2/m^2 [ m (1+r)/(1-r) - 2 r (1-r^m)/(1-r)^2 - r (1-r^m)^2/(1-r)^2 ],   s^2 = (1-r)/((1+r)
+//   dt).
+double low_passed_white_variance(double bandwidth_hz, double m, double dt_s) {
+  const double r = std::exp(-2 * std::numbers::pi * bandwidth_hz * dt_s);
+  const double q = 1 - std::pow(r, m), d = 1 - r;
+  const double variance = d / ((1 + r) * dt_s);
+  return variance / (m * m) * (m * (1 + r) / d - 2 * r * q / (d * d) - r * q * q / (d * d));
+}
+
+double square(double x) {
+  return x * x;
+}
+
+double theta_of(const NoiseFit& fit, Term term) {
+  return fit.theta[static_cast<std::size_t>(term)];
+}
+
+}  // namespace
+
+double low_pass_power(double bandwidth_hz, double frequency_hz, double dt_s) {
+  const double r = std::exp(-2 * std::numbers::pi * bandwidth_hz * dt_s);
+  return square(1 - r) / (1 - 2 * r * std::cos(2 * std::numbers::pi * frequency_hz * dt_s) + r * r);
+}
+
+std::optional<double> model_deviation(const NoiseFit& fit,
+                                      DeviationType type,
+                                      double m,
+                                      double dt_s) {
+  if (type != DeviationType::oadev && type != DeviationType::adev) return std::nullopt;
+  double variance = 0;
+  if (fit.bandwidth_hz) {
+    Mixture rest = fit.theta;
+    rest[static_cast<std::size_t>(Term::white)] = 0;
+    variance = allan_variance(rest, m, dt_s) +
+               theta_of(fit, Term::white) * low_passed_white_variance(*fit.bandwidth_hz, m, dt_s);
+  } else {
+    variance = allan_variance(fit.theta, m, dt_s);
+  }
+  if (!(variance > 0)) return std::nullopt;
+  return std::sqrt(variance);
+}
+
+double scaled_density(const Spectrum& spectrum, double two_sided_density) {
+  double value = two_sided_density;
+  if (spectrum.sides == Sides::one) value *= 2;
+  if (spectrum.scaling == Scaling::ps || spectrum.scaling == Scaling::ls) value *= spectrum.enbw_hz;
+  if (spectrum.scaling == Scaling::lsd || spectrum.scaling == Scaling::ls) value = std::sqrt(value);
+  return value;
+}
+
+std::optional<double> model_spectrum(const NoiseFit& fit,
+                                     const Spectrum& shown,
+                                     double frequency_hz) {
+  const double f = std::fabs(frequency_hz), dt_s = 1 / shown.rate_hz;
+  if (!(f > 0)) return std::nullopt;
+  double density = spectrum(fit.theta, f, dt_s);
+  if (fit.bandwidth_hz) {
+    density -= theta_of(fit, Term::white) * (1 - low_pass_power(*fit.bandwidth_hz, f, dt_s));
+  }
+  if (!(density > 0)) return std::nullopt;
+  return scaled_density(shown, density);
+}
+
+std::vector<Asymptote> allan_asymptotes(const NoiseFit& fit, const AllanCurve& curve) {
+  std::vector<Asymptote> lines;
+  if (curve.points.empty() ||
+      (curve.type != DeviationType::oadev && curve.type != DeviationType::adev))
+    return lines;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (!(fit.theta[t] > 0)) continue;
+    Asymptote line{static_cast<Term>(t),
+                   {curve.points.front().tau_s / 10, curve.points.back().tau_s * 10},
+                   {}};
+    for (std::size_t i = 0; i < 2; ++i)
+      line.y[i] = std::sqrt(fit.theta[t] * allan_asymptote(line.term, line.x[i]));
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<Asymptote> spectrum_asymptotes(const NoiseFit& fit, const Spectrum& shown) {
+  std::vector<Asymptote> lines;
+  const auto first = std::find_if(
+      shown.frequency_hz.begin(), shown.frequency_hz.end(), [](double f) { return f > 0; });
+  if (first == shown.frequency_hz.end()) return lines;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    Asymptote line{static_cast<Term>(t), {*first / 10, shown.frequency_hz.back() * 10}, {}};
+    for (std::size_t i = 0; i < 2; ++i) {
+      line.y[i] = scaled_density(
+          shown, fit.theta[t] * spectrum_asymptote(line.term, line.x[i], 1 / shown.rate_hz));
+    }
+    if (line.y[0] > 0 && line.y[1] > 0) lines.push_back(line);
+  }
+  return lines;
+}
+
+const AllanPoint* allan_minimum(const AllanCurve& curve) {
+  const AllanPoint* best = nullptr;
+  for (const AllanPoint& point : curve.points) {
+    if (point.reliable && point.deviation > 0 &&
+        (best == nullptr || point.deviation < best->deviation))
+      best = &point;
+  }
+  return best;
+}
+
+std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve) {
+  std::vector<ReadOff> points;
+  const double q2 = theta_of(fit, Term::white), b2 = theta_of(fit, Term::flicker),
+               k2 = theta_of(fit, Term::walk);
+  if (q2 > 0) points.push_back({Term::white, 1, std::sqrt(q2), "Q at τ = 1 s"});
+  if (b2 > 0) {
+    // On the floor line, where the other two asymptotes cross (or at the curve's minimum): there
+    // the floor shows best.
+    const AllanPoint* lowest = allan_minimum(curve);
+    double tau_s = lowest != nullptr ? lowest->tau_s : 1;
+    if (q2 > 0 && k2 > 0) tau_s = std::sqrt(3 * q2 / k2);
+    points.push_back(
+        {Term::flicker, tau_s, std::sqrt(allan_asymptote(Term::flicker, tau_s) * b2), "0.664·B"});
+  }
+  if (k2 > 0) points.push_back({Term::walk, 3, std::sqrt(k2), "K at τ = 3 s"});
+  return points;
+}
+
+std::string_view key_of(Sides sides) {
+  return sides == Sides::one ? "one" : "two";
+}
+
+std::string_view key_of(Scaling scaling) {
+  switch (scaling) {
+    case Scaling::psd:
+      return "psd";
+    case Scaling::ps:
+      return "ps";
+    case Scaling::lsd:
+      return "lsd";
+    case Scaling::ls:
+      return "ls";
+  }
+  return "psd";
+}
+
+std::string spectrum_unit(Scaling scaling, const std::string& unit) {
+  const std::string u = unit.empty() ? "U" : unit;
+  const std::string bracketed = u.find_first_of("/ ²^") == std::string::npos ? u : "(" + u + ")";
+  switch (scaling) {
+    case Scaling::psd:
+      return bracketed + "²/Hz";
+    case Scaling::ps:
+      return bracketed + "²";
+    case Scaling::lsd:
+      return bracketed + "/√Hz";
+    case Scaling::ls:
+      return u;
+  }
+  return u;
+}
+
+}  // namespace libchar

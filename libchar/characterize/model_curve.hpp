@@ -1,0 +1,65 @@
+#pragma once
+// What a fitted mixture predicts for the curves of the report, and the points at which its
+// coefficients are read off.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+
+namespace libchar {
+
+/// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing
+/// for types other than the (overlapping) Allan deviation, whose curves are the only ones we have
+/// in exact form.
+std::optional<double> model_deviation(const NoiseFit& fit,
+                                      DeviationType type,
+                                      double m,
+                                      double dt_s);
+
+/// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for
+/// a vanishing model.
+std::optional<double> model_spectrum(const NoiseFit& fit,
+                                     const Spectrum& spectrum,
+                                     double frequency_hz);
+
+/// A two-sided density in the sides and scaling of `spectrum`.
+double scaled_density(const Spectrum& spectrum, double two_sided_density);
+
+/// Fraction of the power of white noise at frequency f that a first-order low-pass (sampled) lets
+/// through: (1-r)^2 / (1 - 2 r cos(2 pi f dt) + r^2), r = exp(-2 pi fc dt).
+double low_pass_power(double bandwidth_hz, double frequency_hz, double dt_s);
+
+/// Point at which a coefficient is read off the Allan curve [RV Fig. 1.9].
+struct ReadOff {
+  Term term = Term::white;
+  double tau_s = 1;
+  double deviation = 0;
+  std::string label;  ///< "Q at 1 s", "0.664·B", "K at 3 s"
+};
+std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve);
+
+/// A term's asymptote on logarithmic axes: a straight line between two points, a decade beyond the
+/// curve on both sides.
+struct Asymptote {
+  Term term = Term::white;
+  std::array<double, 2> x{}, y{};
+};
+/// For the types whose asymptotes these are: the (overlapping) Allan deviation.
+std::vector<Asymptote> allan_asymptotes(const NoiseFit& fit, const AllanCurve& curve);
+std::vector<Asymptote> spectrum_asymptotes(const NoiseFit& fit, const Spectrum& spectrum);
+
+/// Lowest reliable point of a curve, if there is one.
+const AllanPoint* allan_minimum(const AllanCurve& curve);
+
+/// "deg/s", "(deg/s)²/Hz", "(deg/s)/√Hz": unit of the values of a spectrum.
+std::string spectrum_unit(Scaling scaling, const std::string& unit);
+std::string_view key_of(Sides sides);
+std::string_view key_of(Scaling scaling);
+
+}  // namespace libchar

@@ -1,0 +1,71 @@
+#include "libchar/characterize/model_from_fit.hpp"
+
+#include <algorithm>
+
+namespace libchar {
+namespace {
+
+// The recording reached an end of its range when runs of samples stand there; which end, its
+// extremes say.
+void set_saturation(SensorModel& model, const ChannelQuality& quality) {
+  if (quality.saturated == 0 || quality.samples == 0) return;
+  model.saturation_low = quality.minimum;
+  model.saturation_high = quality.maximum;
+}
+
+void set_tau_range(SensorModel& model, const AllanCurve& allan) {
+  for (const AllanPoint& point : allan.points) {
+    if (!point.reliable) continue;
+    if (model.tau_min_s == 0) model.tau_min_s = point.tau_s;
+    model.tau_max_s = std::max(model.tau_max_s, point.tau_s);
+  }
+}
+
+}  // namespace
+
+SensorModel sensor_model_from_curve(const Channel& channel,
+                                    const NoiseFit& fit,
+                                    const std::string& obtained,
+                                    const LogInfo& source) {
+  SensorModel model;
+  model.channel = channel.name;
+  model.unit = channel.unit;
+  model.rate_hz = fit.rate_hz;
+  model.noise = fit.term;
+  model.bandwidth_hz = fit.bandwidth_hz;
+  model.obtained = obtained;
+  model.method = fit.method;
+  model.recording_file = source.file;
+  model.recording_sha256 = source.sha256;
+  model.duration_s = fit.duration_s;
+  model.remarks = fit.sentences;
+  return model;
+}
+
+SensorModel sensor_model_from(const Channel& channel,
+                              const LogInfo& log,
+                              const ChannelQuality& quality,
+                              const NoiseFit& fit,
+                              const AllanCurve& allan) {
+  SensorModel model;
+  model.channel = channel.name;
+  model.unit = channel.unit;
+  model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
+  model.noise = fit.term;
+  model.bandwidth_hz = fit.bandwidth_hz;
+  model.resolution = quality.resolution;
+  set_saturation(model, quality);
+  model.mean = quality.mean;
+  set_tau_range(model, allan);
+  model.obtained = "fit of a recording";
+  model.method = fit.method;
+  model.recording_file = log.file;
+  model.recording_sha256 = log.sha256;
+  model.duration_s = fit.duration_s;
+  model.remarks = fit.sentences;
+  for (const Remedy& remedy : fit.remedies)
+    model.remarks.push_back(remedy.kind + ": " + remedy.action);
+  return model;
+}
+
+}  // namespace libchar

@@ -1,0 +1,172 @@
+#include "libchar/characterize/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/verification.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+// Below this the residuals are not what the model leads one to expect in one record of a thousand.
+constexpr double kDoubtful = 1e-3;
+
+std::string in_habitual_unit(const Coefficient& c, Term term, const std::string& unit) {
+  const auto habits = habitual_units(kTermNames[static_cast<std::size_t>(term)].key, unit);
+  if (habits.empty()) return "";
+  return fmt::format(" ({} {})", people_value(c, habits[0].factor), habits[0].symbol);
+}
+
+std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
+  const Coefficient& c = fit[term];
+  const auto& name = kTermNames[static_cast<std::size_t>(term)];
+  const std::string value =
+      people_value(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
+  switch (c.status) {
+    case Status::detected:
+      return fmt::format("{} {} = {}, known to {} %.",
+                         term_title(term),
+                         name.letter,
+                         value,
+                         people(100 * c.relative_sd, 2));
+    case Status::undetermined:
+      return fmt::format(
+          "{} {} = {}, but undetermined: the record cannot tell it from another term, or "
+          "contradicts it.",
+          term_title(term),
+          name.letter,
+          value);
+    case Status::not_detected:
+      return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
+    case Status::given:
+      return fmt::format("{} {} = {}, given.", term_title(term), name.letter, value);
+    case Status::not_fitted:
+      return "";
+  }
+  return "";
+}
+
+bool explained(const ChannelResult& c) {
+  return c.fit && c.fit->goodness.p >= kDoubtful;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 6); ++i)
+    out += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > 6) out += fmt::format(" and {} more", names.size() - 6);
+  return out;
+}
+
+}  // namespace
+
+std::string term_title(Term term) {
+  switch (term) {
+    case Term::white:
+      return "White noise";
+    case Term::flicker:
+      return "Bias instability";
+    case Term::walk:
+      return "Random walk";
+    case Term::quantization:
+      return "Quantization";
+    case Term::ramp:
+      return "Rate ramp";
+  }
+  return "";
+}
+
+std::string goodness_sentence(const Goodness& g) {
+  if (!(g.dof > 0)) return "The fit has no degrees of freedom left to be checked with.";
+  const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}",
+                                          significant(g.chi2, 4),
+                                          significant(g.dof, 4),
+                                          people_probability(g.p));
+  if (g.p >= 0.01) return "The model explains the spectrum within its scatter (" + figures + ").";
+  if (g.p >= kDoubtful) return "The model explains the spectrum barely (" + figures + ").";
+  return "The model does not explain the spectrum (" + figures +
+         "): look at the residuals before using the intervals.";
+}
+
+std::vector<std::string> findings(const ChannelResult& channel) {
+  std::vector<std::string> out;
+  if (!channel.fit) return out;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    std::string sentence = finding(*channel.fit, static_cast<Term>(t), channel.channel.unit);
+    if (!sentence.empty()) out.push_back(std::move(sentence));
+  }
+  if (channel.fit->bandwidth_hz) {
+    out.push_back(
+        fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "
+                    "of the model.",
+                    people(*channel.fit->bandwidth_hz, 3)));
+  }
+  return out;
+}
+
+std::vector<std::string> cautions(const ChannelResult& channel) {
+  std::vector<std::string> out = channel.problems;
+  const ChannelQuality& q = channel.quality;
+  const double all = static_cast<double>(q.samples + q.missing);
+  if (channel.fit) {
+    const NoiseFit& fit = *channel.fit;
+    if (!fit.converged) out.push_back("The fit did not converge.");
+    if (!explained(channel)) out.push_back(goodness_sentence(fit.goodness));
+    if (fit.second_opinion && !fit.second_opinion->agrees)
+      out.push_back("The Allan fit disagrees: " + fit.second_opinion->sentence);
+  }
+  if (channel.verification && !channel.verification->agrees)
+    out.push_back(channel.verification->sentences.front());
+  if (q.saturated > 0 && q.suggestions.empty())
+    out.push_back(
+        fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));
+  // Fewer cost nothing worth mentioning here: terms that touch them are left out.
+  if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
+    out.push_back(fmt::format("{} samples ({} %) are missing.",
+                              people_count(q.missing),
+                              people(100 * static_cast<double>(q.missing) / all, 2)));
+  }
+  out.insert(out.end(), q.suggestions.begin(), q.suggestions.end());
+  return out;
+}
+
+std::string verdict_of(const Characterization& result) {
+  const std::size_t n = result.channels.size();
+  std::vector<std::string> unfitted, doubtful, disputed;
+  for (const ChannelResult& c : result.channels) {
+    if (!c.fit)
+      unfitted.push_back(c.channel.name);
+    else if (!explained(c))
+      doubtful.push_back(c.channel.name);
+    else if (c.fit->second_opinion && !c.fit->second_opinion->agrees)
+      disputed.push_back(c.channel.name);
+  }
+  if (n == 0) return "The recording holds no channel to characterize.";
+  const std::size_t good = n - unfitted.size() - doubtful.size() - disputed.size();
+  std::string out;
+  if (good == n) {
+    out = n == 1
+              ? "The noise model explains the channel within its scatter, and the Allan fit agrees."
+              : fmt::format(
+                    "The noise model explains all {} channels within their scatter, and the Allan "
+                    "fits agree.",
+                    n);
+  } else {
+    out = fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
+  }
+  if (!doubtful.empty())
+    out +=
+        fmt::format(" It does not explain {}: see the residuals there before using the intervals.",
+                    list_of(doubtful));
+  if (!disputed.empty())
+    out += fmt::format(" The Allan fit disagrees with the spectral fit on {}.", list_of(disputed));
+  if (!unfitted.empty()) out += fmt::format(" No fit was possible for {}.", list_of(unfitted));
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,26 @@
+#pragma once
+// The report in sentences: what was found, how far it can be trusted, what to look at.
+
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+
+namespace libchar {
+
+/// One paragraph for the whole recording.
+std::string verdict_of(const Characterization& result);
+
+/// Name of a term for people: "white noise", "bias instability"…
+std::string term_title(Term term);
+
+/// What was found in one channel, in sentences with numbers.
+std::vector<std::string> findings(const ChannelResult& channel);
+
+/// What asks for a look before the numbers of this channel are used; empty when nothing does.
+std::vector<std::string> cautions(const ChannelResult& channel);
+
+/// How well the model explains the channel, by the p-value of the fit.
+std::string goodness_sentence(const Goodness& goodness);
+
+}  // namespace libchar

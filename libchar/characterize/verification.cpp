@@ -1,0 +1,204 @@
+// Per term: z = ln(simulated / model) / sd(ln simulated), the model being the truth of the
+// simulation. Per averaging time: AVAR_recorded / AVAR_simulated against the F distribution with
+// the equivalent degrees of freedom of both.
+#include "libchar/characterize/verification.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+
+#include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/simulate/sensor_array.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kRows = std::size_t{1} << 14U;
+
+// Only the noise: a recording at rest says nothing about the other blocks, and its resolution is in
+// the fit already when it matters.
+SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
+  SensorModel model =
+      sensor_model_from(channel.channel, log, channel.quality, *channel.fit, channel.allan);
+  model.saturation_low = model.saturation_high = std::nullopt;
+  model.resolution = std::nullopt;
+  return model;
+}
+
+ChannelResult simulated_channel(const ChannelResult& recorded,
+                                const LogInfo& log,
+                                const CharacterizeOptions& options,
+                                const VerifyOptions& how,
+                                std::uint64_t index,
+                                bool kept) {
+  ArraySimulation simulation;
+  simulation.rate_hz = log.time.rate_hz;
+  simulation.samples = std::max<std::uint64_t>(recorded.fit->samples, 2);
+  simulation.seed = how.seed + (index << 32U);
+  simulation.sensors = {{recorded.channel.name, noise_of(recorded, log), {1}}};
+  CharacterizeOptions same = options;
+  same.data = SampleKind::rate;  // phase and frequency have become rates before the fit
+  same.wanted.quality = false;
+  ChannelStage stage(same);
+  if (!kept) stage.stop_keeping();
+  ArraySimulator simulator(simulation);
+  for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
+    stage.push(columns[0]);
+  return stage.finish(recorded.channel, log.time.rate_hz);
+}
+
+TermVerification compare_term(Term term,
+                              const Coefficient& model,
+                              const Coefficient& simulated,
+                              const VerifyOptions& how) {
+  TermVerification out{term, model, simulated, true};
+  if (model.value && simulated.value && *model.value > 0) {
+    // A wide interval is skew: its nearer end is what counts.
+    const bool inside = *model.value >= simulated.ci95.low && *model.value <= simulated.ci95.high;
+    const double z =
+        std::log(*simulated.value / *model.value) / std::max(simulated.relative_sd, 1e-12);
+    out.agrees = inside || std::abs(z) <= how.term_sd;
+  } else if (model.value && simulated.upper95) {
+    // Not seen again: no contradiction while the limit reaches the model.
+    out.agrees = *simulated.upper95 >= *model.value / 1.5;
+  } else if (!model.value && model.upper95 && simulated.value) {
+    out.agrees = simulated.ci95.low <= *model.upper95;
+  }
+  return out;
+}
+
+double two_sided_probability(double variance_ratio, double edf1, double edf2) {
+  const boost::math::fisher_f f(edf1, edf2);
+  const double low = boost::math::cdf(f, variance_ratio);
+  const double high = boost::math::cdf(boost::math::complement(f, variance_ratio));
+  return std::min(1.0, 2 * std::min(low, high));
+}
+
+std::vector<PointVerification> compare_points(const AllanCurve& recorded,
+                                              const AllanCurve& simulated,
+                                              const VerifyOptions& how) {
+  std::vector<PointVerification> out;
+  for (const AllanPoint& r : recorded.points) {
+    const auto same =
+        std::find_if(simulated.points.begin(), simulated.points.end(), [&](const AllanPoint& s) {
+          return std::abs(s.tau_s / r.tau_s - 1) < 1e-6;
+        });
+    if (same == simulated.points.end() || !(r.deviation > 0) || !(same->deviation > 0)) continue;
+    if (!(r.edf > 0) || !(same->edf > 0)) continue;
+    const double ratio = r.deviation / same->deviation;
+    out.push_back({r.tau_s, ratio, two_sided_probability(ratio * ratio, r.edf, same->edf), true});
+  }
+  for (PointVerification& point : out) {
+    const bool small = std::abs(std::log(point.ratio)) <= std::log1p(how.small_difference);
+    point.agrees = small || point.p >= how.point_probability / static_cast<double>(out.size());
+  }
+  return out;
+}
+
+std::string term_sentence(const TermVerification& t, const std::string& name) {
+  const std::string found = t.simulated.value ? people_coefficient(t.simulated)
+                                              : "no " + name + ", " + people_value(t.simulated);
+  return fmt::format(
+      "{}: the model says {}, the simulated record gives {}", name, people_value(t.model), found);
+}
+
+// The worst of a stretch of neighbouring averaging times that disagree.
+std::vector<std::string> point_sentences(const std::vector<PointVerification>& points) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].agrees) continue;
+    std::size_t end = i;
+    double worst = points[i].ratio;
+    for (; end < points.size() && !points[end].agrees; ++end)
+      if (std::abs(std::log(points[end].ratio)) > std::abs(std::log(worst)))
+        worst = points[end].ratio;
+    const std::string where = end == i + 1 ? "at τ = " + people_seconds(points[i].tau_s)
+                                           : fmt::format("from τ = {} to {}",
+                                                         people_seconds(points[i].tau_s),
+                                                         people_seconds(points[end - 1].tau_s));
+    out.push_back(
+        fmt::format("{} the recording's Allan deviation is {} % {} than the simulated one: the "
+                    "model does not hold there",
+                    where,
+                    people(100 * std::abs(worst - 1), 2),
+                    worst > 1 ? "higher" : "lower"));
+    i = end;
+  }
+  return out;
+}
+
+ChannelVerification compared(const ChannelResult& recorded,
+                             ChannelResult simulated,
+                             const VerifyOptions& how) {
+  ChannelVerification out;
+  out.points = compare_points(recorded.allan, simulated.allan, how);
+  std::vector<std::string> disagreements = point_sentences(out.points);
+  for (std::size_t t = 0; simulated.fit && t < kTerms; ++t) {
+    const Coefficient& model = recorded.fit->term[t];
+    if (model.status == Status::not_fitted) continue;
+    out.terms.push_back(compare_term(static_cast<Term>(t), model, simulated.fit->term[t], how));
+    if (!out.terms.back().agrees)
+      disagreements.push_back(
+          term_sentence(out.terms.back(), std::string(term_title(static_cast<Term>(t)))));
+  }
+  out.agrees = disagreements.empty() && simulated.fit.has_value();
+
+  const auto good = std::count_if(
+      out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });
+  out.sentences.push_back(fmt::format(
+      "A sensor simulated from this model {} the recording: {} of {} averaging times, {} of {} "
+      "coefficients.",
+      out.agrees ? "agrees with" : "does not agree with",
+      good,
+      out.points.size(),
+      std::count_if(
+          out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
+      out.terms.size()));
+  if (!disagreements.empty() && !recorded.lines.empty())
+    disagreements.push_back(fmt::format(
+        "The model holds none of the {} spectral lines of the recording.", recorded.lines.size()));
+  for (std::string& sentence : disagreements) out.sentences.push_back(std::move(sentence));
+  out.allan = std::move(simulated.allan);
+  out.spectrum = std::move(simulated.spectrum);
+  out.fit = std::move(simulated.fit);
+  return out;
+}
+
+}  // namespace
+
+bool verify(Characterization& recorded,
+            const CharacterizeOptions& options,
+            const VerifyOptions& how,
+            Progress& progress) {
+  const std::uint64_t bytes = recorded.log.samples * sizeof(double);
+  const bool kept = bytes * 2 <= options.memory_bytes;
+  AllanCovarianceCache covariances;
+  CharacterizeOptions same = options;
+  same.fit.covariances = &covariances;
+  auto& channels = recorded.channels;
+  const std::size_t group =
+      2;  // as in characterize: memory stays bounded however many channels there are
+  for (std::size_t first = 0; first < channels.size(); first += group) {
+    progress.update(static_cast<double>(first) / static_cast<double>(channels.size()),
+                    "simulating");
+    const std::size_t last = std::min(channels.size(), first + group);
+    tbb::parallel_for(first, last, [&](std::size_t c) {
+      ChannelResult& channel = channels[c];
+      if (!channel.fit) return;
+      channel.verification = std::make_shared<ChannelVerification>(
+          compared(channel, simulated_channel(channel, recorded.log, same, how, c, kept), how));
+    });
+  }
+  return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {
+    return !channel.verification || channel.verification->agrees;
+  });
+}
+
+}  // namespace libchar

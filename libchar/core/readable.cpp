@@ -1,0 +1,83 @@
+#include "libchar/core/readable.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace libchar {
+namespace {
+
+std::string superscript(int exponent) {
+  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string out = exponent < 0 ? "⁻" : "";
+  for (const char c : fmt::format("{}", std::abs(exponent))) out += kDigits[c - '0'];
+  return out;
+}
+
+int digits_of(const Coefficient& c) {
+  const double value = c.value.value_or(0);
+  return value > 0 ? digits_for((c.ci95.high - c.ci95.low) / (4 * value)) : 3;
+}
+
+}  // namespace
+
+std::string people(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0) return "0";
+  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
+  const std::size_t e = scientific.find('e');
+  const int exponent = std::stoi(scientific.substr(e + 1));
+  if (exponent < -3 || exponent > std::max(digits, 5)) {
+    return scientific.substr(0, e) + "×10" + superscript(exponent);
+  }
+  return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
+}
+
+int digits_for(double relative_uncertainty) {
+  if (!(relative_uncertainty > 0)) return 4;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(relative_uncertainty))), 2, 6);
+}
+
+std::string people_seconds(double seconds) {
+  if (!std::isfinite(seconds)) return "–";
+  if (seconds == 0) return "0 s";
+  const double size = std::fabs(seconds);
+  if (size < 1e-3) return people(seconds * 1e6, 3) + " µs";
+  if (size < 1) return people(seconds * 1e3, 3) + " ms";
+  if (size < 120) return people(seconds, 3) + " s";
+  if (size < 7200) return people(seconds / 60, 3) + " min";
+  if (size < 172800) return people(seconds / 3600, 3) + " h";
+  if (size < 2 * 365.25 * 86400) return people(seconds / 86400, 3) + " d";
+  return people(seconds / (365.25 * 86400), 3) + " years";
+}
+
+std::string people_value(const Coefficient& c, double factor) {
+  if (c.value) return people(*c.value * factor, digits_of(c));
+  if (c.upper95) return "≤ " + people(*c.upper95 * factor, 3);
+  return "–";
+}
+
+std::string people_coefficient(const Coefficient& c, double factor) {
+  if (!c.value) return people_value(c, factor);
+  const int digits = digits_of(c);
+  return fmt::format("{} [{}, {}]",
+                     people(*c.value * factor, digits),
+                     people(c.ci95.low * factor, digits),
+                     people(c.ci95.high * factor, digits));
+}
+
+std::string people_count(std::uint64_t count) {
+  std::string digits = fmt::format("{}", count);
+  for (std::size_t at = digits.size(); at > 3;) {
+    at -= 3;
+    digits.insert(at, "\u202F");
+  }
+  return digits;
+}
+
+std::string people_probability(double p) {
+  return p < 1e-4 ? "p < 0.0001" : "p = " + people(p, 2);
+}
+
+}  // namespace libchar

@@ -1,0 +1,298 @@
+// Numbers for consumers. The Gauss-Markov bias of correlation time Tc and driving density q has the
+// Allan variance
+//   q^2 Tc^2 / tau (1 - Tc/(2 tau) (3 - 4 exp(-tau/Tc) + exp(-2 tau/Tc))),
+// whose maximum lies at tau = 1.8926 Tc with a deviation of 0.43654 q sqrt(Tc) = 0.61736 s, s = q
+// sqrt(Tc/2) its steady state. Put on the flicker floor 0.66428 B at the middle of its flat part:
+//   Tc = tau_floor / 1.8926,  s = 1.0760 B,  q = s sqrt(2 / Tc).
+
+#include "libchar/export/detail/export_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
+constexpr double kPeakTau = 1.8926178678038266;      // of the hump, in Tc
+constexpr double kSteadyOverB = 1.0759975729152143;  // 0.6642825 / 0.6173643
+
+struct AxisNumber {
+  std::optional<double> value, limit;
+  Status status = Status::not_fitted;
+};
+
+AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
+  const Coefficient& c = (*placed.model)[term];
+  const double factor = placed.to_si * inflate;
+  AxisNumber out{std::nullopt, std::nullopt, c.status};
+  // A stated 0 says that the term is absent, and bounds nothing.
+  if (c.value && *c.value > 0) out.value = *c.value * factor;
+  if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
+  return out;
+}
+
+std::string said(const AxisNumber& n) {
+  if (n.value)
+    return significant(*n.value, 4) + (n.status == Status::undetermined ? " (undetermined)" : "");
+  if (n.limit) return "<= " + significant(*n.limit, 3);
+  return "unknown";
+}
+
+std::string absence(const AxisNumber& n) {
+  return n.status == Status::not_detected ? "not detected"
+         : n.status == Status::not_fitted ? "not part of the model"
+                                          : "no value";
+}
+
+Figure one_axis(const AxisNumber& n, Absent absent) {
+  if (n.value) {
+    const bool doubtful = n.status == Status::undetermined;
+    return {n.value,
+            false,
+            doubtful ? "undetermined: the record cannot tell it from another term" : ""};
+  }
+  if (absent == Absent::zero)
+    return {0.0,
+            false,
+            n.limit ? fmt::format("{}, {}: taken as 0", absence(n), said(n))
+                    : absence(n) + ": taken as 0"};
+  if (n.limit) return {n.limit, true, absence(n) + ": upper 95 % limit"};
+  return {std::nullopt, false, absence(n)};
+}
+
+std::array<AxisNumber, 3> numbers_of(const SensorTriad& triad, Term term, double inflate) {
+  std::array<AxisNumber, 3> out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (triad.axis[i]) out[i] = number_of(*triad.axis[i], term, inflate);
+  return out;
+}
+
+std::string all_said(const std::array<AxisNumber, 3>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", kAxisNames[i], said(numbers[i]));
+  return text;
+}
+
+double combined(const std::vector<double>& values, AxisChoice choice) {
+  if (choice != AxisChoice::rms) return *std::max_element(values.begin(), values.end());
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double positive(const std::optional<double>& value) {
+  return value ? *value : 0;
+}
+
+// The middle of the flat part: where white noise and random walk are equal, or between the end of
+// white noise and the end of the record.
+double floor_tau(const SensorModel& m, double q, double b, double k, double record_s) {
+  const double white_ends =
+      q * q / (2 * std::numbers::ln2 / std::numbers::pi * b * b);  // Q^2/tau = floor^2
+  double tau = 0;
+  if (k > 0 && q > 0)
+    tau = std::numbers::sqrt3 * q / k;
+  else if (record_s > white_ends && white_ends > 0)
+    tau = std::sqrt(white_ends * record_s);
+  else
+    tau = white_ends > 0 ? 10 * white_ends : 100;
+  if (m.tau_max_s > 0) tau = std::clamp(tau, std::max(m.tau_min_s, 1e-9), m.tau_max_s);
+  return tau;
+}
+
+}  // namespace
+
+std::optional<std::size_t> only_axis(const ExportOptions& options) {
+  if (options.axes == AxisChoice::x) return 0;
+  if (options.axes == AxisChoice::y) return 1;
+  if (options.axes == AxisChoice::z) return 2;
+  return std::nullopt;
+}
+
+const PlacedModel& representative(const SensorTriad& triad, const ExportOptions& options) {
+  return *triad.axis[only_axis(options).value_or(0)];
+}
+
+Figure scalar_figure(const SensorTriad& triad,
+                     Term term,
+                     Absent absent,
+                     const ExportOptions& options) {
+  const auto only = only_axis(options);
+  require_axes(triad, only);
+  const auto numbers = numbers_of(triad, term, options.inflate);
+  if (triad.shared || only) {
+    Figure figure = one_axis(numbers[only.value_or(0)], absent);
+    if (only && !triad.shared)
+      figure.origin = fmt::format(
+          "{} axis{}{}", kAxisNames[*only], figure.origin.empty() ? "" : "; ", figure.origin);
+    return figure;
+  }
+  std::vector<double> values, limits;
+  for (const AxisNumber& n : numbers) {
+    if (n.value) values.push_back(*n.value);
+    if (n.limit) limits.push_back(*n.limit);
+  }
+  const char* how = options.axes == AxisChoice::rms ? "root mean square" : "largest";
+  if (!values.empty())
+    return {combined(values, options.axes), false, fmt::format("{} of {}", how, all_said(numbers))};
+  if (absent == Absent::zero)
+    return {0.0, false, fmt::format("on no axis ({}): taken as 0", all_said(numbers))};
+  if (!limits.empty())
+    return {
+        combined(limits, options.axes),
+        true,
+        fmt::format("{} upper 95 % limit: not detected on any axis ({})", how, all_said(numbers))};
+  return {std::nullopt, false, "unknown on every axis"};
+}
+
+std::array<Figure, 3> axis_figures(const SensorTriad& triad,
+                                   Term term,
+                                   Absent absent,
+                                   const ExportOptions& options) {
+  if (options.axes != AxisChoice::automatic || triad.shared) {
+    const Figure one = scalar_figure(triad, term, absent, options);
+    return {one, one, one};
+  }
+  require_axes(triad, std::nullopt);
+  const auto numbers = numbers_of(triad, term, options.inflate);
+  return {one_axis(numbers[0], absent), one_axis(numbers[1], absent), one_axis(numbers[2], absent)};
+}
+
+Figure positive_figure(const SensorTriad& triad,
+                       Term term,
+                       const ExportOptions& options,
+                       const std::string& consumer,
+                       const std::string& key) {
+  Figure figure = scalar_figure(triad, term, Absent::limit, options);
+  if (figure.value) return figure;
+  const TermName& name = kTermNames[static_cast<std::size_t>(term)];
+  throw Error(
+      {ErrorKind::input,
+       "E0587",
+       representative(triad, options).model->channel,
+       fmt::format("{} needs {} > 0, and the model has neither a value nor an upper limit of {}",
+                   consumer,
+                   key,
+                   name.key),
+       "",
+       fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}",
+                   name.key)});
+}
+
+GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options) {
+  const SensorModel& m = *placed.model;
+  const double q = positive(number_of(placed, Term::white, options.inflate).value);
+  const double b = positive(number_of(placed, Term::flicker, options.inflate).value);
+  const double k = positive(number_of(placed, Term::walk, options.inflate).value);
+  const double record_s = m.tau_max_s > 0 ? m.tau_max_s : m.duration_s / 2;
+  const double floor2 = 2 * std::numbers::ln2 / std::numbers::pi * b * b;
+  const bool flicker = b > 0 && (k == 0 || k * k * record_s / 3 < floor2);
+  GaussMarkov out;
+  if (flicker) {
+    const double tau = options.floor_tau_s.value_or(floor_tau(m, q, b, k, record_s));
+    out.correlation_s = options.correlation_s.value_or(tau / kPeakTau);
+    out.steady_sd = kSteadyOverB * b;
+    out.driving = out.steady_sd * std::sqrt(2 / out.correlation_s);
+    out.origin = fmt::format(
+        "bias_instability {} as the hump of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
+        "steady state 1.0760 B{}",
+        significant(b, 4),
+        significant(out.correlation_s * kPeakTau, 4),
+        k > 0 ? "; random_walk is left out" : "");
+    return out;
+  }
+  const double record = m.duration_s > 0 ? m.duration_s : m.tau_max_s;
+  out.correlation_s = options.correlation_s.value_or(record > 0 ? 10 * record : 1e6);
+  out.driving = k;
+  out.steady_sd = k * std::sqrt(out.correlation_s / 2);
+  out.origin = k > 0 ? fmt::format("random_walk with a correlation time of {}{}",
+                                   options.correlation_s ? "your choice"
+                                   : record > 0          ? "ten records"
+                                                : "1e6 s, for the length of the record is unknown",
+                                   b > 0 ? "; bias_instability is left out" : "")
+                     : "neither bias_instability nor random_walk was detected: no varying bias";
+  return out;
+}
+
+GaussMarkov gauss_markov_scalar(const SensorTriad& triad, const ExportOptions& options) {
+  const auto only = only_axis(options);
+  require_axes(triad, only);
+  GaussMarkov largest = gauss_markov(representative(triad, options), options);
+  if (only || triad.shared) return largest;
+  std::size_t which = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    GaussMarkov other = gauss_markov(*triad.axis[i], options);
+    if (other.steady_sd > largest.steady_sd) {
+      largest = std::move(other);
+      which = i;
+    }
+  }
+  if (largest.driving > 0)
+    largest.origin = fmt::format("{} axis (the largest): {}", kAxisNames[which], largest.origin);
+  return largest;
+}
+
+double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
+  double rate = 0;
+  bool differ = false;
+  for (const auto& placed : triad.axis) {
+    if (!placed) continue;
+    const double own = placed->model->rate_hz;
+    if (!(own > 0))
+      throw Error({ErrorKind::input,
+                   "E0588",
+                   placed->model->channel,
+                   "its model names no sampling rate, and the export needs one",
+                   "",
+                   "write rate_hz: into the model file"});
+    if (rate == 0) rate = own;
+    differ = differ || std::abs(own - rate) > 1e-3 * rate;
+  }
+  if (differ)
+    notes.push_back(fmt::format("the axes of the {} have different rates; {} Hz is used",
+                                triad.kind,
+                                significant(rate, 6)));
+  return rate;
+}
+
+ImuFigures imu_figures(const SensorGroup& group,
+                       const ExportOptions& options,
+                       const std::string& consumer,
+                       std::vector<std::string>& notes) {
+  ImuFigures out;
+  const auto take = [&](const SensorTriad& triad, Term term) {
+    const std::string key =
+        fmt::format("the {}'s {}", triad.kind, kTermNames[static_cast<std::size_t>(term)].key);
+    Figure figure = positive_figure(triad, term, options, consumer, key);
+    if (figure.limit)
+      notes.push_back(fmt::format(
+          "{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",
+          key,
+          significant(*figure.value, 3),
+          consumer));
+    return figure;
+  };
+  out.gyroscope_white = take(*group.gyroscope, Term::white);
+  out.gyroscope_walk = take(*group.gyroscope, Term::walk);
+  out.accelerometer_white = take(*group.accelerometer, Term::white);
+  out.accelerometer_walk = take(*group.accelerometer, Term::walk);
+  out.gyroscope_rate_hz = rate_of(*group.gyroscope, notes);
+  out.accelerometer_rate_hz = rate_of(*group.accelerometer, notes);
+  if (std::abs(out.gyroscope_rate_hz - out.accelerometer_rate_hz) > 1e-3 * out.gyroscope_rate_hz)
+    notes.push_back(
+        fmt::format("gyroscope ({} Hz) and accelerometer ({} Hz) have different rates; the file "
+                    "names the first",
+                    significant(out.gyroscope_rate_hz, 6),
+                    significant(out.accelerometer_rate_hz, 6)));
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,183 @@
+#include "libchar/export/detail/export_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/version.hpp"
+
+namespace libchar {
+namespace {
+
+struct Source {
+  std::string file, sha256;
+};
+
+// The recordings behind the models, each once.
+std::vector<Source> sources(const SensorGroup& group) {
+  std::vector<Source> out;
+  for (const SensorModel* m : group.all) {
+    const Source source{m->recording_file, m->recording_sha256};
+    const bool known = std::any_of(out.begin(), out.end(), [&](const Source& s) {
+      return s.sha256 == source.sha256 && s.file == source.file;
+    });
+    if (!known) out.push_back(source);
+  }
+  return out;
+}
+
+std::string said(const Source& source, const SensorGroup& group) {
+  if (!source.sha256.empty())
+    return fmt::format(
+        "{} sha256:{}", source.file.empty() ? "a recording" : source.file, source.sha256);
+  for (const SensorModel* m : group.all)
+    if (m->recording_sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
+  return "no recording";
+}
+
+std::string axes_said(AxisChoice axes) {
+  switch (axes) {
+    case AxisChoice::automatic:
+      return "";
+    case AxisChoice::max:
+      return "axes: the largest stands for all";
+    case AxisChoice::rms:
+      return "axes: their root mean square stands for all";
+    default:
+      return fmt::format("axes: {} stands for all",
+                         "xyz"[static_cast<int>(axes) - static_cast<int>(AxisChoice::x)]);
+  }
+}
+
+}  // namespace
+
+std::string export_number(double value) {
+  const auto rounded = parse_double(fmt::format("{:.9e}", value));
+  return shortest_yaml(rounded ? *rounded : value);
+}
+
+std::string export_list(const std::array<double, 3>& values) {
+  return fmt::format(
+      "[{}, {}, {}]", export_number(values[0]), export_number(values[1]), export_number(values[2]));
+}
+
+double value_or_zero(const Figure& figure) {
+  return figure.value.value_or(0);
+}
+
+std::string comment_text(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    const bool ascii = static_cast<unsigned char>(c) < 0x80;
+    // One mark for each character outside ASCII, not one a byte.
+    if (!ascii && (static_cast<unsigned char>(c) & 0xC0U) == 0x80U) continue;
+    if (c == '-' && !out.empty() && out.back() == '-') out += ' ';
+    out += ascii ? c : '?';
+  }
+  while (!out.empty() && (out.back() == '\\' || out.back() == ' ')) out.pop_back();
+  if (!out.empty() && out.back() == '-') out += '.';
+  return out;
+}
+
+std::vector<std::string> head_lines(const SensorGroup& group,
+                                    const ExportOptions& options,
+                                    std::string_view formula) {
+  std::vector<std::string> lines = {fmt::format("sensorchar {}", version())};
+  for (const Source& source : sources(group))
+    lines.push_back("source: " + comment_text(said(source, group)));
+  std::string channels;
+  for (const SensorModel* m : group.all)
+    channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
+  lines.push_back("channels: " + comment_text(channels));
+  lines.push_back(fmt::format("formula: {}", formula));
+  for (const std::string& line : group.unexpressed) lines.push_back(comment_text(line));
+  const std::string axes = axes_said(options.axes);
+  if (!axes.empty()) lines.push_back(axes);
+  if (options.inflate != 1)
+    lines.push_back(
+        fmt::format("every noise number is multiplied by {}", export_number(options.inflate)));
+  return lines;
+}
+
+Json head_json(const SensorGroup& group, const ExportOptions& options, std::string_view formula) {
+  Json head;
+  head["version"] = std::string(version());
+  head["recordings"] = Json::array();
+  for (const Source& source : sources(group))
+    head["recordings"].push_back({{"file", printable(source.file)}, {"sha256", source.sha256}});
+  head["channels"] = Json::array();
+  for (const SensorModel* m : group.all) head["channels"].push_back(printable(m->channel));
+  head["formula"] = std::string(formula);
+  const std::string axes = axes_said(options.axes);
+  if (!axes.empty()) head["axes"] = axes;
+  if (!group.unexpressed.empty()) head["unexpressed"] = group.unexpressed;
+  if (options.inflate != 1) head["inflate"] = options.inflate;
+  return head;
+}
+
+std::string commented(const std::vector<std::string>& lines, std::string_view mark) {
+  std::string out;
+  for (const std::string& line : lines) out += fmt::format("{}{}\n", mark, line);
+  return out;
+}
+
+std::string yaml_line(std::string_view key,
+                      double value,
+                      std::string_view unit,
+                      const std::string& origin) {
+  return fmt::format(
+      "{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
+}
+
+std::string density_lines(const ImuFigures& f, std::string_view indent) {
+  std::string out;
+  const auto line = [&](const char* key, const Figure& figure, const char* unit) {
+    out += std::string(indent) + yaml_line(key, *figure.value, unit, figure.origin);
+  };
+  line("accelerometer_noise_density", f.accelerometer_white, "m/s^2/sqrt(Hz)");
+  line("accelerometer_random_walk", f.accelerometer_walk, "m/s^3/sqrt(Hz)");
+  line("gyroscope_noise_density", f.gyroscope_white, "rad/s/sqrt(Hz)");
+  line("gyroscope_random_walk", f.gyroscope_walk, "rad/s^2/sqrt(Hz)");
+  return out;
+}
+
+std::string axis_origins(const std::array<std::string, 3>& origins) {
+  if (origins[0] == origins[1] && origins[1] == origins[2]) return origins[0];
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!origins[i].empty())
+      out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
+  return out;
+}
+
+void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure) {
+  if (figure.limit)
+    notes.push_back(
+        fmt::format("{}: an upper 95 % limit stands for a term that was not detected", key));
+  else if (!figure.value)
+    notes.push_back(fmt::format("{}: left out ({})", key, figure.origin));
+  else if (*figure.value == 0)
+    notes.push_back(fmt::format("{}: {}", key, figure.origin));
+}
+
+std::string topic_scalar(const std::string& topic) {
+  const auto allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
+  };
+  const bool fine = !topic.empty() && std::isdigit(static_cast<unsigned char>(topic[0])) == 0 &&
+                    std::all_of(topic.begin(), topic.end(), allowed);
+  if (!fine)
+    throw Error({ErrorKind::usage,
+                 "E0589",
+                 "--topic",
+                 "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
+                 topic,
+                 "such as /imu0"});
+  // "~" and "on" would be no texts.
+  return topic[0] == '/' ? topic : '"' + topic + '"';
+}
+
+}  // namespace libchar

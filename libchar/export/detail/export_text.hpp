@@ -1,0 +1,59 @@
+#pragma once
+// Text that all exports share: what stands at the head of each file, numbers, comments.
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/json.hpp"
+#include "libchar/export/detail/export_figures.hpp"
+
+namespace libchar {
+
+/// Ten significant digits and always a decimal point ("2.0e-03" is a number to every YAML reader,
+/// "2e-3" is text to some).
+std::string export_number(double value);
+
+/// "[1.0, 2.0, 3.0]".
+std::string export_list(const std::array<double, 3>& values);
+
+/// The value, or 0.
+double value_or_zero(const Figure& figure);
+
+/// Text for one line of a comment of any language: ASCII, no "--" (XML), no backslash at the end
+/// (C++).
+std::string comment_text(std::string_view text);
+
+/// "sensorchar VERSION", "source: FILE sha256:…", channels, axes, inflation, `formula`: one line
+/// each, without comment signs.
+std::vector<std::string> head_lines(const SensorGroup& group,
+                                    const ExportOptions& options,
+                                    std::string_view formula);
+
+/// The same as an object, for JSON files.
+Json head_json(const SensorGroup& group, const ExportOptions& options, std::string_view formula);
+
+/// Every line of `lines` behind `mark` ("# ", "// ", "% ").
+std::string commented(const std::vector<std::string>& lines, std::string_view mark);
+
+/// "KEY: NUMBER  # UNIT; ORIGIN\n".
+std::string yaml_line(std::string_view key,
+                      double value,
+                      std::string_view unit,
+                      const std::string& origin);
+
+/// The four keys that Kalibr, EuRoC files and OpenVINS share, each line behind `indent`.
+std::string density_lines(const ImuFigures& figures, std::string_view indent = "");
+
+/// What has to be said of three axes: once if it is the same, else axis by axis.
+std::string axis_origins(const std::array<std::string, 3>& origins);
+
+/// Puts down what was replaced or left out of `figure` under its key.
+void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure);
+
+/// The topic as a YAML scalar that every reader takes for text. Throws Error(usage) unless it is
+/// made of letters, digits, '_', '/', '~' and does not start with a digit.
+std::string topic_scalar(const std::string& topic);
+
+}  // namespace libchar

@@ -1,0 +1,74 @@
+#pragma once
+// Sensor models for the programs that consume them. One table of targets (exports.cpp), one file
+// export_TARGET.cpp each; nothing here reads or writes files. Conventions and formulas:
+// docs/exports.md.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/export/sensor_group.hpp"
+
+namespace libchar {
+
+enum class AxisChoice {
+  automatic,  ///< each axis its own number where the consumer takes three, else the largest
+  max,
+  rms,
+  x,
+  y,
+  z,
+};
+
+struct ExportOptions {
+  AxisChoice axes = AxisChoice::automatic;
+  double inflate = 1;  ///< every noise number is multiplied by this (before squaring)
+  std::optional<double> correlation_s;  ///< of a Gauss-Markov bias; else by `floor_tau_s`
+  std::optional<double> floor_tau_s;   ///< averaging time of the flat part of the Allan curve; else
+                                       ///< from the coefficients and the valid range of the model
+  std::optional<double> airsim_tau_s;  ///< else AirSim's own 500 s and 800 s
+  double filter_step_s = 0.01;         ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
+  std::optional<double> gravity;       ///< m/s^2, for the consumers that have a key for it
+  std::string topic = "/imu0";
+  bool older = false;  ///< for releases before the current file formats (Basalt, ORB-SLAM3)
+  AxisOverrides axis;
+};
+
+struct Export {
+  std::string text;                ///< the file
+  std::vector<std::string> notes;  ///< what was converted, replaced or left out
+};
+
+enum class ExportNeeds {
+  gyroscope_and_accelerometer,
+  gyroscope_or_accelerometer,
+  any_sensor,
+};
+
+/// "gyroscope and accelerometer", "gyroscope or accelerometer", "any sensor".
+std::string needs_text(ExportNeeds needs);
+
+struct ExportTarget {
+  std::string_view name;        ///< for --to
+  std::string_view title;       ///< who reads it
+  std::string_view convention;  ///< one line: units, discrete or continuous, formulas
+  std::string_view file;        ///< name that the consumer's users give it
+  ExportNeeds needs;
+  std::string_view terms;  ///< letters of the noise terms that the file can express
+  Export (*write)(const SensorGroup&, const ExportOptions&);
+};
+
+/// All targets, in the order of the documentation.
+std::span<const ExportTarget> export_targets();
+
+/// Throws Error(usage) with the nearest name.
+const ExportTarget& find_export_target(std::string_view name);
+
+/// Throws Error(input) when models are missing or lack a number or a unit that the consumer needs.
+Export export_models(const ExportTarget& target,
+                     const std::vector<SensorModel>& models,
+                     const ExportOptions& options = {});
+
+}  // namespace libchar

@@ -1,0 +1,76 @@
+// The IMU part of a Basalt calibration. The keys say "std" and mean continuous densities: the code
+// multiplies the noise by sqrt(imu_update_rate) and divides the bias by it. Read by cereal, which
+// finds named values by name but takes the first value of the document for value0: nothing may
+// stand in front of it.
+
+#include "libchar/export/detail/export_figures.hpp"
+#include "libchar/export/detail/export_targets.hpp"
+#include "libchar/export/detail/export_text.hpp"
+
+namespace libchar {
+namespace {
+
+struct Writer {
+  const ExportOptions& options;
+  Export& out;
+  Json& comments;
+
+  // A vector, one number for each axis; one number in old files.
+  Json numbers(const char* key, const SensorTriad& triad, Term term) {
+    const Figure largest = positive_figure(triad, term, options, "Basalt", key);
+    if (options.older) {
+      comment(key, largest.origin);
+      return number(key, largest);
+    }
+    Json list = Json::array();
+    std::array<std::string, 3> origins;
+    const auto figures = axis_figures(triad, term, Absent::limit, options);
+    for (std::size_t i = 0; i < 3; ++i) {
+      // An axis of which nothing is known gets what the others have at most.
+      list.push_back(number(key, figures[i].value ? figures[i] : largest));
+      origins[i] = figures[i].origin + (figures[i].value ? "" : ": the largest of the others");
+    }
+    comment(key, axis_origins(origins));
+    return list;
+  }
+
+  void comment(const char* key, const std::string& origin) {
+    if (!origin.empty()) comments[key] = origin;
+  }
+
+  double number(const char* key, const Figure& figure) {
+    if (figure.limit) note_figure(out.notes, key, figure);
+    return *figure.value;
+  }
+};
+
+}  // namespace
+
+Export export_basalt(const SensorGroup& group, const ExportOptions& options) {
+  Export out;
+  Json comments = Json::object();
+  Writer writer{options, out, comments};
+  Json value;
+  value["imu_update_rate"] = rate_of(*group.gyroscope, out.notes);
+  value["accel_noise_std"] = writer.numbers("accel_noise_std", *group.accelerometer, Term::white);
+  value["gyro_noise_std"] = writer.numbers("gyro_noise_std", *group.gyroscope, Term::white);
+  value["accel_bias_std"] = writer.numbers("accel_bias_std", *group.accelerometer, Term::walk);
+  value["gyro_bias_std"] = writer.numbers("gyro_bias_std", *group.gyroscope, Term::walk);
+  Json head = head_json(group,
+                        options,
+                        "noise_std = white_noise, bias_std = random_walk (roots of two-sided, "
+                        "continuous densities, SI units; the code makes them discrete itself)");
+  if (!comments.empty()) head["comments"] = comments;
+  Json document;
+  document["value0"] = value;
+  document["sensorchar"] = head;
+  out.text = dump_json(document);
+  out.notes.emplace_back(
+      "merge the five keys into value0 of your calibration; the key sensorchar is ignored there");
+  if (!options.older)
+    out.notes.emplace_back(
+        "releases whose calibrations hold one number in place of three: --older");
+  return out;
+}
+
+}  // namespace libchar

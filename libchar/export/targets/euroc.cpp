@@ -1,0 +1,33 @@
+// The sensor.yaml of a EuRoC data set: the same four numbers as Kalibr's, in a data set folder.
+
+#include "libchar/export/detail/export_figures.hpp"
+#include "libchar/export/detail/export_targets.hpp"
+#include "libchar/export/detail/export_text.hpp"
+
+namespace libchar {
+
+Export export_euroc(const SensorGroup& group, const ExportOptions& options) {
+  Export out;
+  const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
+  out.text = commented(head_lines(group,
+                                  options,
+                                  "density = white_noise, walk = random_walk (roots of two-sided, "
+                                  "continuous densities)"),
+                       "# ");
+  out.text +=
+      "sensor_type: imu\n"
+      "comment: noise by sensorchar\n"
+      "T_BS:  # pose of the sensor in the body frame: not known from a recording at rest\n"
+      "  cols: 4\n  rows: 4\n"
+      "  data: [1.0, 0.0, 0.0, 0.0,\n"
+      "         0.0, 1.0, 0.0, 0.0,\n"
+      "         0.0, 0.0, 1.0, 0.0,\n"
+      "         0.0, 0.0, 0.0, 1.0]\n";
+  out.text += yaml_line("rate_hz", f.gyroscope_rate_hz, "Hz", "");
+  out.text += density_lines(f);
+  out.notes.emplace_back(
+      "T_BS is the identity: a recording at rest does not say where the sensor sits");
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,143 @@
+// Generalised least squares on the Allan variances a = A theta + e with Cov(e) = C(theta), the
+// model's exact covariance:
+//   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
+//   fitted curve stands still
+// (accuracy.md 3-5). There is no objective behind the reweighting, so that it may swing: damped by a
+// half after 25 rounds.
+#include "libchar/fit/detail/allan_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/chi_square.hpp"
+#include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/detail/goodness.hpp"
+#include "libchar/fit/detail/nonnegative.hpp"
+
+namespace libchar {
+namespace {
+
+/// The points that the terms can explain: below 150 time constants of a low-pass the curve is
+/// another one.
+AllanCurve usable(const AllanCurve& curve, const NoiseFit& first) {
+  AllanCurve kept = curve;
+  const double from_s = first.bandwidth_hz ? 150 / (2 * std::numbers::pi * *first.bandwidth_hz) : 0;
+  std::erase_if(kept.points, [&](const AllanPoint& point) {
+    return !(point.deviation > 0) || point.terms == 0 || point.tau_s < from_s;
+  });
+  return kept;
+}
+
+struct Solution {
+  Mixture theta{};
+  TermMatrix covariance = TermMatrix::Zero();
+  double chi2 = 0;
+  bool settled = false;
+};
+
+std::optional<Solution> solve(const AllanCurve& curve,
+                              const AllanCovariance& covariance,
+                              const Mixture& start) {
+  const TermSet terms = only_positive(start);
+  const auto n = static_cast<Eigen::Index>(curve.points.size());
+  Eigen::MatrixXd design = Eigen::MatrixXd::Zero(n, static_cast<int>(kTerms));
+  Eigen::VectorXd variance(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const AllanPoint& point = curve.points[static_cast<std::size_t>(j)];
+    variance[j] = point.deviation * point.deviation;
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      if (terms[i])
+        design(j, static_cast<Eigen::Index>(i)) =
+            unit_allan_variance(static_cast<Term>(i), static_cast<double>(point.m), curve.dt_s);
+    }
+  }
+  Solution solution{start, TermMatrix::Zero(), 0, false};
+  constexpr int kMost = 50, kDampAfter = 25;
+  for (int round = 0; round < kMost && !solution.settled; ++round) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance.at(solution.theta));
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    const Eigen::MatrixXd whitened = factor.matrixL().solve(design);
+    const Eigen::VectorXd target = factor.matrixL().solve(variance);
+    const TermMatrix gram = whitened.transpose() * whitened;
+    const Eigen::VectorXd product = whitened.transpose() * target;
+    Mixture right{};
+    for (std::size_t i = 0; i < kTerms; ++i) right[i] = product[static_cast<Eigen::Index>(i)];
+    Mixture next = nonnegative_minimum(gram, right, terms);
+    if (round >= kDampAfter) {
+      for (std::size_t i = 0; i < kTerms; ++i) next[i] = 0.5 * (next[i] + solution.theta[i]);
+    }
+    const auto vector = [](const Mixture& theta) {
+      return Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(theta.data());
+    };
+    const Eigen::VectorXd curve_now = design * vector(next),
+                          curve_before = design * vector(solution.theta);
+    if (!(curve_now.minCoeff() > 0)) return std::nullopt;
+    const double moved = ((curve_now - curve_before).array() / curve_now.array()).abs().maxCoeff();
+    solution.theta = next;
+    solution.covariance = inverse_of(gram, terms);
+    solution.chi2 = (target - whitened * vector(next)).squaredNorm();
+    solution.settled = moved < 1e-8;
+  }
+  return solution;
+}
+
+void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& second) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const Coefficient& term = first.term[i];
+    if (!term.value) continue;
+    const double theta = solution.theta[i],
+                 sd_theta = std::sqrt(solution.covariance(static_cast<Eigen::Index>(i),
+                                                          static_cast<Eigen::Index>(i)));
+    const double scale = 2 * std::max(*term.value, std::sqrt(theta));
+    second.value[i] = std::sqrt(theta);
+    second.sd[i] = sd_theta / scale;
+    const double first_sd_theta = 2 * term.relative_sd * first.theta[i];
+    const double apart = std::abs(theta - first.theta[i]) / std::hypot(sd_theta, first_sd_theta);
+    if (term.status != Status::detected || apart <= 3) continue;
+    second.agrees = false;
+    second.sentence += fmt::format(
+        "{}the Allan curve gives {:.4g} for {}, {:.1f} combined standard deviations from {:.4g}",
+        second.sentence.empty() ? "" : "; ",
+        *second.value[i],
+        people_name(static_cast<Term>(i)),
+        apart,
+        *term.value);
+  }
+  if (second.agrees && second.goodness.p < 0.01) {
+    second.sentence = fmt::format(
+        "agrees on the coefficients, but does not describe the Allan curve itself (p = {:.2g})",
+        second.goodness.p);
+  } else if (second.agrees) {
+    second.sentence = "agrees";
+  }
+  if (!solution.settled) second.sentence += " (the reweighting did not settle in 50 rounds)";
+}
+
+}  // namespace
+
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
+                                            const NoiseFit& first,
+                                            AllanCovarianceCache* cache) {
+  const AllanCurve kept = usable(curve, first);
+  const std::size_t terms = count_of(only_positive(first.theta));
+  const bool plain = kept.type == DeviationType::oadev || kept.type == DeviationType::adev;
+  if (!plain || terms == 0 || kept.points.size() < terms + 1) return std::nullopt;
+  AllanCovarianceCache own;
+  const auto covariance = (cache != nullptr ? *cache : own).of(kept);
+  const std::optional<Solution> solution = solve(kept, *covariance, first.theta);
+  if (!solution) return std::nullopt;
+  SecondOpinion second;
+  second.goodness.chi2 = solution->chi2;
+  second.goodness.dof = static_cast<double>(kept.points.size()) -
+                        static_cast<double>(count_of(only_positive(solution->theta)));
+  second.goodness.p = chi_square_tail(second.goodness.chi2, second.goodness.dof);
+  compare(first, *solution, second);
+  return second;
+}
+
+}  // namespace libchar

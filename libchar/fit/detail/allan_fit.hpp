@@ -1,0 +1,16 @@
+#pragma once
+// The covariance-weighted fit of the Allan curve: the second opinion.
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+/// Generalised least squares of the Allan variances with the model's own covariance, on the terms
+/// of `first` that have a value; compared with `first`. Nothing when the curve has too few points.
+/// `cache` may be null.
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
+                                            const NoiseFit& first,
+                                            AllanCovarianceCache* cache);
+
+}  // namespace libchar

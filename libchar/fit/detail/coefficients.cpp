@@ -1,0 +1,172 @@
+#include "libchar/fit/detail/coefficients.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/detail/profile.hpp"
+#include "libchar/fit/detail/scoring.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kUndeterminedAbove =
+    0.30;  ///< bound above which a term counts as not determined (accuracy.md 6)
+/// Likelihood ratio above which a dropped term widens the intervals of the others.
+constexpr double kDoubtfulAbove = 1;
+constexpr double kNormal95 = 1.959963984540054;
+
+double sd_of_theta(const BinProblem& problem, Mixture theta, TermSet terms, std::size_t term) {
+  terms[term] = true;
+  const TermMatrix covariance = inverse_of(fisher_information(problem, theta, terms), terms);
+  return std::sqrt(covariance(static_cast<Eigen::Index>(term), static_cast<Eigen::Index>(term)));
+}
+
+Interval profile_interval(const BinProblem& problem,
+                          const TermSet& terms,
+                          const Optimum& best,
+                          std::size_t term) {
+  const double sd = sd_of_theta(problem, best.theta, terms, term);
+  return {std::sqrt(profile_lower(problem, terms, best, term, sd, kTwoSided95)),
+          std::sqrt(profile_upper(problem, terms, best, term, sd, kTwoSided95))};
+}
+
+/// Terms that were dropped but may be there (likelihood ratio above 1): without them the intervals
+/// of the others would pretend that the decision was certain (coverage 85 % instead of 95 % in
+/// scene a2 of the theory page).
+struct Nuisance {
+  TermSet terms{};
+  Optimum best;
+  bool any = false;
+};
+
+Nuisance doubtful_terms(const BinProblem& problem,
+                        const Decision& decision,
+                        const TermSet& offered) {
+  Nuisance nuisance;
+  nuisance.terms = decision.kept;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (!offered[i] || decision.kept[i] || !(decision.likelihood_ratio[i] > kDoubtfulAbove)) {
+      continue;
+    }
+    nuisance.terms[i] = nuisance.any = true;
+  }
+  if (nuisance.any) {
+    const ScoringResult full = score(problem, nuisance.terms);
+    nuisance.best = {full.theta, full.half_deviance};
+  }
+  return nuisance;
+}
+
+/// Limits of a term that has no value: it is put back into the model for that.
+void report_limits(const BinProblem& problem,
+                   TermSet terms,
+                   const Optimum& reported,
+                   std::size_t i,
+                   Coefficient& term) {
+  terms[i] = true;
+  const ScoringResult with = score(problem, terms);
+  const bool better = with.half_deviance <= reported.half_deviance;
+  const Optimum best = better ? Optimum{with.theta, with.half_deviance} : reported;
+  const double sd = sd_of_theta(problem, best.theta, terms, i);
+  term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, kOneSided95));
+  term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kTwoSided95))};
+  term.profile = true;
+}
+
+}  // namespace
+
+std::string people_name(Term term) {
+  static constexpr std::array<std::string_view, kTerms> names = {
+      "white noise", "bias instability", "random walk", "quantization noise", "rate ramp"};
+  const auto i = static_cast<std::size_t>(term);
+  return fmt::format("{} {}", names[i], kTermNames[i].letter);
+}
+
+void report_coefficients(const BinProblem& problem,
+                         const Decision& decision,
+                         const FitOptions& options,
+                         NoiseFit& fit) {
+  const Polished polished = polish(problem, decision.theta);
+  fit.theta = polished.theta;
+  fit.converged = decision.converged && polished.converged;
+  fit.iterations = decision.iterations + polished.iterations;
+  const Optimum best{polished.theta, polished.half_deviance};
+  const Nuisance nuisance = doubtful_terms(problem, decision, options.terms);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t j = 0; j < kTerms; ++j) {
+      fit.covariance[i][j] =
+          polished.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    term = {};
+    if (!options.terms[i]) continue;
+    term.likelihood_ratio = decision.likelihood_ratio[i];
+    const bool ambiguous =
+        decision.flicker_or_walk &&
+        (i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk));
+    if (!(fit.theta[i] > 0)) {
+      term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
+      report_limits(problem, decision.kept, best, i, term);
+      continue;
+    }
+    const double sd = std::sqrt(fit.covariance[i][i]);
+    term.status = ambiguous ? Status::undetermined : Status::detected;
+    term.value = std::sqrt(fit.theta[i]);
+    term.relative_sd = sd / 2;
+    const double spread = std::exp(kNormal95 * sd / 2);
+    term.ci95 = {*term.value / spread, *term.value * spread};
+    term.profile = term.relative_sd > options.profile_above;
+    if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i);
+    if (nuisance.any && nuisance.best.theta[i] > 0) {
+      const Interval wide = profile_interval(problem, nuisance.terms, nuisance.best, i);
+      term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
+      term.profile = true;
+    }
+  }
+  if (decision.flicker_or_walk) {
+    fit.sentences.push_back(
+        "The record shows slow noise but cannot tell bias instability from random walk: each could "
+        "explain it alone. A longer record can tell.");
+  }
+}
+
+void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (!term.value || !(log_theta_sd[i] / 2 > term.relative_sd)) continue;
+    term.relative_sd = log_theta_sd[i] / 2;
+    const double spread = std::exp(kNormal95 * term.relative_sd);
+    term.ci95 = {std::min(term.ci95.low, *term.value / spread),
+                 std::max(term.ci95.high, *term.value * spread)};
+    const double ratio = log_theta_sd[i] / std::sqrt(fit.covariance[i][i]);
+    for (std::size_t j = 0; j < kTerms; ++j) {
+      fit.covariance[i][j] *= ratio;
+      fit.covariance[j][i] *= ratio;
+    }
+  }
+}
+
+void report_bounds(const TermSet& fitted, NoiseFit& fit) {
+  const auto bound = cramer_rao(fit.theta, fit.rate_hz, static_cast<double>(fit.samples), fitted);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (!term.value || !bound[i]) continue;
+    term.bound = bound[i];
+    if (*bound[i] > kUndeterminedAbove && term.status == Status::detected) {
+      term.status = Status::undetermined;
+      fit.sentences.push_back(
+          fmt::format("The record is too short for {}: at best it is known to {:.0f} % (1 sd).",
+                      people_name(static_cast<Term>(i)),
+                      100 * *bound[i]));
+    }
+    term.seconds_for_10_percent =
+        seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);
+  }
+}
+
+}  // namespace libchar

@@ -1,0 +1,21 @@
+#pragma once
+// Which terms are in the record: likelihood ratios at the boundary, backward elimination.
+
+#include "libchar/fit/detail/bin_likelihood.hpp"
+
+namespace libchar {
+
+struct Decision {
+  TermSet kept{};   ///< terms of the reported model
+  Mixture theta{};  ///< its maximum
+  double half_deviance = 0;
+  Mixture likelihood_ratio{};  ///< 2 (lnL with - lnL without): of a kept term within the model, of
+                               ///< a dropped one when it is added
+  bool flicker_or_walk = false;  ///< neither is needed when the other is there, but one of them is
+  int iterations = 0;
+  bool converged = true;
+};
+
+Decision decide(const BinProblem& problem, const TermSet& offered, double threshold);
+
+}  // namespace libchar

@@ -1,0 +1,85 @@
+// A coefficient is a line when it exceeds the local floor by what noise does once in 7e7
+// coefficients (32 x the floor for a single transform). The floor is the median of its
+// neighbourhood over the median of chi-square. A sine of power E (in floors) leaks E/(pi d)^2 into
+// the coefficient at distance d whatever its phase, so that the neighbourhood goes as well, out to
+// where the leak is 1 % of the floor: d = sqrt(10 E).
+#include "libchar/fit/detail/line_clip.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kLowest = 32;
+constexpr double kFalseAlarm = 1.54e-8;  ///< P(chi^2_1 > 32)
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Floor of every coefficient: medians over stretches of an eighth of k, 64 to 2048 coefficients
+/// long, joined by straight lines in log-log, so that the slope of flicker and walk within a
+/// stretch is not taken for a line.
+std::vector<double> local_floor(const std::vector<double>& mean,
+                                std::uint64_t first,
+                                double chi_median) {
+  std::vector<double> log_k, log_floor, part;
+  for (std::size_t lo = 0; lo < mean.size();) {
+    const std::size_t width = std::clamp<std::size_t>((lo + first) / 8, 64, 2048);
+    std::size_t hi = std::min(mean.size(), lo + width);
+    if (mean.size() - hi < 64) hi = mean.size();
+    part.assign(mean.begin() + static_cast<std::ptrdiff_t>(lo),
+                mean.begin() + static_cast<std::ptrdiff_t>(hi));
+    log_k.push_back(
+        0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
+    log_floor.push_back(std::log(std::max(median_of(part), 1e-300) / chi_median));
+    lo = hi;
+  }
+  std::vector<double> floor(mean.size());
+  std::size_t piece = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const double x = std::log(static_cast<double>(i + first));
+    while (piece + 2 < log_k.size() && x > log_k[piece + 1]) ++piece;
+    const std::size_t next = std::min(piece + 1, log_k.size() - 1);
+    const double span = log_k[next] - log_k[piece];
+    const double share = span > 0 ? (x - log_k[piece]) / span : 0;
+    floor[i] = std::exp(log_floor[piece] + share * (log_floor[next] - log_floor[piece]));
+  }
+  return floor;
+}
+
+}  // namespace
+
+LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::uint64_t pooled) {
+  const double dof = static_cast<double>(pooled);
+  const boost::math::chi_squared chi(dof);
+  // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
+  const double limit = std::max(1.5, quantile(complement(chi, kFalseAlarm)) / dof);
+  const std::vector<double> floor = local_floor(mean, first, quantile(chi, 0.5) / dof);
+  LineClip clip;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const std::uint64_t k = first + i;
+    // The median of a short stretch is itself uncertain: four of its standard deviations on top.
+    const double width = std::clamp(static_cast<double>(k) / 8, 64.0, 2048.0);
+    const double margin = 1 + 5 * std::sqrt(2 / dof / width);
+    if (k < kLowest || !(mean[i] > limit * margin * floor[i])) continue;
+    if (clip.clipped.empty()) clip.clipped.assign(mean.size(), 0);
+    const double excess = floor[i] > 0 ? mean[i] / floor[i] : 1e6;
+    const double reach = std::min({std::sqrt(10 * excess),
+                                   static_cast<double>(k) / 4,
+                                   static_cast<double>(mean.size()) / 32});
+    const auto distance = static_cast<std::size_t>(std::max(1.0, reach));
+    const std::size_t from = std::max<std::size_t>(i < distance ? 0 : i - distance,
+                                                   first < kLowest ? kLowest - first : 0);
+    const std::size_t to = std::min(mean.size() - 1, i + distance);
+    for (std::size_t j = from; j <= to; ++j) clip.clipped[j] = 1;
+  }
+  for (const char flag : clip.clipped) clip.count += flag != 0 ? 1 : 0;
+  return clip;
+}
+
+}  // namespace libchar

@@ -1,0 +1,129 @@
+// The gamma deviance as a genuine least-squares problem:
+//   r_j = sign(u_j - 1) sqrt(nu_j (u_j - 1 - ln u_j)),   sum r^2/2 = -ln L + const,   dr/dln mu =
+//   nu (1 - u) / (2 r).
+// Parameters are ln theta of the terms that scoring left positive: no bounds, and the start is the
+// optimum to within 1e-10, so that one or two Levenberg-Marquardt steps settle the last digits.
+// (theta = c^2, or ln theta from far away, stalls: accuracy.md 5.)
+#include "libchar/fit/detail/polish.hpp"
+
+#include <ceres/ceres.h>
+
+#include <cmath>
+#include <limits>
+
+namespace libchar {
+namespace {
+
+class BinResiduals final : public ceres::CostFunction {
+ public:
+  BinResiduals(const BinProblem& problem, std::vector<Eigen::Index> terms)
+      : problem_(problem), terms_(std::move(terms)) {
+    set_num_residuals(static_cast<int>(problem.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size()));
+  }
+
+  bool Evaluate(double const* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const std::size_t p = terms_.size();
+    std::array<double, kTerms> theta{};
+    for (std::size_t i = 0; i < p; ++i) theta[i] = std::exp(parameters[0][i]);
+    for (Eigen::Index j = 0; j < problem_.size(); ++j) {
+      std::array<double, kTerms> part{};
+      double model = 0;
+      for (std::size_t i = 0; i < p; ++i) model += part[i] = theta[i] * problem_.unit(j, terms_[i]);
+      if (!(model > 0) || !std::isfinite(model)) return false;
+      const DevianceResidual r = deviance_residual(problem_.energy[j], model, problem_.dof[j]);
+      residuals[j] = r.value;
+      if (jacobians == nullptr || jacobians[0] == nullptr) continue;
+      for (std::size_t i = 0; i < p; ++i)
+        jacobians[0][static_cast<std::size_t>(j) * p + i] = r.slope * part[i] / model;
+    }
+    return true;
+  }
+
+ private:
+  const BinProblem& problem_;
+  std::vector<Eigen::Index> terms_;
+};
+
+ceres::Solver::Options solver_options() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.minimizer_progress_to_stdout = false;
+  options.max_num_iterations = 50;
+  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance =
+      std::numeric_limits<double>::epsilon();
+  return options;
+}
+
+}  // namespace
+
+DevianceResidual deviance_residual(double energy, double model, double dof) {
+  const double d = (energy - model) / model;
+  // shape = 2 (d - ln(1+d)) / d^2, by its series where the difference would lose digits
+  double shape = 0;
+  if (std::abs(d) < 1e-2) {
+    double power = 1;
+    for (int k = 2; k <= 12; ++k) {
+      shape += 2 * power / k;
+      power *= -d;
+    }
+  } else {
+    shape = 2 * (d - std::log1p(d)) / (d * d);
+  }
+  const double root = std::sqrt(dof / 2 * shape);
+  return {d * root, -dof / (2 * root)};
+}
+
+Polished polish(const BinProblem& problem, const Mixture& start) {
+  std::vector<Eigen::Index> terms;
+  std::vector<double> log_theta;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (!(start[i] > 0)) continue;
+    terms.push_back(static_cast<Eigen::Index>(i));
+    log_theta.push_back(std::log(start[i]));
+  }
+  Polished result;
+  result.theta = start;
+  result.half_deviance = half_deviance(problem, start);
+  if (terms.empty()) return result;
+
+  ceres::Problem solver_problem;
+  solver_problem.AddResidualBlock(new BinResiduals(problem, terms), nullptr, log_theta.data());
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(), &solver_problem, &summary);
+  result.iterations = static_cast<int>(summary.iterations.size());
+  Mixture polished{};
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    polished[static_cast<std::size_t>(terms[i])] = std::exp(log_theta[i]);
+  const double value = half_deviance(problem, polished);
+  // Never worse than the start, up to the rounding of the sum.
+  const double slack = 1e-9 + 1e-13 * result.half_deviance;
+  result.converged = summary.IsSolutionUsable() && value <= result.half_deviance + slack;
+  if (result.converged) {
+    result.theta = polished;
+    result.half_deviance = value;
+  }
+
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::DENSE_SVD;
+  options.null_space_rank = -1;
+  options.num_threads = 1;
+  ceres::Covariance covariance(options);
+  const std::size_t p = terms.size();
+  std::vector<double> block(p * p);
+  const std::vector<std::pair<const double*, const double*>> wanted = {
+      {log_theta.data(), log_theta.data()}};
+  if (covariance.Compute(wanted, &solver_problem) &&
+      covariance.GetCovarianceBlock(log_theta.data(), log_theta.data(), block.data())) {
+    for (std::size_t i = 0; i < p; ++i) {
+      for (std::size_t j = 0; j < p; ++j) result.covariance(terms[i], terms[j]) = block[i * p + j];
+    }
+  }
+  return result;
+}
+
+}  // namespace libchar

@@ -1,0 +1,48 @@
+#pragma once
+// Squared DCT-II coefficients of a record in logarithmic bins.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libchar/core/noise_terms.hpp"
+
+namespace libchar {
+
+/// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood needs.
+struct PowerBin {
+  double frequency_hz = 0;  ///< centre
+  double energy = 0;        ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
+  double dof = 0;           ///< number of coefficients averaged
+  std::array<double, kTerms> unit{};  ///< E[energy] for theta_term = 1
+  double low_hz = 0, high_hz = 0;     ///< edges
+};
+
+/// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`
+/// samples are transformed one by one (k >= 1) and their means as one more series (accuracy.md 1, 10). A record of at most
+/// `block` samples gets one exact DCT. Missing samples: short ones are closed up (concatenated), at a long gap a new record
+/// starts and likelihoods add.
+class PowerBinner {
+ public:
+  explicit PowerBinner(std::uint64_t block = std::uint64_t{1} << 16U);
+  ~PowerBinner();
+  PowerBinner(PowerBinner&&) noexcept;
+  PowerBinner& operator=(PowerBinner&&) noexcept;
+  void push(std::span<const double> samples);
+  /// A whole block, without missing samples, whose squared coefficients somebody else sums up: true. False, and nothing taken, when
+  /// another block is under way: then push it.
+  bool take_block(std::span<const double> samples);
+  /// The sums of c_k^2 over those blocks, k = 0 … block-1, before `finish`.
+  void set_taken_power(std::vector<double> power);
+  std::vector<PowerBin> finish(double rate_hz) const;
+  /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out; counts them.
+  std::vector<PowerBin> finish_clipped(double rate_hz, std::uint64_t& clipped) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace libchar

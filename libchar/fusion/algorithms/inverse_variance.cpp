@@ -1,0 +1,27 @@
+#include "libchar/fusion/algorithms/inverse_variance.hpp"
+
+#include <cassert>
+
+#include "libchar/fusion/detail/weighted_mean.hpp"
+
+namespace libchar::fusion {
+
+InverseVariance::InverseVariance(const Given& given) : levels_(given.noise_levels) {
+  assert(levels_.size() == given.channels);
+  // Relative to the smallest, so that levels near the ends of the range of a double do not
+  // overflow.
+  const double smallest = levels_.minCoeff();
+  weights_ = (smallest / levels_.array()).matrix();
+  const double sum = weights_.sum();
+  weights_ /= sum;
+  variance_ = smallest / sum;
+  if (!given.plain()) general_ = std::make_unique<GeneralMean>(given.h(), levels_);
+}
+
+Estimate InverseVariance::step(const Sample& y) const {
+  if (general_) return general_->step(y);
+  const WeightedMean mean = weighted_mean(y.data(), weights_.data(), weights_.size());
+  return Estimate::scalar(mean.x, variance_ / mean.used);
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,143 @@
+#include "libchar/fusion/algorithms/kalman_takens.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/detail/weighted_mean.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+std::size_t whole(const Settings& settings, std::string_view name) {
+  return static_cast<std::size_t>(settings[name]);
+}
+
+/// The spread of z stands for the prediction's error until this many errors are known.
+constexpr double kPriorErrors = 30;
+/// Smallest Q in units of the variance of the channels together: they are never ignored.
+constexpr double kLeastShare = 1e-6;
+
+}  // namespace
+
+KalmanTakensFilter::KalmanTakensFilter(const Given& given, const Settings& settings, bool taught)
+    : levels_(given.noise_levels),
+      weights_(levels_.minCoeff() * levels_.cwiseInverse()),
+      dimension_(whole(settings, "dimension")),
+      neighbours_(whole(settings, "neighbours")),
+      dictionary_(whole(settings, "dictionary")),
+      theiler_(taught ? 0 : whole(settings, "theiler")),
+      taught_(taught),
+      given_q_(settings["process_variance"]),
+      keep_(1 - 1 / settings["memory"]),
+      search_(dimension_, neighbours_, dictionary_),
+      series_(2 * (dictionary_ + dimension_ + theiler_)),
+      recent_(dimension_) {
+  weights_ /= weights_.sum();
+  least_q_ = kLeastShare / levels_.cwiseInverse().sum();
+}
+
+void KalmanTakensFilter::append(double value) {
+  const std::size_t most = dictionary_ + dimension_ + theiler_;
+  if (last_ == series_.size()) {
+    std::copy(
+        series_.begin() + static_cast<std::ptrdiff_t>(first_), series_.end(), series_.begin());
+    last_ -= first_;
+    first_ = 0;
+  }
+  series_[last_++] = value;
+  if (last_ - first_ > most) ++first_;
+}
+
+void KalmanTakensFilter::widen_spread(double z) {
+  seen_ += 1;
+  const double off = z - mean_;
+  mean_ += off / seen_;
+  spread_ += off * (z - mean_);
+}
+
+void KalmanTakensFilter::teach(double truth) {
+  // One NaN parts the stretches; more would only push known ones out.
+  if (std::isnan(truth) && last_ > first_ && std::isnan(series_[last_ - 1])) return;
+  append(truth);
+  if (!std::isnan(truth)) widen_spread(truth);
+}
+
+std::size_t KalmanTakensFilter::taught_stretches() const {
+  std::size_t stretches = 0, length = 0;  // values without a gap so far
+  for (std::size_t k = first_; k < last_; ++k) {
+    length = std::isnan(series_[k]) ? 0 : length + 1;
+    if (length > dimension_) ++stretches;
+  }
+  return stretches;
+}
+
+/// NaN while the past is too short: a few stretches would always find the same neighbours.
+double KalmanTakensFilter::predict() {
+  const std::size_t length = last_ - first_, behind = dimension_ + (taught_ ? 0 : theiler_ - 1);
+  if (heard_ < dimension_ || length <= behind) return std::nan("");
+  const std::size_t starts = std::min(length - behind, dictionary_);
+  if (!taught_ && starts < std::min(2 * neighbours_, dictionary_)) return std::nan("");
+  const double* const series = series_.data() + first_;
+  return prediction(search_.nearest(series, starts, recent_.data()), series, dimension_);
+}
+
+/// Q + variance is what the square of the error should be.
+void KalmanTakensFilter::learn_error(double error, double variance) {
+  error_square_ = keep_ * error_square_ + (error * error - variance);
+  error_weight_ = keep_ * error_weight_ + 1;
+}
+
+double KalmanTakensFilter::process_variance() const {
+  if (given_q_ > 0) return given_q_;
+  const double spread = seen_ > 1 ? spread_ / (seen_ - 1) : 0;
+  const double fade = std::max(0.0, 1 - error_weight_ * (1 - keep_)) * kPriorErrors;
+  return (error_square_ + fade * spread) / (error_weight_ + fade);
+}
+
+void KalmanTakensFilter::remember(double z, bool measured) {
+  std::copy(recent_.begin() + 1, recent_.end(), recent_.begin());
+  recent_.back() = z;
+  heard_ = std::isnan(z) ? 0 : std::min(heard_ + 1, dimension_);
+  if (!taught_) append(measured ? z : std::nan(""));
+  if (measured) widen_spread(z);
+}
+
+Estimate KalmanTakensFilter::step(const Sample& y) {
+  const WeightedMean mean = weighted_mean(y.data(), weights_.data(), weights_.size());
+  const bool measured = mean.used > 0;
+  double information = 0;
+  for (Eigen::Index i = 0; i < y.size(); ++i)
+    if (usable(y[i])) information += 1 / levels_[i];
+  const double variance = 1 / information, predicted = predict();
+  // Errors as small as the noise leave an estimate of Q at or below zero.
+  const double q = std::max(process_variance(), least_q_);
+  if (!measured) {
+    gap_variance_ += q;
+    remember(predicted, false);
+    return Estimate::scalar(predicted, std::isnan(predicted) ? predicted : gap_variance_);
+  }
+  Estimate estimate = Estimate::scalar(mean.x, variance);
+  if (!std::isnan(predicted)) {
+    const double prior = std::max(q, gap_variance_);
+    const double share = prior / (prior + variance);  // of the channels
+    estimate = Estimate::scalar(predicted + share * (mean.x - predicted), share * variance);
+    if (gap_variance_ == 0) learn_error(mean.x - predicted, variance);
+  }
+  gap_variance_ = 0;
+  remember(mean.x, true);
+  return estimate;
+}
+
+void KalmanTakensTaught::finish_learning() {
+  if (filter_.taught_stretches() >= 2 * filter_.neighbours()) return;
+  throw Error({ErrorKind::numeric,
+               "E0862",
+               "",
+               "the learning window holds fewer than two stretches of the past for each neighbour",
+               std::to_string(filter_.taught_stretches()),
+               "lengthen the learning window, or ask for fewer neighbours"});
+}
+
+}  // namespace libchar::fusion

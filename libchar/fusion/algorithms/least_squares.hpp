@@ -1,0 +1,112 @@
+#pragma once
+// Calibration and weights from a reference x in a learning window [RV 3.6].
+//
+//   calibration: y_i ~ a_i x + b_i, corrected c_i = (y_i - b_i) / a_i [RV 3.27-3.29] weights: x ~
+//   sum w_i c_i,   with sum w = 1 (default: unbiased), or free as published (shrinks, [RV 3.30])
+//
+// All from one triangle of the rows [1, y_1 - x, …, y_n - x, x]: with sum w = 1, x - c_n =
+// sum_{i<n} w_i (c_i - c_n) + error holds differences only, in which a large x does not eat the
+// digits. No normal matrix; columns are scaled.
+
+#include <array>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/triangle.hpp"
+
+namespace libchar::fusion {
+
+/// What a learning window says about channels and weights.
+struct LearntWeights {
+  Eigen::VectorXd gain, bias;       ///< a and b; 1 and 0 without calibration
+  Eigen::VectorXd weights;          ///< of the corrected channels
+  double constant = 0;              ///< x = sum w c + constant (affine form only)
+  double variance = 0;              ///< of the error in the learning window
+  Eigen::Index dependent = 0;       ///< channels that say nothing beyond the others
+  std::vector<int> without_signal;  ///< channels whose gain cannot be told from zero: weight zero
+};
+
+struct LeastSquaresForm {
+  bool calibrate = false;
+  bool sum_to_one = true;
+  bool constant = false;
+};
+
+/// Gathers a learning window; instants with a missing sample are left out.
+class WeightLearner {
+ public:
+  explicit WeightLearner(Eigen::Index channels);
+  void add(const Sample& y, double x);
+  /// There are instants enough for `weights`.
+  bool enough() const { return triangle_.rows() >= n_ + 2; }
+  /// Throws Error(numeric): too few instants, or a channel that does not follow the reference.
+  LearntWeights weights(const LeastSquaresForm& form);
+
+ private:
+  Eigen::MatrixXd calibrate(const Eigen::MatrixXd& upper, LearntWeights& learnt) const;
+  Eigen::Index n_;
+  double origin_ = 0;  // of the reference: its first value
+  Triangle triangle_;
+  Eigen::VectorXd row_;
+};
+
+/// x = sum w_i (y_i - b_i) / a_i + constant, missing samples handed to the others.
+class LearntMean {
+ public:
+  void take(const LearntWeights& learnt);
+  Estimate step(const Sample& y) const;
+  const LearntWeights& learnt() const { return learnt_; }
+
+ private:
+  Estimate of_present(const Sample& y) const;
+  LearntWeights learnt_;
+  Eigen::VectorXd direct_;  // w_i / a_i
+  double total_ = 0, constant_ = 0;
+};
+
+template <bool kPublished>
+struct LeastSquaresOf {
+  static constexpr Needs kNeeds{
+      .min_channels = 1, .learning_samples = 2, .reference = true, .accepts_missing = true};
+  static constexpr Card card = kPublished
+                                   ? Card{.name = "least-squares-published",
+                                          .title = "Least squares as published: weights free",
+                                          .source = "[RV 3.6]",
+                                          .complexity = "O(n)",
+                                          .needs = kNeeds,
+                                          .learning_complexity = "O(n^2)"}
+                                   : Card{.name = "least-squares",
+                                          .title = "Least squares, weights sum to one",
+                                          .source = "[RV 3.6]",
+                                          .complexity = "O(n)",
+                                          .needs = kNeeds,
+                                          .learning_complexity = "O(n^2)"};
+  static constexpr std::array options{
+      Option{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true},
+      Option{"constant",
+             "",
+             0,
+             0,
+             1,
+             "1: the weighted sum has a constant besides (uncalibrated channels)",
+             true}};
+
+  LeastSquaresOf(const Given& given, const Settings& settings)
+      : form_{settings["calibrate"] != 0, !kPublished, settings["constant"] != 0},
+        learner_(given.channels) {}
+  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
+  void finish_learning() { mean_.take(learner_.weights(form_)); }
+  Estimate step(const Sample& y) const { return mean_.step(y); }
+  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
+  void remarks(Warnings& warnings) const;
+
+ private:
+  LeastSquaresForm form_;
+  WeightLearner learner_;
+  LearntMean mean_;
+};
+
+using LeastSquares = LeastSquaresOf<false>;
+using LeastSquaresPublished = LeastSquaresOf<true>;
+
+}  // namespace libchar::fusion

@@ -1,0 +1,149 @@
+#include "libchar/fusion/algorithms/minque.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "libchar/fusion/detail/weighted_mean.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+ReweightingOptions reweighting(const Settings& s) {
+  return {s["gamma"], s["damping"], s["floor"], s["floor_largest"], s["start_variance"]};
+}
+
+FaultWatchOptions watching(const Settings& s) {
+  return {s["fault_gamma"], s["fault_threshold"], static_cast<std::int64_t>(s["recovery_samples"])};
+}
+
+/// A moment of rounding errors proves no fault.
+constexpr double kRounding = 1e4;
+
+/// Relative standard deviation of a variance above which a reader must know.
+constexpr double kPoorlyKnown = 0.5;
+
+/// A second moment can only be judged by variances that are known clearly better than itself.
+bool shorter(double fault_gamma, double gamma) {
+  return 1 - fault_gamma >= 5 * (1 - gamma);
+}
+
+}  // namespace
+
+Minque::Minque(const Given& given, const Settings& settings)
+    : scalar_(static_cast<std::size_t>(given.channels), reweighting(settings)),
+      watch_(static_cast<std::size_t>(given.channels), watching(settings)),
+      asked_(settings["fault_detection"] != 0),
+      detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
+      // The variances must have settled before they can accuse anybody.
+      armed_from_(std::max<std::int64_t>(
+          given.fault_free_samples,
+          static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+      inputs_(given.inputs()),
+      present_(static_cast<std::size_t>(given.channels)),
+      m_(static_cast<int>(given.channels)) {
+  std::iota(present_.begin(), present_.end(), 0);
+  if (!given.plain()) general_.emplace(given.observation_matrix, reweighting(settings));
+}
+
+Estimate Minque::step(const Sample& y) {
+  return general_ ? step_with(*general_, y) : step_with(scalar_, y);
+}
+
+template <class Variances>
+Estimate Minque::step_with(Variances& variances, const Sample& y) {
+  // Where the last instant was complete, this one is taken to be, and looked at when it shows that
+  // it is not.
+  if (!all_in_use()) use_present(y);
+  const auto fuse = [&] {
+    return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan("");
+  };
+  // Written so that NaN fails.
+  const auto good = [](double x) { return std::abs(x) <= kLargestSample; };
+  double x = fuse();
+  if (!good(x) && all_in_use()) {
+    use_present(y);
+    x = fuse();
+  }
+  Estimate estimate = Estimate::none(inputs_);
+  if (good(x)) {
+    const bool found = detection_ && found_fault(variances);
+    if (found) {
+      use_present(y);
+      x = fuse();
+    }
+    if (good(x)) estimate = variances.estimate();
+    if (good(x) && watch_.count_out() > 0) check_recovery(variances, y);
+    // What a failing channel has done to the residuals of this instant is not to be learnt.
+    if (good(x) && !found) variances.update();
+  }
+  ++now_;
+  return estimate;
+}
+
+bool Minque::all_in_use() const {
+  return m_ == static_cast<int>(present_.size()) && watch_.count_out() == 0;
+}
+
+void Minque::use_present(const Sample& y) {
+  m_ = 0;
+  for (int i = 0; i < static_cast<int>(y.size()); ++i)
+    if (usable(y[i]) && !watch_.out(static_cast<std::size_t>(i)))
+      present_[static_cast<std::size_t>(m_++)] = i;
+}
+
+/// Takes out the worst channel, if one is beyond its threshold.
+template <class Variances>
+bool Minque::found_fault(const Variances& variances) {
+  if (!variances.started() || m_ < inputs_ + 2) return false;
+  const double least = kRounding * variances.rounding();
+  const double* const expected = variances.residual_variances();
+  const int* const all = present_.data();
+  if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_)
+    return false;
+  const int where = watch_.worst(expected, least, all, m_);
+  for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use(k)));
+  watch_.take_out(static_cast<std::size_t>(where), now_);
+  return true;
+}
+
+template <class Variances>
+void Minque::check_recovery(const Variances& variances, const Sample& y) {
+  const double least = kRounding * variances.rounding();
+  for (std::size_t i = 0; i < variances.size(); ++i) {
+    const double sample = y[static_cast<Eigen::Index>(i)];
+    if (!watch_.out(i) || !usable(sample)) continue;
+    const double expectation = std::max(variances.innovation_variance(i), least);
+    if (watch_.calmed(i, variances.innovation(i, sample), expectation)) watch_.let_in(i, now_ + 1);
+  }
+}
+
+void Minque::remarks(Warnings& warnings) const {
+  if (asked_ && !detection_)
+    warnings.add("faults_not_watched",
+                 "minque looks for no faults: the memory of the variances (gamma) is not five "
+                 "times that of the "
+                 "fault rule (fault_gamma)");
+  if (general_ || !scalar_.started()) return;
+  std::vector<double> direction;
+  if (scalar_.blindness(direction) <= kPoorlyKnown) return;
+  std::string names;
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
+  warnings.add("variances_not_identifiable",
+               "minque cannot tell the variances of these channels apart (their sum is known, the "
+               "other channels are too noisy to "
+               "divide it): " +
+                   names);
+}
+
+Eigen::MatrixXd Minque::weights() const {
+  return general_ ? general_->weights() : scalar_.weights();
+}
+
+Eigen::VectorXd Minque::variances() const {
+  const std::vector<double>& v = general_ ? general_->variances() : scalar_.variances();
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,92 @@
+#pragma once
+// Adaptive weights from variances that the channels tell about each other: recursive re-weighted
+// MINQUE (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by the mended rule
+// (fault_watch.hpp), then the weighted mean or generalized least squares.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/fault_watch.hpp"
+#include "libchar/fusion/detail/reweighted_matrix.hpp"
+#include "libchar/fusion/detail/reweighted_variances.hpp"
+
+namespace libchar::fusion {
+
+struct Minque {
+  static constexpr Card card{
+      .name = "minque",
+      .title = "MINQUE, recursive and re-weighted",
+      .source = "[RV 4, 5]; Patterson & Thompson 1971",
+      .complexity = "O(n) for one input, O(n^2) otherwise",
+      .needs = {.more_than_inputs = 2, .observation_matrix = true, .accepts_missing = true}};
+  static constexpr std::array options{
+      Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the variances: 1/(1 - gamma) instants"},
+      Option{"damping",
+             "",
+             10,
+             0,
+             1e6,
+             "ridge on the information of ln v, in units of 1 - gamma; 0: none"},
+      Option{"floor",
+             "",
+             1e-4,
+             0,
+             1,
+             "smallest variance relative to the fused variance of the other channels"},
+      Option{"floor_largest", "", 0, 0, 1, "smallest variance relative to the largest one"},
+      Option{"start_variance",
+             "U^2",
+             0,
+             0,
+             1e300,
+             "of every channel at the start; 0: from the first instants"},
+      Option{"fault_detection", "", 1, 0, 1, "1: channels that fail are taken out", true},
+      Option{
+          "fault_gamma", "", 0.99, 0.5, 0.999999, "memory of the second moment that shows a fault"},
+      Option{"fault_threshold",
+             "",
+             2,
+             1,
+             1e6,
+             "of that moment relative to the channel's own variance"},
+      Option{"recovery_samples",
+             "samples",
+             1000,
+             1,
+             1e12,
+             "instants below the threshold before a channel comes in again",
+             true}};
+
+  Minque(const Given& given, const Settings& settings);
+  Minque(const Minque&) = delete;
+  Minque& operator=(const Minque&) = delete;
+  Estimate step(const Sample& y);
+  Eigen::MatrixXd weights() const;
+  Eigen::VectorXd variances() const;
+  const FaultLog& faults() const { return watch_.log(); }
+  void remarks(Warnings& warnings) const;
+
+ private:
+  template <class Variances>
+  Estimate step_with(Variances& variances, const Sample& y);
+  template <class Variances>
+  bool found_fault(const Variances& variances);
+  template <class Variances>
+  void check_recovery(const Variances& variances, const Sample& y);
+  bool all_in_use() const;
+  int in_use(int k) const { return present_[static_cast<std::size_t>(k)]; }
+  void use_present(const Sample& y);
+
+  ReweightedVariances scalar_;               // one input seen by all alike
+  std::optional<ReweightedMatrix> general_;  // any other H
+  FaultWatch watch_;
+  bool asked_, detection_;
+  std::int64_t armed_from_, now_ = 0;
+  Eigen::Index inputs_;
+  std::vector<int> present_;  // channels of this instant, rising: the first m_
+  int m_ = 0;
+};
+
+}  // namespace libchar::fusion

@@ -1,0 +1,89 @@
+#pragma once
+// MINQUE with identity weights on exponentially forgotten moments, a threshold and a recovery time:
+// algorithms 1-3 of [RV 4, 5] with what is wrong in them mended (thesis.md B 36-42). Kept for
+// comparison; `minque` is the one to use.
+//
+//   v = MINQUE(I) of the moments of the channels in use (pair_moments.hpp)
+//   w_i = (1/v_i) / sum_j 1/v_j; the simple mean of the channels in use whenever a v is not above
+//   zero out when v_i > threshold_i; in again when v_i is below it and the recovery time since then
+//   is over
+//
+// Mended: second moments about zero (a bias is not forgotten), a threshold for each channel,
+// moments of differences (no mixture of two states at an exclusion), a recovery time for each
+// channel (no lock on a second fault). The options take back the first two.
+
+#include <array>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/pair_moments.hpp"
+
+namespace libchar::fusion {
+
+struct MinquePublished {
+  static constexpr Card card{
+      .name = "minque-published",
+      .title = "MINQUE as published, with its fault rule mended",
+      .source = "[RV 4, 5]",
+      .complexity = "O(n^2)",
+      .needs = {.min_channels = 3, .more_than_inputs = 2, .accepts_missing = true}};
+  static constexpr std::array options{
+      Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the moments: 1/(1 - gamma) instants"},
+      Option{"about_zero",
+             "",
+             1,
+             0,
+             1,
+             "1: second moments about zero, 0: about the running mean, as published",
+             true},
+      Option{
+          "common_threshold", "", 0, 0, 1, "1: one threshold for all channels, as published", true},
+      Option{"threshold",
+             "",
+             2,
+             1,
+             1e6,
+             "of a variance, relative to its largest value in the stretch without faults"},
+      Option{"settling",
+             "samples",
+             -1,
+             -1,
+             1e12,
+             "instants at the start that set no threshold; -1: three times the memory",
+             true},
+      Option{"recovery_samples",
+             "samples",
+             6000,
+             1,
+             1e12,
+             "from exclusion to the earliest return",
+             true}};
+
+  MinquePublished(const Given& given, const Settings& settings);
+  MinquePublished(const MinquePublished&) = delete;
+  MinquePublished& operator=(const MinquePublished&) = delete;
+  Estimate step(const Sample& y);
+  Eigen::MatrixXd weights() const { return weights_; }
+  Eigen::VectorXd variances() const { return variances_; }
+  const FaultLog& faults() const { return log_; }
+  void remarks(Warnings& warnings) const;
+
+ private:
+  void choose(const Sample& y, bool with_faulty);
+  void learn_threshold();
+  void judge(const Sample& y);
+  double weigh();
+
+  PairMoments moments_;
+  bool common_;
+  double factor_;
+  std::int64_t settling_, fault_free_, recovery_, now_ = 0, plain_means_ = 0;
+  std::vector<int> in_use_;
+  int m_ = 0;
+  std::vector<char> out_;
+  std::vector<std::int64_t> out_since_;
+  Eigen::VectorXd variances_, weights_, threshold_;
+  FaultLog log_;
+};
+
+}  // namespace libchar::fusion

@@ -1,0 +1,124 @@
+#include "libchar/fusion/algorithms/perceptron.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/detail/network_training.hpp"
+
+namespace libchar::fusion {
+
+namespace {
+
+/// The neurons that are asked for, or as many as the limit on weights allows.
+std::size_t neurons_of(std::size_t inputs, const Settings& settings) {
+  const auto most = (static_cast<std::size_t>(settings["most_weights"]) - 1) / (inputs + 2);
+  return std::min(static_cast<std::size_t>(settings["neurons"]), std::max<std::size_t>(most, 1));
+}
+
+}  // namespace
+
+Perceptron::Perceptron(const Given& given, const Settings& settings)
+    : network_{static_cast<std::size_t>(given.channels),
+               neurons_of(static_cast<std::size_t>(given.channels), settings)},
+      asked_(static_cast<std::size_t>(settings["neurons"])),
+      scales_(network_.inputs),
+      z_(network_.inputs),
+      most_(static_cast<std::size_t>(settings["most_samples"])),
+      starts_(static_cast<std::size_t>(settings["starts"])),
+      iterations_(static_cast<std::size_t>(settings["iterations"])),
+      seed_(static_cast<std::uint64_t>(settings["seed"])),
+      held_out_(settings["held_out"]) {}
+
+/// Halves what is kept, evenly in time.
+void Perceptron::thin() {
+  const auto width = static_cast<std::ptrdiff_t>(network_.inputs) + 1;
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < kept_; from += 2, ++to)
+    std::copy_n(window_.begin() + static_cast<std::ptrdiff_t>(from) * width,
+                width,
+                window_.begin() + static_cast<std::ptrdiff_t>(to) * width);
+  kept_ = to;
+  stride_ *= 2;
+  window_.resize(kept_ * (network_.inputs + 1));
+}
+
+void Perceptron::learn(const Sample& y, const Sample& truth) {
+  if (seen_++ % stride_ != 0) return;
+  if (kept_ == most_) {
+    thin();
+    if ((seen_ - 1) % stride_ != 0) return;
+  }
+  window_.insert(window_.end(), y.begin(), y.end());
+  window_.push_back(truth[0]);
+  ++kept_;
+}
+
+/// A constant drops out for good, also if it moves later: nothing has been learnt about it.
+Perceptron::Scale Perceptron::scale_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  const double first = values[0];
+  const double mean = first + (values.array() - first).mean();
+  const double deviation =
+      (values.array() - mean).matrix().stableNorm() / std::sqrt(static_cast<double>(values.size()));
+  return {mean, deviation > 0 ? deviation : std::numeric_limits<double>::infinity()};
+}
+
+void Perceptron::standardise() {
+  const auto width = static_cast<Eigen::Index>(network_.inputs) + 1;
+  Eigen::Map<Eigen::MatrixXd> rows(window_.data(), width, static_cast<Eigen::Index>(kept_));
+  for (Eigen::Index i = 0; i < width; ++i) {
+    const Scale scale = scale_of(rows.row(i).transpose());
+    rows.row(i) = (rows.row(i).array() - scale.mean) / scale.deviation;
+    (i + 1 < width ? scales_[static_cast<std::size_t>(i)] : target_) = scale;
+  }
+}
+
+void Perceptron::finish_learning() {
+  const auto held_out = static_cast<std::size_t>(held_out_ * static_cast<double>(kept_));
+  const std::size_t taught = kept_ - held_out;
+  if (taught < 2 * network_.size() || held_out == 0)
+    throw Error({ErrorKind::numeric,
+                 "E0860",
+                 "",
+                 "the learning window holds fewer than two instants for each weight of the "
+                 "perceptron (" +
+                     std::to_string(network_.size()) + " weights)",
+                 std::to_string(taught),
+                 "set fewer neurons, or lengthen the learning window"});
+  standardise();
+  if (!std::isfinite(target_.deviation)) target_.deviation = 1;  // a reference that stands still
+  const TrainingRows taught_rows{window_.data(), taught};
+  const TrainingRows rest{window_.data() + taught * (network_.inputs + 1), held_out};
+  Training best = train(
+      network_, taught_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
+  if (best.parameters.empty())
+    throw Error({ErrorKind::numeric,
+                 "E0861",
+                 "",
+                 "no training of the perceptron gave finite numbers",
+                 "",
+                 "look for huge values in the learning window"});
+  parameters_ = std::move(best.parameters);
+  variance_ = best.held_out_square * target_.deviation * target_.deviation;
+  std::vector<double>().swap(window_);
+}
+
+Estimate Perceptron::step(const Sample& y) {
+  if (parameters_.empty()) return Estimate::none(1);
+  for (std::size_t i = 0; i < z_.size(); ++i)
+    z_[i] = (y[static_cast<Eigen::Index>(i)] - scales_[i].mean) / scales_[i].deviation;
+  const double out = network_.output(parameters_.data(), z_.data());
+  return Estimate::scalar(target_.mean + target_.deviation * out, variance_);
+}
+
+void Perceptron::remarks(Warnings& warnings) const {
+  if (network_.hidden < asked_)
+    warnings.add("perceptron_fewer_neurons",
+                 "the perceptron has " + std::to_string(network_.hidden) + " neurons instead of " +
+                     std::to_string(asked_) + ": most_weights allows no more for " +
+                     std::to_string(network_.inputs) + " channels");
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,97 @@
+#include "libchar/fusion/algorithms/random_weighting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/detail/weighted_mean.hpp"
+
+namespace libchar::fusion {
+
+RandomWeighting::RandomWeighting(const Given& given, const Settings& settings)
+    : floor_(settings["floor"]),
+      squares_(Eigen::VectorXd::Zero(given.channels)),
+      variances_(squares_),
+      weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))) {
+}
+
+Estimate RandomWeighting::step(const Sample& y) {
+  const Eigen::Index n = squares_.size();
+  const double channels = static_cast<double>(n), base = y[0];
+  double mean = 0;
+  for (Eigen::Index i = 0; i < n; ++i) mean += y[i] - base;
+  mean /= channels;
+  // Sums in place of means: weights do not care for the number of instants.
+  double total = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double d = (y[i] - base) - mean;
+    squares_[i] += d * d;
+    total += squares_[i];
+  }
+  instants_ += 1;
+  if (!(total > 0)) return Estimate::scalar(base + mean, 0);
+  const double shared = total / (channels * (channels - 1)),
+               scale = channels / ((channels - 2) * instants_);
+  double largest = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    variances_[i] = scale * (squares_[i] - shared);
+    largest = std::max(largest, variances_[i]);
+  }
+  const double lowest = largest * std::max(floor_, 1e-26);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    variances_[i] = std::max(variances_[i], lowest);
+    weights_[i] = largest / variances_[i];
+    sum += weights_[i];
+  }
+  const double inverse = 1 / sum;
+  double x = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    weights_[i] *= inverse;
+    x += weights_[i] * (y[i] - base);
+  }
+  return Estimate::scalar(base + x, largest * inverse);
+}
+
+RandomWeightingPublished::RandomWeightingPublished(const Given& given, const Settings& settings)
+    : reference_(static_cast<Eigen::Index>(settings["reference_channel"]) - 1),
+      second_(static_cast<Eigen::Index>(settings["second_channel"]) - 1),
+      squares_(Eigen::VectorXd::Zero(given.channels)),
+      products_(squares_),
+      variances_(squares_),
+      weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))) {
+  if (reference_ >= given.channels || second_ >= given.channels || reference_ == second_)
+    throw Error({ErrorKind::usage,
+                 "E0855",
+                 "",
+                 "random-weighting-published compares with two different channels of the " +
+                     std::to_string(given.channels) + " of the scene",
+                 std::to_string(reference_ + 1) + " and " + std::to_string(second_ + 1),
+                 "set reference_channel and second_channel"});
+}
+
+Estimate RandomWeightingPublished::step(const Sample& y) {
+  const Eigen::Index n = squares_.size();
+  instants_ += 1;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double other = y[i == reference_ ? second_ : reference_];
+    squares_[i] += y[i] * y[i];
+    products_[i] += y[i] * other;
+    variances_[i] = (squares_[i] - products_[i]) / instants_;
+    weights_[i] = 1 / variances_[i];
+    sum += weights_[i];
+  }
+  // As published there is no rule for a variance of zero: then the mean.
+  if (!std::isfinite(sum) || sum == 0)
+    weights_.setConstant(1 / static_cast<double>(n));
+  else
+    weights_ /= sum;
+  double x = 0;
+  for (Eigen::Index i = 0; i < n; ++i) x += weights_[i] * (y[i] - y[0]);
+  return Estimate::scalar(y[0] + x, std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace libchar::fusion

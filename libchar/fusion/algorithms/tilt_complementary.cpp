@@ -1,0 +1,29 @@
+#include "libchar/fusion/algorithms/tilt_complementary.hpp"
+
+namespace libchar::fusion {
+namespace {
+
+double lambda_of(const Settings& settings, double dt) {
+  if (settings["lambda"] >= 0) return settings["lambda"];
+  const double tau = settings["time_constant"];
+  return tau / (tau + dt);
+}
+
+}  // namespace
+
+double ComplementaryFilter::step(const TiltSample& sample) {
+  if (!std::isnan(sample.rate)) rate_ = sample.rate;
+  if (std::isnan(angle_)) return angle_ = sample.angle;
+  const double predicted = angle_ + rate_ * dt_;
+  if (std::isnan(sample.angle)) return angle_ = wrapped(predicted);
+  const double gravity = unwrapped_near(sample.angle, predicted);
+  return angle_ = wrapped(lambda_ * predicted + (1 - lambda_) * gravity);
+}
+
+TiltComplementary::TiltComplementary(const Given& given, const Settings& settings)
+    : channels_(*given.tilt),
+      filter_(lambda_of(settings, 1 / given.rate_hz),
+              1 / given.rate_hz,
+              settings["start_at_zero"] == 1) {}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,65 @@
+#include "libchar/fusion/detail/pair_moments.hpp"
+
+#include <algorithm>
+
+namespace libchar::fusion {
+
+PairMoments::PairMoments(Eigen::Index n, double gamma, bool about_zero)
+    : gamma_(gamma),
+      about_zero_(about_zero),
+      mean_(Eigen::MatrixXd::Zero(n, n)),
+      square_(Eigen::MatrixXd::Zero(n, n)),
+      missing_(Eigen::MatrixXd::Ones(n, n)) {}
+
+void PairMoments::update(const double* y, const int* index, int m) {
+  const double gain = 1 - gamma_;
+  // index rises, so j < i: the lower triangle.
+  for (int a = 1; a < m; ++a) {
+    const int i = index[a];
+    for (int b = 0; b < a; ++b) {
+      const int j = index[b];
+      const double d = y[i] - y[j];
+      if (about_zero_) {
+        square_(i, j) = gamma_ * square_(i, j) + gain * d * d;
+      } else if (missing_(i, j) == 1) {
+        mean_(i, j) = d;
+      } else {
+        const double delta = d - mean_(i, j);
+        square_(i, j) = gamma_ * (square_(i, j) + gain * delta * delta);
+        mean_(i, j) += gain * delta;
+      }
+      missing_(i, j) *= gamma_;
+    }
+  }
+}
+
+double PairMoments::moment(Eigen::Index i, Eigen::Index j) const {
+  const Eigen::Index low = std::min(i, j), high = std::max(i, j);
+  const double square = square_(high, low);
+  return about_zero_ && missing_(high, low) < 1 ? square / (1 - missing_(high, low)) : square;
+}
+
+void PairMoments::variances(const int* index, int m, double* v) const {
+  double total = 0;
+  for (int a = 0; a < m; ++a) v[index[a]] = 0;
+  for (int a = 1; a < m; ++a)
+    for (int b = 0; b < a; ++b) {
+      const double d = moment(index[a], index[b]);
+      v[index[a]] += d;
+      v[index[b]] += d;
+      total += d;
+    }
+  for (int a = 0; a < m; ++a) v[index[a]] = (v[index[a]] - total / (m - 1)) / (m - 2);
+}
+
+double PairMoments::variance_beside(int channel, const int* index, int m) const {
+  // The formula of m + 1 channels, written for one of them.
+  double own = 0, total = 0;
+  for (int a = 0; a < m; ++a) {
+    own += moment(channel, index[a]);
+    for (int b = 0; b < a; ++b) total += moment(index[a], index[b]);
+  }
+  return (own - (own + total) / m) / (m - 1);
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,45 @@
+#include "libchar/fusion/detail/triangle.hpp"
+
+#include <Eigen/QR>
+
+namespace libchar::fusion {
+
+Triangle::Triangle(Eigen::Index width)
+    : upper_(Eigen::MatrixXd::Zero(width, width)), pending_(3 * width + 8, width) {}
+
+void Triangle::add(const Eigen::VectorXd& row) {
+  pending_.row(filled_++) = row.transpose();
+  ++rows_;
+  if (filled_ == pending_.rows()) fold();
+}
+
+void Triangle::fold() {
+  if (filled_ == 0) return;
+  Eigen::MatrixXd stacked(upper_.rows() + filled_, upper_.cols());
+  stacked << upper_, pending_.topRows(filled_);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  upper_ = qr.matrixQR().topRows(upper_.rows()).triangularView<Eigen::Upper>();
+  filled_ = 0;
+}
+
+const Eigen::MatrixXd& Triangle::upper() {
+  fold();
+  return upper_;
+}
+
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
+                             Eigen::Index unknowns,
+                             Eigen::Index& dependent) {
+  Eigen::VectorXd length = upper.leftCols(unknowns).colwise().norm().transpose();
+  for (double& l : length)
+    if (!(l > 0)) l = 1;
+  const Eigen::MatrixXd a = upper.leftCols(unknowns) * length.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
+  qr.setThreshold(1e-13);
+  dependent = unknowns - qr.rank();
+  // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
+  if (qr.rank() == 0) return Eigen::VectorXd::Zero(unknowns);
+  return (qr.solve(upper.col(unknowns)).array() / length.array()).matrix();
+}
+
+}  // namespace libchar::fusion

@@ -1,0 +1,319 @@
+#include "libchar/log/binary/binary_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <future>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/time/column_choice.hpp"
+
+namespace libchar {
+
+namespace {
+
+constexpr std::size_t kOrderProbe = 4096;  // rows looked at for a wrong byte order
+
+// A column that is read: where its values of the current block stand in memory.
+struct Wanted {
+  BinaryColumn column;
+  std::vector<double> probe;  // its first values, as stored
+};
+
+class BinaryRows final : public RowSource {
+ public:
+  BinaryRows(std::unique_ptr<BinaryFile> file,
+             BinaryLayout layout,
+             LogInfo info,
+             const ReadOptions& options)
+      : file_(std::move(file)),
+        layout_(std::move(layout)),
+        info_(std::move(info)),
+        hash_(options.hash) {
+    std::vector<std::string> names;
+    for (const BinaryColumn& column : layout_.columns) names.push_back(column.name);
+    const ColumnChoice choice = choose_columns(names, layout_.named, options, file_->path());
+    std::uint64_t row_bytes = 0;
+    for (const std::size_t i : choice.values) {
+      const BinaryColumn& column = layout_.columns[i];
+      values_.push_back({column, {}});
+      info_.channels.push_back(
+          {column.name,
+           column.unit,
+           !is_float(column.number.type) && column.scale == 1 && column.offset == 0});
+      row_bytes += size_of(column.number.type);
+    }
+    if (layout_.rows == 0)
+      throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples", "", ""});
+    if (choice.time) {
+      time_ = layout_.columns[*choice.time];
+      row_bytes += size_of(time_->number.type);
+    }
+    if (!layout_.column_major) row_bytes = layout_.columns.front().stride;
+    rows_per_block_ =
+        std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
+    info_.file = file_->path();
+    info_.bytes = file_->size();
+    info_.rows = layout_.rows;
+    layout_.columns.clear();
+    if (time_) settle_time_unit(options);
+  }
+
+  ~BinaryRows() override {
+    stop_ = true;  // an abandoned reading does not finish the hash of a large file
+    if (hashing_.valid()) hashing_.wait();
+  }
+
+  const LogInfo& info() const override { return info_; }
+  std::uint64_t bytes_read() const override { return bytes_read_; }
+  std::uint64_t bytes_total() const override {
+    return layout_.column_major ? layout_.data_byte + column_bytes() * layout_.rows : file_->size();
+  }
+
+  bool next(RowBlock& block, Warnings& warnings) override {
+    if (next_row_ == 0) {
+      warnings.merge(layout_.warnings);
+      start_hash();
+    }
+    block.rows = static_cast<std::size_t>(
+        std::min<std::uint64_t>(rows_per_block_, layout_.rows - next_row_));
+    block.columns.resize(values_.size());
+    block.time_ns.clear();
+    block.first_line = 0;
+    block.line_offset.clear();
+    if (block.rows == 0) return false;
+    if (!layout_.column_major) read_interleaved(block.rows);
+    for (std::size_t c = 0; c < values_.size(); ++c)
+      read_values(values_[c], block.columns[c], block.rows, warnings);
+    if (time_) read_stamps(block, warnings);
+    next_row_ += rows_in_file_block_;
+    bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_
+                                       : layout_.data_byte + next_row_ * stride();
+    if (next_row_ == layout_.rows) bytes_read_ = bytes_total();
+    return true;
+  }
+
+  std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
+    const BinaryColumn& column = values_.front().column;
+    return fmt::format(
+        "row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
+  }
+
+  std::string sha256() override {
+    if (!hash_) return "";
+    if (!hashing_.valid() && digest_.empty()) start_hash();
+    if (hashing_.valid()) digest_ = hashing_.get();
+    return digest_;
+  }
+
+ private:
+  std::uint64_t stride() const { return values_.front().column.stride; }
+  std::uint64_t column_bytes() const {
+    std::uint64_t bytes = time_ ? size_of(time_->number.type) : 0;
+    for (const Wanted& wanted : values_) bytes += size_of(wanted.column.number.type);
+    return bytes;
+  }
+
+  // The digest is of the whole file in its own order, so it is taken beside the reading, from pages
+  // the system has cached.
+  void start_hash() {
+    if (!hash_ || hashing_.valid()) return;
+    hashing_ = std::async(std::launch::async, [this] {
+      Sha256 sha;
+      std::vector<std::byte> piece(std::size_t{1} << 20U);
+      for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
+        const auto n =
+            static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
+        file_->read(at, std::span(piece).first(n));
+        sha.update({reinterpret_cast<const char*>(piece.data()), n});
+        at += n;
+      }
+      return sha.finish();
+    });
+  }
+
+  void read_interleaved(std::size_t rows) {
+    bytes_.resize(rows * static_cast<std::size_t>(stride()));
+    file_->read(layout_.data_byte + next_row_ * stride(), bytes_);
+  }
+
+  // First byte of the block's values of one column, and the distance between two.
+  const std::byte* locate(const BinaryColumn& column, std::size_t rows) {
+    if (!layout_.column_major) return bytes_.data() + (column.first_byte - layout_.data_byte);
+    bytes_.resize(rows * static_cast<std::size_t>(column.stride));
+    file_->read(column.first_byte + next_row_ * column.stride, bytes_);
+    return bytes_.data();
+  }
+
+  std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
+    return fmt::format(
+        "row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
+  }
+
+  void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Warnings& warnings) {
+    const BinaryColumn& column = wanted.column;
+    out.resize(rows);
+    rows_in_file_block_ = rows;
+    const std::uint64_t rounded = read_numbers(
+        locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
+    if (rounded > 0)
+      warnings.add("rounded_integer",
+                   "64-bit integers above 2^53 do not fit a double and were rounded",
+                   fmt::format("{} from row {}", column.name, next_row_),
+                   rounded);
+    probe_byte_order(wanted, out, warnings);
+    if (is_float(column.number.type)) drop_non_finite(column, out, warnings);
+    if (column.scale != 1)
+      for (double& x : out) x *= column.scale;
+    if (column.offset != 0)
+      for (double& x : out) x += column.offset;
+    if (column.scale != 1 || column.offset != 0) drop_non_finite(column, out, warnings);
+  }
+
+  // Infinity is no sample; every NaN becomes the one that means "missing".
+  void drop_non_finite(const BinaryColumn& column,
+                       std::vector<double>& out,
+                       Warnings& warnings) const {
+    std::size_t odd = 0;
+    for (const double x : out) odd += !(std::abs(x) <= std::numeric_limits<double>::max());
+    if (odd == 0) return;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (std::isfinite(out[i])) continue;
+      if (std::isinf(out[i]))
+        warnings.add(
+            "infinite_value", "infinite values count as missing", place_of(column, next_row_ + i));
+      out[i] = kMissing;
+    }
+  }
+
+  void probe_byte_order(Wanted& wanted, const std::vector<double>& out, Warnings& warnings) const {
+    if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 ||
+        !is_float(wanted.column.number.type))
+      return;
+    const std::size_t missing =
+        static_cast<std::size_t>(std::min<std::uint64_t>(kOrderProbe, layout_.rows)) -
+        wanted.probe.size();
+    wanted.probe.insert(wanted.probe.end(),
+                        out.begin(),
+                        out.begin() + static_cast<std::ptrdiff_t>(std::min(missing, out.size())));
+    if (wanted.probe.size() < std::min<std::uint64_t>(kOrderProbe, layout_.rows)) return;
+    if (looks_byte_swapped(wanted.probe, wanted.column.number.type)) {
+      warnings.add("implausible_magnitude",
+                   fmt::format("values as small as 1e-100 or as large as 1e100 that would be "
+                               "ordinary in {}-endian order: is the byte order right?",
+                               wanted.column.number.big_endian ? "little" : "big"),
+                   "field " + wanted.column.name);
+    }
+    wanted.probe = {};
+  }
+
+  void settle_time_unit(const ReadOptions& options) {
+    TimeBase& time = info_.time;
+    time.column = time_->name;
+    time.unit = options.time_unit != "auto"        ? options.time_unit
+                : nanoseconds_in(time_->unit) != 0 ? time_->unit
+                                                   : time_unit_of_name(time_->name);
+    if (time.unit.empty()) {
+      const std::size_t rows = static_cast<std::size_t>(std::min<std::uint64_t>(layout_.rows, 2));
+      std::vector<double> first(rows);
+      std::vector<std::byte> bytes(static_cast<std::size_t>(time_->stride) * (rows - 1) +
+                                   size_of(time_->number.type));
+      file_->read(time_->first_byte, bytes);
+      read_numbers(bytes.data(), static_cast<std::size_t>(time_->stride), time_->number, first);
+      time.unit = guess_time_unit(
+          first.front(), first.back() - first.front(), !is_float(time_->number.type));
+      time.unit_guessed = true;
+      info_.guesses.push_back(fmt::format(
+          "time unit: {}, from the size of the stamps in {}", time.unit, printable(time.column)));
+    }
+    nanoseconds_ = nanoseconds_in(time.unit);
+    if (nanoseconds_ == 0)
+      throw Error({ErrorKind::usage,
+                   "E0323",
+                   file_->path(),
+                   "the time unit is none of s, ms, us, ns",
+                   time.unit,
+                   ""});
+  }
+
+  void read_stamps(RowBlock& block, Warnings& warnings) {
+    const BinaryColumn& column = *time_;
+    block.time_ns.resize(block.rows);
+    const std::byte* first = locate(column, block.rows);
+    const auto stride = static_cast<std::size_t>(column.stride);
+    const auto refuse = [&](std::size_t i, double got) {
+      throw Error({ErrorKind::input,
+                   "E0314",
+                   fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
+                   "a time stamp does not fit 64-bit nanoseconds",
+                   shortest(got),
+                   "is the time unit right? --time-unit"});
+    };
+    if (!is_float(column.number.type)) {
+      if (const auto bad = read_integers(first, stride, column.number, block.time_ns))
+        refuse(*bad, 1.8e19);
+      for (std::size_t i = 0; i < block.rows; ++i) {
+        const std::int64_t stamp = block.time_ns[i];
+        if (__builtin_mul_overflow(stamp, nanoseconds_, &block.time_ns[i]))
+          refuse(i, static_cast<double>(stamp));
+      }
+      return;
+    }
+    stamps_.resize(block.rows);
+    read_numbers(first, stride, column.number, stamps_);
+    for (std::size_t i = 0; i < block.rows; ++i) {
+      const double ns = stamps_[i] * static_cast<double>(nanoseconds_);
+      if (std::isfinite(stamps_[i]) && !(std::abs(ns) < 9.2e18)) refuse(i, stamps_[i]);
+    }
+    drop_rows_without_stamp(block, warnings);
+    for (std::size_t i = 0; i < block.rows; ++i)
+      block.time_ns[i] = std::llround(stamps_[i] * static_cast<double>(nanoseconds_));
+  }
+
+  void drop_rows_without_stamp(RowBlock& block, Warnings& warnings) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < block.rows; ++i) {
+      if (!std::isfinite(stamps_[i])) {
+        warnings.add("missing_timestamp",
+                     "rows without a time stamp were left out",
+                     place_of(*time_, next_row_ + i));
+        continue;
+      }
+      for (auto& samples : block.columns) samples[kept] = samples[i];
+      stamps_[kept++] = stamps_[i];
+    }
+    block.rows = kept;
+    block.time_ns.resize(kept);
+    for (auto& samples : block.columns) samples.resize(kept);
+  }
+
+  std::unique_ptr<BinaryFile> file_;
+  BinaryLayout layout_;
+  LogInfo info_;
+  std::vector<Wanted> values_;
+  std::optional<BinaryColumn> time_;
+  std::int64_t nanoseconds_ = 1;
+  std::size_t rows_per_block_ = 1, rows_in_file_block_ = 0;
+  std::uint64_t next_row_ = 0, bytes_read_ = 0;
+  std::vector<std::byte> bytes_;
+  std::vector<double> stamps_;
+  bool hash_ = true;
+  std::atomic<bool> stop_ = false;
+  std::string digest_;
+  std::future<std::string> hashing_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file,
+                                            BinaryLayout layout,
+                                            LogInfo info,
+                                            const ReadOptions& options) {
+  return std::make_unique<BinaryRows>(std::move(file), std::move(layout), std::move(info), options);
+}
+
+}  // namespace libchar

@@ -1,0 +1,146 @@
+// The .npy format: 1-D, 2-D (rows × channels, C or Fortran order) and structured arrays of plain
+// numbers.
+
+#include <fmt/format.h>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/binary/binary_rows.hpp"
+#include "libchar/log/binary/npy_header.hpp"
+
+namespace libchar {
+namespace {
+
+[[noreturn]] void refuse(const std::string& where, std::string what, std::string hint = "") {
+  throw Error({ErrorKind::input, "E0410", where, std::move(what), "", std::move(hint)});
+}
+
+std::uint64_t product(std::uint64_t a, std::uint64_t b, const std::string& file) {
+  std::uint64_t result = 0;
+  // Half of the range is left for sums with offsets.
+  if (__builtin_mul_overflow(a, b, &result) || result > (std::uint64_t{1} << 62U))
+    refuse(file + " (field shape)", "the shape times the size of a value overflows");
+  return result;
+}
+
+std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
+  const std::string where = file + " (field shape)";
+  const std::size_t dimensions = header.shape.size();
+  if (dimensions == 0) refuse(where, "is a single number (0-dimensional), not a log");
+  if (dimensions > 2)
+    refuse(
+        where,
+        fmt::format("has {} dimensions; 1 (samples) or 2 (rows × channels) are read", dimensions),
+        "reshape it: array.reshape(len(array), -1)");
+  if (header.structured && dimensions != 1)
+    refuse(where, "a structured array must have one dimension");
+  if (header.structured) return 1;
+  if (dimensions == 1) return header.fields[0].count;
+  if (header.shape[1] == 0) refuse(where, "has no columns");
+  if (header.shape[1] > kMaxColumns)
+    refuse(where,
+           fmt::format("has {} columns, more than the limit of {}", header.shape[1], kMaxColumns),
+           "are rows and columns exchanged? save array.T");
+  return header.shape[1];
+}
+
+void check_size(const NpyHeader& header,
+                std::uint64_t values,
+                std::uint64_t needed,
+                std::uint64_t file_bytes,
+                const std::string& file,
+                Warnings& warnings) {
+  const std::uint64_t present = file_bytes - header.data_byte;
+  if (present < needed) {
+    const std::uint64_t item = header.item_bytes;
+    refuse(fmt::format("{} (byte {})", file, file_bytes),
+           fmt::format("is truncated: {} of {} {} present",
+                       present / item,
+                       values,
+                       header.structured ? "records" : "values"),
+           "copy it again, or cut the shape to what is there");
+  }
+  if (present > needed)
+    warnings.add("trailing_bytes",
+                 "bytes behind the array were left out",
+                 fmt::format("byte {}", header.data_byte + needed),
+                 present - needed);
+}
+
+// Columns of a structured array: field by field, a sub-array as NAME_0, NAME_1…
+void add_fields(const NpyHeader& header, BinaryLayout& layout) {
+  for (const NpyField& field : header.fields) {
+    for (std::uint64_t k = 0; k < field.count; ++k) {
+      BinaryColumn column;
+      column.name = field.array ? fmt::format("{}_{}", field.name, k) : field.name;
+      column.number = field.number;
+      column.first_byte = header.data_byte + field.byte + k * size_of(field.number.type);
+      column.stride = header.item_bytes;
+      layout.columns.push_back(std::move(column));
+    }
+  }
+  layout.named = true;
+}
+
+void add_plain_columns(const NpyHeader& header, std::uint64_t columns, BinaryLayout& layout) {
+  const std::uint64_t item = header.item_bytes;
+  layout.column_major = header.fortran_order && columns > 1;
+  for (std::uint64_t c = 0; c < columns; ++c) {
+    BinaryColumn column;
+    column.name = fmt::format("c{}", c);
+    column.number = header.fields[0].number;
+    column.first_byte = header.data_byte + item * (layout.column_major ? c * layout.rows : c);
+    column.stride = layout.column_major ? item : item * columns;
+    layout.columns.push_back(std::move(column));
+  }
+}
+
+std::string describe(const NpyHeader& header, std::uint64_t columns) {
+  if (header.structured)
+    return fmt::format(
+        "structured array of {} records of {} bytes", header.shape[0], header.item_bytes);
+  const NumberFormat number = header.fields[0].number;
+  const std::string order = size_of(number.type) == 1 ? ""
+                            : number.big_endian       ? ", big endian"
+                                                      : ", little endian";
+  return fmt::format("{} × {} array of {}{}{}",
+                     header.shape[0],
+                     columns,
+                     name_of(number.type),
+                     order,
+                     header.fortran_order ? ", Fortran order" : "");
+}
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& options) {
+  auto file = std::make_unique<BinaryFile>(path);
+  const NpyHeader header = parse_npy_header(file->head(12 + kMaxNpyHeader), file->size(), path);
+  const std::uint64_t columns = columns_of(header, path);
+  BinaryLayout layout;
+  layout.rows = header.shape[0];
+  layout.data_byte = header.data_byte;
+  const std::uint64_t values = product(layout.rows, columns, path);
+  layout.data_bytes = product(values, header.item_bytes, path);
+  check_size(header, values, layout.data_bytes, file->size(), path, layout.warnings);
+  if (header.structured)
+    add_fields(header, layout);
+  else
+    add_plain_columns(header, columns, layout);
+  if (!header.structured && columns > 64 && layout.rows <= 64)
+    layout.warnings.add(
+        "looks_transposed",
+        fmt::format("{} rows × {} columns: are rows and channels exchanged? save array.T",
+                    layout.rows,
+                    columns));
+  LogInfo info;
+  info.format = "npy";
+  info.dialect = {fmt::format(".npy version {}", header.major), describe(header, columns)};
+  return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
+}
+
+bool sniff_npy(const std::string& path, std::string_view first_bytes) {
+  return first_bytes.starts_with("\x93NUMPY") || first_bytes.starts_with("PK\x03\x04") ||
+         path.ends_with(".npy") || path.ends_with(".npz");
+}
+
+}  // namespace libchar

@@ -1,0 +1,116 @@
+// The raw format: numbers of one type without a header, interleaved or planar, described by a
+// sidecar.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/binary/binary_rows.hpp"
+#include "libchar/log/binary/sidecar.hpp"
+
+namespace libchar {
+namespace {
+
+[[noreturn]] void refuse(std::string where, std::string what, std::string hint = "") {
+  throw Error({ErrorKind::input, "E0422", std::move(where), std::move(what), "", std::move(hint)});
+}
+
+// Rows that the file holds; what does not make a whole row is counted.
+std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warnings& warnings) {
+  const std::string& path = file.path();
+  if (sidecar.offset > file.size())
+    refuse(fmt::format("{} (byte {})", path, file.size()),
+           fmt::format("the offset of {} bytes lies behind the end of the file ({} bytes)",
+                       sidecar.offset,
+                       file.size()));
+  const std::uint64_t present = file.size() - sidecar.offset;
+  const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
+  const std::uint64_t whole = present / record;
+  if (whole == 0)
+    refuse(fmt::format("{} (byte {})", path, file.size()),
+           fmt::format("{} bytes are less than one row of {}", present, record));
+  const std::uint64_t rows = sidecar.rows.value_or(whole);
+  std::uint64_t needed = 0;
+  if (__builtin_mul_overflow(rows, record, &needed) || needed > (std::uint64_t{1} << 62U))
+    refuse(path, fmt::format("rows × channels × bytes overflows: {} × {}", rows, record));
+  if (rows > whole)
+    refuse(fmt::format("{} (byte {})", path, file.size()),
+           fmt::format("is truncated: {} of {} rows present", whole, rows),
+           "copy it again, or correct the sidecar's rows");
+  if (!sidecar.rows && sidecar.planar && present % record != 0)
+    refuse(path,
+           fmt::format(
+               "{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
+               present,
+               record),
+           "give rows in the sidecar");
+  if (present > needed)
+    warnings.add("trailing_bytes",
+                 "bytes behind the last row were left out",
+                 fmt::format("byte {}", sidecar.offset + needed),
+                 present - needed);
+  return rows;
+}
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& options) {
+  auto file = std::make_unique<BinaryFile>(path);
+  const std::string beside = find_sidecar(path);
+  if (beside.empty())
+    refuse(path,
+           "is raw binary and has no sidecar that says what it holds",
+           fmt::format("write {}.json, such as {}", path, minimal_sidecar()));
+  const Sidecar sidecar = read_sidecar(beside);
+  BinaryLayout layout;
+  layout.rows = count_rows(sidecar, *file, layout.warnings);
+  layout.data_byte = sidecar.offset;
+  layout.named = sidecar.named;
+  layout.column_major = sidecar.planar && sidecar.channels.size() > 1;
+  const std::uint64_t item = size_of(sidecar.number.type);
+  const std::uint64_t columns = sidecar.channels.size();
+  layout.data_bytes = layout.rows * columns * item;
+  for (std::uint64_t c = 0; c < columns; ++c) {
+    const SidecarChannel& channel = sidecar.channels[static_cast<std::size_t>(c)];
+    BinaryColumn column{
+        channel.name, channel.unit, sidecar.number, 0, 0, channel.scale, channel.offset};
+    column.first_byte = sidecar.offset + item * (layout.column_major ? c * layout.rows : c);
+    column.stride = layout.column_major ? item : item * columns;
+    layout.columns.push_back(std::move(column));
+  }
+  LogInfo info;
+  info.format = "raw";
+  info.time.rate_hz = sidecar.rate_hz;
+  info.time.start_ns = sidecar.t0_ns;
+  info.dialect = {"sidecar " + beside,
+                  fmt::format("{}, {} endian, {}, {} bytes before the first row",
+                              name_of(sidecar.number.type),
+                              sidecar.number.big_endian ? "big" : "little",
+                              sidecar.planar ? "planar" : "interleaved",
+                              sidecar.offset)};
+  return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
+}
+
+bool sniff_raw(const std::string& path, std::string_view) {
+  const auto ends = [&](std::initializer_list<std::string_view> suffixes) {
+    return std::any_of(
+        suffixes.begin(), suffixes.end(), [&](std::string_view s) { return path.ends_with(s); });
+  };
+  if (ends({".f64",
+            ".f32",
+            ".i8",
+            ".i16",
+            ".i32",
+            ".i64",
+            ".u8",
+            ".u16",
+            ".u32",
+            ".u64",
+            ".bin",
+            ".raw"}))
+    return true;
+  return !ends({".csv", ".tsv", ".txt", ".npy"}) && !find_sidecar(path).empty();
+}
+
+}  // namespace libchar

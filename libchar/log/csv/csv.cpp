@@ -1,0 +1,429 @@
+// CSV as a source of rows: chunks of whole lines are read in order by whichever worker is free,
+// parsed side by side, hashed in order behind the parsing, and handed out in order. With one thread
+// everything happens inside next().
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/sha256_blocks.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/csv/dialect.hpp"
+#include "libchar/log/csv/feed.hpp"
+#include "libchar/log/csv/header.hpp"
+#include "libchar/log/csv/plan.hpp"
+#include "libchar/log/csv/rows.hpp"
+#include "libchar/log/detail/row_source.hpp"
+
+namespace libchar {
+namespace csv {
+namespace {
+
+class CsvSource final : public RowSource {
+ public:
+  CsvSource(const std::string& path, const ReadOptions& options)
+      : options_(options), feed_(path, options.block_bytes, options.hash) {
+    info_.file = path == "-" ? "standard input" : path;
+    info_.format = "csv";
+    const std::string_view head = feed_.head();
+    dialect_ = understand(head, feed_.whole(), options, info_);
+    plan_ = plan_columns(dialect_, options, info_);
+    missing_per_channel_.assign(plan_.channels, 0);
+    words_per_channel_.assign(plan_.channels, 0);
+    fractional_.assign(plan_.channels, 0);
+    pending_ = std::exchange(info_.warnings, {});
+    info_.rows = expected_rows(head);
+    feed_.start_at(dialect_.data_offset);
+    next_line_ = dialect_.first_data_line;
+    info_.bytes = feed_.size();
+    info_.first_line = next_line_;
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
+    const bool small =
+        feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
+    goes_along_ = feed_.hashes_along();
+    for (int i = 0; threads > 1 && !small && i < threads; ++i)
+      workers_.emplace_back([this] { work(); });
+    info_.read_ahead = !workers_.empty();
+  }
+  CsvSource(const CsvSource&) = delete;
+  CsvSource& operator=(const CsvSource&) = delete;
+  ~CsvSource() override { stop(); }
+
+  const LogInfo& info() const override { return info_; }
+
+  bool next(RowBlock& block, Warnings& warnings) override {
+    warnings.merge(std::exchange(pending_, {}));
+    if (fault_) throw Error(*fault_);
+    while (take(current_)) {
+      account(warnings);
+      std::swap(block, current_.rows);
+      if (current_.fault) prepare_fault();
+      if (block.rows > 0) return true;
+      if (fault_) throw Error(*fault_);
+    }
+    reached_end_ = true;
+    return false;
+  }
+
+  void finish(Warnings& warnings) override {
+    if (finished_) return;
+    finished_ = true;
+    stop();
+    if (reached_end_) check_account();
+    for (std::size_t c = 0; c < plan_.channels; ++c)
+      if (rows_ > 0 && words_per_channel_[c] == rows_)
+        throw Error({ErrorKind::input,
+                     "E0318",
+                     info_.file,
+                     "column " + info_.channels[c].name + " has no finite value",
+                     "",
+                     "--channel reads only the columns named there"});
+    warnings.merge(std::exchange(pending_, {}));
+    add(warnings, "blank_line", "blank lines skipped", blank_);
+    add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
+    add(warnings, "repeated_header", "repeated header lines skipped", repeated_);
+    add(warnings,
+        "mixed_line_ends",
+        "line ends of another kind than the first, accepted",
+        mixed_end_);
+    add(warnings, "infinite_value", "infinities, taken as missing samples", infinite_);
+    add(warnings,
+        "number_out_of_range",
+        "numbers out of the range of a double, taken as missing samples",
+        overflow_);
+    if (missing_.count > 0) {
+      std::string message = "empty or NaN cells, taken as missing samples (";
+      std::size_t listed = 0;
+      for (std::size_t c = 0; c < missing_per_channel_.size(); ++c) {
+        if (missing_per_channel_[c] == 0) continue;
+        if (listed++ == 8) {
+          message += ", …";
+          break;
+        }
+        message += fmt::format(
+            "{}{} {}", listed == 1 ? "" : ", ", info_.channels[c].name, missing_per_channel_[c]);
+      }
+      add(warnings, "missing_cell", message + ")", missing_);
+    }
+    if (feed_.nul_tail() > 0)
+      warnings.add("nul_tail",
+                   fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
+                               feed_.nul_tail(),
+                               feed_.cut_bytes() > 0 ? " with the line they cut off" : ""),
+                   place_name(next_line_, 1));
+    if (inexact_ > 0)
+      info_.dialect.push_back(
+          fmt::format("{} integers beyond 2^53 rounded to the nearest double", inexact_));
+  }
+
+  std::string place(const RowBlock& block, std::size_t i, std::uint64_t) const override {
+    return place_name(line_of(block, i), 1);
+  }
+  std::string where(const RowBlock& block, std::size_t i, std::uint64_t) const override {
+    return dialect_.time_column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
+                                     : fmt::format("{}:{}", info_.file, line_of(block, i));
+  }
+  std::uint64_t bytes_read() const override { return consumed_; }
+  std::uint64_t bytes_total() const override { return feed_.size(); }
+
+  std::string sha256() override {
+    stop();
+    for (auto& [sequence, raw] : unhashed_) feed_.hash(raw);
+    unhashed_.clear();
+    return feed_.finish_hash();
+  }
+
+ private:
+  static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
+    return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  // As many rows as there would be if all were as long as those in the head.
+  std::uint64_t expected_rows(std::string_view head) const {
+    const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
+    const auto lines = static_cast<std::uint64_t>(
+        std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (body.empty() || feed_.size() <= dialect_.data_offset) return 0;
+    return static_cast<std::uint64_t>(static_cast<double>(feed_.size() - dialect_.data_offset) /
+                                      static_cast<double>(body.size()) *
+                                      static_cast<double>(lines));
+  }
+
+  // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
+  // this reader.
+  void check_account() const {
+    const std::uint64_t bytes =
+        dialect_.data_offset + total_.bytes + feed_.nul_tail() + feed_.cut_bytes();
+    if (!total_.balanced() || bytes != feed_.bytes_read() ||
+        total_.cells != rows_ * plan_.target.size())
+      throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
+  }
+
+  static void add(Warnings& warnings,
+                  std::string_view code,
+                  std::string_view message,
+                  const Tally& tally) {
+    for (const Spot& spot : tally.spots)
+      warnings.add(code, message, place_name(spot.line, spot.column), 1);
+    if (tally.count > tally.spots.size())
+      warnings.add(code, message, "", tally.count - tally.spots.size());
+  }
+
+  // From lines of the chunk to lines of the file.
+  void collect(Tally& sum, const Tally& part) const {
+    for (const Spot& spot : part.spots) sum.add(next_line_ + spot.line, spot.column);
+    sum.count += part.count - part.spots.size();
+  }
+
+  void account(Warnings& warnings) {
+    ParsedChunk& chunk = current_;
+    chunk.rows.first_line = next_line_;
+    chunk_line_ = next_line_;
+    collect(blank_, chunk.blank);
+    collect(comment_, chunk.comment);
+    collect(repeated_, chunk.repeated);
+    collect(mixed_end_, chunk.mixed_end);
+    collect(infinite_, chunk.infinite);
+    collect(overflow_, chunk.overflow);
+    collect(missing_, chunk.missing);
+    if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
+      cr_noted_ = true;
+      warnings.add("carriage_return_line_ends",
+                   "lines end in a lone carriage return (old Macintosh)",
+                   place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
+    }
+    if (chunk.unended)
+      warnings.add(
+          "no_final_newline",
+          "the last line has no line end: if the file was cut, its last number may be cut too",
+          place_name(next_line_ + chunk.unended->line, chunk.unended->column));
+    for (std::size_t c = 0; c < plan_.channels; ++c) {
+      missing_per_channel_[c] += chunk.missing_per_channel[c];
+      words_per_channel_[c] += chunk.words_per_channel[c];
+      fractional_[c] |= chunk.fractional[c];
+      info_.channels[c].integer = fractional_[c] == 0;
+    }
+    inexact_ += chunk.inexact_integers;
+    next_line_ += chunk.lines;
+    rows_ += chunk.rows.rows;
+    consumed_ += chunk.account.bytes;
+    total_.add(chunk.account);
+  }
+
+  void prepare_fault() {
+    fault_ = current_.fault->fault;
+    fault_->where = at(info_.file,
+                       chunk_line_ + current_.fault->spot.line,
+                       current_.fault->spot.column,
+                       current_offset_ + current_.fault->byte);
+  }
+
+  bool take(ParsedChunk& chunk) {
+    return workers_.empty() ? take_inline(chunk) : take_from_workers(chunk);
+  }
+
+  bool take_inline(ParsedChunk& chunk) {
+    if (!feed_.next(raw_)) {
+      feed_.hash(raw_);
+      raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
+      return false;
+    }
+    parse_rows(raw_.text(), plan_, chunk, feed_.begin_hash(raw_));
+    feed_.end_hash(raw_);
+    raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
+    current_offset_ = raw_.offset;
+    return true;
+  }
+
+  struct Done {
+    ParsedChunk chunk;
+    std::uint64_t offset = 0;
+    bool end = false;
+    std::exception_ptr failure;
+  };
+
+  bool take_from_workers(ParsedChunk& chunk) {
+    std::unique_lock lock(mutex_);
+    if (ended_) return false;
+    spare_chunks_.push_back(std::move(chunk));
+    done_changed_.wait(lock, [&] { return done_.count(delivered_) > 0; });
+    auto node = done_.extract(delivered_);
+    ++delivered_;
+    room_changed_.notify_one();
+    Done& item = node.mapped();
+    if (item.end || item.failure) ended_ = true;
+    if (item.failure) std::rethrow_exception(item.failure);
+    if (item.end) return false;
+    chunk = std::move(item.chunk);
+    current_offset_ = item.offset;
+    return true;
+  }
+
+  void work() {
+    for (;;) {
+      RawChunk raw;
+      Done item;
+      std::uint64_t sequence = 0;
+      {
+        std::unique_lock lock(mutex_);
+        // Neither the parsed chunks nor those that wait for their hash may pile up.
+        room_changed_.wait(lock, [&] {
+          const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
+          // A chunk can be hashed along with its parsing only when its turn has come, and what
+          // others have parsed by then costs its hash on top.
+          const bool turn = !goes_along_ || parsing_ == 0;
+          return stop_ || exhausted_ || (!reading_ && room && turn);
+        });
+        if (stop_ || exhausted_) return;
+        reading_ = true;  // one reader at a time, in file order
+        sequence = read_++;
+        ++parsing_;
+        if (!spare_raws_.empty()) {
+          raw = std::move(spare_raws_.back());
+          spare_raws_.pop_back();
+        }
+        if (!spare_chunks_.empty()) {
+          item.chunk = std::move(spare_chunks_.back());
+          spare_chunks_.pop_back();
+        }
+      }
+      try {
+        item.end = !feed_.next(raw);
+      } catch (...) {
+        item.failure = std::current_exception();
+      }
+      item.offset = raw.offset;
+      bool hashing = false;  // along with the parsing
+      {
+        const std::lock_guard lock(mutex_);
+        reading_ = false;
+        exhausted_ = exhausted_ || item.end || item.failure;
+        hashing = feed_.hashes_along() && !hashing_ && hashed_ == sequence;
+        hashing_ = hashing_ || hashing;
+        room_changed_.notify_all();
+      }
+      Sha256Blocks* const along = hashing ? feed_.begin_hash(raw) : nullptr;
+      if (!item.end && !item.failure) {
+        try {
+          parse_rows(raw.text(), plan_, item.chunk, along);
+        } catch (...) {
+          item.failure = std::current_exception();
+        }
+      }
+      // Rows that are not plain take no hash along: then all workers parse at once.
+      const bool along_enough =
+          hashing && 2 * (along->end - along->next) <= static_cast<std::ptrdiff_t>(raw.size);
+      if (hashing) feed_.end_hash(raw);
+      {
+        const std::lock_guard lock(mutex_);
+        if (hashing) goes_along_ = along_enough;
+        done_.emplace(sequence, std::move(item));
+        if (hashing)
+          note_hashed(std::move(raw));
+        else
+          unhashed_.emplace(sequence, std::move(raw));
+        --parsing_;
+        done_changed_.notify_one();
+        room_changed_.notify_one();
+      }
+      hash_in_order();
+    }
+  }
+
+  // Whoever comes by hashes what is next in line; nobody waits for it.
+  void hash_in_order() {
+    for (;;) {
+      RawChunk raw;
+      {
+        const std::lock_guard lock(mutex_);
+        if (hashing_ || unhashed_.empty() || unhashed_.begin()->first != hashed_) return;
+        hashing_ = true;
+        raw = std::move(unhashed_.begin()->second);
+        unhashed_.erase(unhashed_.begin());
+      }
+      feed_.hash(raw);
+      const std::lock_guard lock(mutex_);
+      note_hashed(std::move(raw));
+    }
+  }
+
+  // Under the lock.
+  void note_hashed(RawChunk raw) {
+    raw.hash_from = raw.hash_to = raw.nuls_after = 0;
+    spare_raws_.push_back(std::move(raw));
+    ++hashed_;
+    hashing_ = false;
+    room_changed_.notify_one();
+  }
+
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+      room_changed_.notify_all();
+    }
+    for (std::thread& worker : workers_) worker.join();
+    workers_.clear();
+    ended_ = true;
+  }
+
+  ReadOptions options_;
+  LogInfo info_;
+  Dialect dialect_;
+  Plan plan_;
+  Feed feed_;
+  Warnings pending_;
+  RawChunk raw_;
+  ParsedChunk current_;
+  std::optional<Fault> fault_;
+  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, missing_;
+  std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
+  std::vector<std::uint32_t> fractional_;
+  Account total_;
+  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
+                inexact_ = 0;
+  bool cr_noted_ = false, finished_ = false, ended_ = false, reached_end_ = false;
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable room_changed_, done_changed_;
+  std::map<std::uint64_t, Done> done_;
+  std::map<std::uint64_t, RawChunk> unhashed_;
+  std::vector<RawChunk> spare_raws_;
+  std::vector<ParsedChunk> spare_chunks_;
+  std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
+  std::size_t room_ = 2;
+  int parsing_ = 0;  // workers between their read and their rows
+  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, goes_along_ = false;
+};
+
+}  // namespace
+}  // namespace csv
+
+std::unique_ptr<RowSource> open_csv(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<csv::CsvSource>(path, options);
+}
+
+// Text is what CSV may be: no NUL byte in front, and a line end or nothing but printable bytes.
+bool sniff_csv(const std::string& path, std::string_view first_bytes) {
+  for (const std::string_view suffix : {".csv", ".tsv", ".txt", ".dat", ".CSV", ".TXT", ".DAT"})
+    if (path.size() > suffix.size() && path.substr(path.size() - suffix.size()) == suffix)
+      return true;
+  const std::string_view front = first_bytes.substr(0, 4096);
+  return !front.empty() && std::none_of(front.begin(), front.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f';
+  });
+}
+
+}  // namespace libchar

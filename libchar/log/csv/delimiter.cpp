@@ -1,0 +1,87 @@
+#include "libchar/log/csv/delimiter.hpp"
+
+#include <algorithm>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/csv/number.hpp"
+
+namespace libchar::csv {
+
+bool numeric(const Field& field, char delimiter, char* mark) {
+  if (read_cell(field.text, '.').kind != Cell::bad) {
+    if (mark != nullptr && field.text.find('.') != std::string::npos) *mark = '.';
+    return true;
+  }
+  if (delimiter == ',' && !field.quoted) return false;
+  if (read_cell(field.text, ',').kind == Cell::bad) return false;
+  if (mark != nullptr) *mark = ',';
+  return true;
+}
+
+Score score(const std::vector<Line>& lines, char delimiter) {
+  std::vector<std::size_t> counts;
+  std::size_t cells = 0, numbers = 0;
+  for (const Line& line : lines) {
+    const auto fields = split(line.text, delimiter);
+    std::size_t n = fields.size();
+    if (n > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ') --n;
+    counts.push_back(n);
+    for (const Field& field : fields) {
+      ++cells;
+      numbers += numeric(field, delimiter);
+    }
+  }
+  Score result{delimiter, 1, 0};
+  if (counts.empty()) return result;
+  std::vector<std::size_t> sorted = counts;
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < sorted.size();) {
+    const std::size_t run =
+        static_cast<std::size_t>(std::upper_bound(sorted.begin(), sorted.end(), sorted[i]) -
+                                 sorted.begin()) -
+        i;
+    if (run >= best) {
+      best = run;
+      result.columns = sorted[i];
+    }
+    i += run;
+  }
+  const double consistent = static_cast<double>(best) / static_cast<double>(counts.size());
+  result.quality =
+      result.columns < 2
+          ? 0
+          : consistent * (0.05 + static_cast<double>(numbers) / static_cast<double>(cells));
+  return result;
+}
+
+Score best_score(const std::vector<Line>& lines) {
+  Score best;
+  for (const char candidate : {',', ';', '\t', ' '}) {
+    const Score s = score(lines, candidate);
+    if (s.quality > best.quality + 1e-9) best = s;
+  }
+  return best;
+}
+
+char named_delimiter(const std::string& name) {
+  if (name == "tab" || name == "\\t" || name == "\t") return '\t';
+  if (name == "space" || name == " ") return ' ';
+  if (name.size() == 1 && !is_digit(name[0]) && name[0] != '"' && name[0] != '\r' &&
+      name[0] != '\n' && name[0] != '-' && name[0] != '+')
+    return name[0];
+  throw Error({ErrorKind::usage,
+               "",
+               "",
+               "unknown delimiter",
+               name,
+               "use auto, tab, space, or one character such as , or ;"});
+}
+
+std::string delimiter_name(char delimiter) {
+  if (delimiter == '\t') return "tab";
+  if (delimiter == ' ') return "blanks";
+  return std::string(1, delimiter);
+}
+
+}  // namespace libchar::csv

@@ -1,0 +1,51 @@
+#pragma once
+// What kind of CSV a file is, found out from its first bytes: delimiter, decimal mark, header,
+// names and units, time column.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/csv/line.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar::csv {
+
+inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;   // 1 MiB
+inline constexpr std::size_t kMaxField = std::size_t{1} << 17U;  // 128 KiB
+inline constexpr std::size_t kMaxName = 1024;
+inline constexpr std::size_t kMaxColumns = 100000;
+inline constexpr std::size_t kHeadBytes =
+    2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
+
+struct Column {
+  std::string name, unit;
+  std::string text;        ///< header cell as written
+  std::uint64_t line = 0;  ///< place of the header cell, 1-based; 0 without header
+  std::uint64_t position = 0;
+};
+
+struct Dialect {
+  char delimiter = ',';  ///< ' ' stands for runs of blanks and tabs
+  char decimal = '.';
+  LineEnd line_end = LineEnd::lf;
+  bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
+  bool has_header = false;
+  std::string header;  ///< the header line as it stands in the file, to recognise a repeated one
+  std::vector<Column> columns;
+  int time_column = -1;  ///< index among all columns, -1 = none
+  std::int64_t time_unit_ns = 1000000000;
+  std::size_t data_offset = 0;        ///< byte at which the first line after the header starts
+  std::uint64_t first_data_line = 1;  ///< its physical line number
+};
+
+/// Studies `head` (all of the file when `whole`) and fills channels, guesses, dialect, warnings and
+/// what is known of the time base into `info`. Throws Error with a place when the head cannot be a
+/// log.
+Dialect understand(std::string_view head, bool whole, const ReadOptions& options, LogInfo& info);
+
+}  // namespace libchar::csv

@@ -1,0 +1,200 @@
+#include "libchar/log/csv/feed.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "libchar/log/csv/rows.hpp"
+
+namespace libchar::csv {
+namespace {
+
+/// How long a named pipe may take until its writer writes; files and other pipes are ready at once.
+constexpr int kPatience_ms = 1000;
+
+[[noreturn]] void refuse(const std::string& path,
+                         const std::string& what,
+                         const std::string& hint = "") {
+  throw Error({ErrorKind::input, "E0101", path, what, "", hint});
+}
+
+// End of the last whole line in text[from..size), 0 when there is none. A '\r' at the very end may
+// be half of "\r\n".
+std::size_t last_line_end(const char* text, std::size_t from, std::size_t size) {
+  for (std::size_t i = size; i > from; --i) {
+    if (text[i - 1] == '\n') return i;
+    if (text[i - 1] == '\r' && i < size) return i;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
+    : path_(std::move(path)), block_(std::max<std::size_t>(1, block_bytes)), hashing_(hash) {
+  if (path_ == "-") {
+    descriptor_ = ::dup(STDIN_FILENO);
+    if (descriptor_ < 0)
+      refuse("standard input", "cannot read: " + std::string(std::strerror(errno)));
+    return;
+  }
+  // Without O_NONBLOCK a named pipe that nobody writes to would hang the program here.
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor_ < 0) refuse(path_, "cannot open: " + std::string(std::strerror(errno)));
+  // A writer that waits for us in its own open() needs a moment to begin.
+  pollfd waiting{descriptor_, POLLIN, 0};
+  ::poll(&waiting, 1, kPatience_ms);
+  ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK);
+  struct stat status {};
+  const bool known = ::fstat(descriptor_, &status) == 0;
+  if (known && S_ISDIR(status.st_mode)) {
+    ::close(descriptor_);
+    refuse(path_, "is a folder, a file was expected");
+  }
+  regular_ = known && S_ISREG(status.st_mode);
+  if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (size_ > 0)
+    block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
+}
+
+Feed::~Feed() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t Feed::read_some(char* to, std::size_t n) {
+  std::size_t done = 0;
+  while (done < n && !ended_) {
+    const ssize_t got = ::read(descriptor_, to + done, n - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0)
+      refuse(path_ == "-" ? "standard input" : path_,
+             "cannot read: " + std::string(std::strerror(errno)));
+    if (got == 0) ended_ = true;
+    done += static_cast<std::size_t>(got);
+  }
+  read_ += done;
+  return done;
+}
+
+std::string_view Feed::head() {
+  const std::size_t first = std::size_t{1}
+                            << 16U;  // small files end here; long headers ask for more
+  head_.resize(first);
+  std::size_t size = read_some(head_.data(), first);
+  if (!ended_) {
+    head_.resize(kHeadBytes);
+    size += read_some(head_.data() + first, kHeadBytes - first);
+  }
+  head_.resize(size);
+  if (!ended_) {  // exactly that long?
+    char one = 0;
+    if (read_some(&one, 1) == 1) head_.push_back(one);
+  }
+  if (hashing_) sha_.update(head_);
+  return head_;
+}
+
+std::size_t Feed::fill(char* to, std::size_t n, std::size_t& from_head) {
+  from_head = std::min(n, head_.size() - taken_);
+  std::memcpy(to, head_.data() + taken_, from_head);
+  taken_ += from_head;
+  if (taken_ == head_.size() && !head_.empty()) {
+    head_ = {};
+    taken_ = 0;
+  }
+  return from_head < n ? from_head + read_some(to + from_head, n - from_head) : from_head;
+}
+
+bool Feed::next(RawChunk& chunk) {
+  if (done_) return false;
+  std::size_t size = carry_.size(), cut = 0, from_head = 0;
+  chunk.bytes.resize(std::max(chunk.bytes.size(), size + block_ + kPadding));
+  std::copy(carry_.begin(), carry_.end(), chunk.bytes.begin());
+  chunk.hash_from = size;
+  chunk.nuls_after = 0;
+  chunk.offset = offset_;
+  carry_.clear();
+  while (cut == 0 && !done_) {
+    const std::size_t searched =
+        size == 0 ? 0 : size - 1;  // a '\r' that stood last may now have its '\n'
+    chunk.bytes.resize(std::max(chunk.bytes.size(), size + block_ + kPadding));
+    std::size_t known = 0;
+    size += fill(chunk.bytes.data() + size, block_, known);
+    from_head += known;
+    done_ = (ended_ && taken_ >= head_.size()) || size > kMaxLine + block_;
+    cut = done_ ? size : last_line_end(chunk.bytes.data(), searched, size);
+  }
+  chunk.hash_from += from_head;
+  chunk.hash_to = size;
+  std::fill_n(chunk.bytes.begin() + static_cast<std::ptrdiff_t>(size), kPadding, '\0');
+  carry_.assign(chunk.bytes.begin() + static_cast<std::ptrdiff_t>(cut),
+                chunk.bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  chunk.size = cut;
+  if (done_) drop_nul_tail(chunk);
+  chunk.last = done_;
+  offset_ += chunk.size;
+  return chunk.size > 0 || !done_;
+}
+
+// A log cut by a power failure ends in NUL bytes: they are counted, and with them the line they cut
+// off.
+void Feed::drop_nul_tail(RawChunk& chunk) {
+  std::size_t kept = chunk.size;
+  while (kept > 0 && chunk.bytes[kept - 1] == '\0') --kept;
+  if (kept == chunk.size) return;
+  std::vector<char> buffer(std::size_t{1} << 18U);
+  std::uint64_t more = 0;
+  while (!ended_ || taken_ < head_.size()) {
+    std::size_t from_head = 0;
+    const std::size_t n = fill(buffer.data(), buffer.size(), from_head);
+    // Something stands behind the NULs: the row parser reports the first of them.
+    if (std::any_of(buffer.data(), buffer.data() + n, [](char c) { return c != '\0'; })) return;
+    chunk.nuls_after += n - from_head;
+    more += n;
+  }
+  std::size_t line = kept;
+  while (line > 0 && chunk.bytes[line - 1] != '\n' && chunk.bytes[line - 1] != '\r') --line;
+  nuls_ = chunk.size - kept + more;
+  cut_bytes_ = kept - line;
+  chunk.size = line;
+}
+
+Sha256Blocks* Feed::begin_hash(const RawChunk& chunk) {
+  const std::string_view fresh(chunk.bytes.data() + chunk.hash_from,
+                               chunk.hash_to - chunk.hash_from);
+  if (hashes_along()) return sha_.along(fresh);
+  if (hashing_) sha_.update(fresh);
+  return nullptr;
+}
+
+void Feed::end_hash(const RawChunk& chunk) {
+  if (!hashing_) return;
+  if (hashes_along()) sha_.settle();
+  static constexpr char kZeros[4096] = {};
+  for (std::uint64_t left = chunk.nuls_after; left > 0;) {
+    const std::size_t n = std::min<std::uint64_t>(left, sizeof kZeros);
+    sha_.update({kZeros, n});
+    left -= n;
+  }
+}
+
+void Feed::hash(const RawChunk& chunk) {
+  begin_hash(chunk);
+  end_hash(chunk);
+}
+
+std::string Feed::finish_hash() {
+  if (!hashing_) return "";
+  if (!ended_ && !regular_) return "";
+  std::vector<char> buffer(std::size_t{1} << 18U);
+  while (!ended_) sha_.update({buffer.data(), read_some(buffer.data(), buffer.size())});
+  return sha_.finish();
+}
+
+}  // namespace libchar::csv

@@ -1,0 +1,81 @@
+#pragma once
+// The bytes of a CSV file, cut into chunks of whole lines, and their SHA-256.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/sha256.hpp"
+#include "libchar/log/csv/dialect.hpp"
+
+namespace libchar::csv {
+
+/// A run of whole lines with kPadding readable bytes behind it, and the part of `bytes` that was
+/// fresh from the file.
+struct RawChunk {
+  std::vector<char> bytes;
+  std::size_t size = 0;      ///< of the lines
+  std::uint64_t offset = 0;  ///< in the file
+  std::size_t hash_from = 0, hash_to = 0;
+  std::uint64_t nuls_after = 0;  ///< NUL bytes that were read behind it and dropped
+  bool last = false;
+  std::string_view text() const { return {bytes.data(), size}; }
+};
+
+/// Reads with read(2), never by mapping: a file that shrinks while it is read must not kill the
+/// program. Not thread-safe.
+class Feed {
+ public:
+  Feed(std::string path, std::size_t block_bytes, bool hash);
+  Feed(const Feed&) = delete;
+  Feed& operator=(const Feed&) = delete;
+  ~Feed();
+
+  /// The first bytes (up to kHeadBytes); `whole` when that is all.
+  std::string_view head();
+  bool whole() const { return ended_; }
+  /// Chunks start here.
+  void start_at(std::size_t data_offset) {
+    taken_ = data_offset;
+    offset_ = data_offset;
+  }
+  /// The next chunk; false when there is none.
+  bool next(RawChunk& chunk);
+  void hash(const RawChunk& chunk);
+  /// The same in two steps, for a parser that hashes along between them; nullptr where that cannot
+  /// be.
+  bool hashes_along() const { return hashing_ && sha_.goes_along(); }
+  Sha256Blocks* begin_hash(const RawChunk& chunk);
+  void end_hash(const RawChunk& chunk);
+  /// Reads on to the end of a regular file for its hash; "" when a pipe was not read to its end or
+  /// no hash was asked for.
+  std::string finish_hash();
+
+  std::uint64_t size() const { return size_; }  ///< 0 when unknown
+  std::uint64_t bytes_read() const { return read_; }
+  std::uint64_t nul_tail() const {
+    return nuls_;
+  }  ///< NUL bytes at the end of the file (after the last chunk)
+  std::uint64_t cut_bytes() const {
+    return cut_bytes_;
+  }  ///< of a last line that ran into them and was dropped
+
+ private:
+  std::size_t fill(char* to, std::size_t n, std::size_t& from_head);
+  std::size_t read_some(char* to, std::size_t n);
+  void drop_nul_tail(RawChunk& chunk);
+
+  std::string path_;
+  std::size_t block_;
+  bool hashing_;
+  int descriptor_ = -1;
+  bool regular_ = false, ended_ = false, done_ = false;
+  std::uint64_t size_ = 0, read_ = 0, offset_ = 0, nuls_ = 0, cut_bytes_ = 0;
+  std::string head_;
+  std::size_t taken_ = 0;    // of the head
+  std::vector<char> carry_;  // an unfinished line
+  Sha256 sha_;
+};
+
+}  // namespace libchar::csv

@@ -1,0 +1,144 @@
+#include "libchar/log/csv/header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/log/csv/number.hpp"
+
+namespace libchar::csv {
+namespace {
+
+// A unit behind '_': one letter alone is a unit only where nobody uses it otherwise (gyro_x keeps
+// its x, o3_1 its 1).
+std::optional<std::string> unit_suffix(std::string_view name, std::string_view suffix) {
+  if (suffix.empty() || is_digit(suffix[0]) || suffix == "-") return std::nullopt;
+  if (suffix.size() == 1 && suffix != "g" && suffix != "s" && suffix != "V" && suffix != "K") {
+    const bool celsius =
+        (suffix == "C" || suffix == "c") && ascii_lower(name).find("temp") != std::string::npos;
+    return celsius ? std::optional<std::string>("degC") : std::nullopt;
+  }
+  if (suffix == "none" || suffix == "min" || suffix == "rad" || suffix == "bar" ||
+      suffix == "volt") {
+    if (suffix == "none" || suffix == "min") return std::nullopt;  // "speed_min" is a minimum
+  }
+  if (find_unit(suffix)) return std::string(suffix);
+  // rad_s, m_s2, deg_s: '_' in place of '/'
+  std::string spelled(suffix);
+  if (const std::size_t low = spelled.find('_'); low != std::string::npos) {
+    spelled[low] = '/';
+    if (find_unit(spelled)) return spelled;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string place_name(std::uint64_t line, std::uint64_t column) {
+  return column <= 1 ? fmt::format("line {}", line)
+                     : fmt::format("line {}, column {}", line, column);
+}
+
+std::string latin1_to_utf8(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      out += c;
+    } else {
+      out += static_cast<char>(0xC0U | (byte >> 6U));
+      out += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return out;
+}
+
+std::pair<std::string, std::string> name_and_unit(std::string_view cell) {
+  cell = trimmed(cell);
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    if (cell.empty() || cell.back() != close) continue;
+    const std::size_t at = cell.rfind(open);
+    if (at == std::string_view::npos || at == 0) continue;
+    const std::string_view name = trimmed(cell.substr(0, at));
+    const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
+    // gyro(1), gyro(2): an index, not a unit
+    const bool index = unit.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!name.empty() && !index && unit.size() <= 40 && unit.find('"') == std::string_view::npos)
+      return {std::string(name), std::string(unit)};
+  }
+  for (std::size_t low = cell.find('_'); low != std::string_view::npos;
+       low = cell.find('_', low + 1)) {
+    if (low == 0) continue;
+    if (const auto unit = unit_suffix(cell.substr(0, low), cell.substr(low + 1)))
+      return {std::string(cell.substr(0, low)), *unit};
+  }
+  return {std::string(cell), ""};
+}
+
+void name_columns(Dialect& dialect, LogInfo& info) {
+  std::map<std::string, int> stripped;
+  for (Column& column : dialect.columns) {
+    std::tie(column.name, column.unit) = name_and_unit(column.text);
+    ++stripped[column.name];
+  }
+  std::map<std::string, const Column*> seen;
+  for (std::size_t i = 0; i < dialect.columns.size(); ++i) {
+    Column& column = dialect.columns[i];
+    if (!dialect.has_header) continue;
+    if (column.name.empty()) {
+      column.name = fmt::format("c{}", i);
+      info.warnings.add("unnamed_column",
+                        "columns without a name are named by their position, c0, c1…",
+                        place_name(column.line, column.position));
+    } else if (stripped[column.name] > 1) {
+      column.name =
+          std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
+    }
+    if (std::string_view("=+-@\t\r").find(column.name[0]) != std::string_view::npos)
+      info.warnings.add("formula_name",
+                        "channel names that a spreadsheet would run as a formula: kept, and "
+                        "prefixed with ' in CSV that is written",
+                        place_name(column.line, column.position));
+    if (printable(column.name).find("\\u{") != std::string::npos ||
+        printable(column.name).find("\\x") != std::string::npos)
+      info.warnings.add(
+          "control_in_name",
+          "channel names with invisible or direction-changing characters: shown escaped",
+          place_name(column.line, column.position));
+    const auto [other, fresh] = seen.emplace(column.name, &column);
+    if (!fresh)
+      throw Error({ErrorKind::input,
+                   "E0307",
+                   fmt::format("{}:{}:{}", info.file, column.line, column.position),
+                   fmt::format("two columns have the same name (first at {}:{})",
+                               other->second->line,
+                               other->second->position),
+                   column.name,
+                   "rename one, or read with --header no --skip-rows 1 to use positions"});
+  }
+}
+
+void read_rate_comment(std::string_view comment, LogInfo& info) {
+  const std::string text = ascii_lower(comment);
+  const std::size_t word = text.find("rate");
+  const std::size_t hz = text.find("hz", word == std::string::npos ? 0 : word);
+  if (word == std::string::npos || hz == std::string::npos) return;
+  std::string number = text.substr(word + 4, hz - word - 4);
+  number.erase(0, number.find_first_of("0123456789"));
+  const double factor = !number.empty() && number.back() == 'k' ? 1000 : 1;
+  number.erase(number.find_last_of("0123456789.") + 1);
+  const auto rate = parse_double(number);
+  if (!rate || !(*rate > 0)) return;
+  info.time.rate_hz = *rate * factor;
+  info.dialect.push_back(fmt::format("rate {} Hz from a comment", shortest(info.time.rate_hz)));
+}
+
+}  // namespace libchar::csv

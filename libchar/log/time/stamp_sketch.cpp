@@ -1,0 +1,177 @@
+#include "libchar/log/time/stamp_sketch.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "libchar/core/lanes.hpp"
+
+namespace libchar {
+namespace {
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void StampSketch::begin_cell(const Pair& pair) {
+  if (cells_.empty()) origin_ = pair;
+  if (cells_.size() == kCells) thin();
+  cells_.push_back({pair, pair, pair});
+  in_cell_ = per_cell_ - 1;
+  low_ = high_ = residual(pair);
+}
+
+// Lowest and highest of stamps[i] - first - slope (index + i). AVX2 turns no 64-bit integer into a
+// double; below 2^51 the mantissa of 1.5 2^52 does it, exactly.
+LIBCHAR_WIDE_LANES void StampSketch::extremes(
+    const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 51U;
+  const std::int64_t first = stamps[0] - origin_.stamp, last = stamps[n - 1] - origin_.stamp;
+  const std::int64_t index = from.index - origin_.index;
+  std::size_t i = 0;
+  // Stamps rise, or the run would not be one.
+  if (first > -kLargest && last < kLargest) {
+    using FourStamps [[gnu::vector_size(32)]] = std::int64_t;
+    using FourStampsInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] =
+        std::int64_t;
+    constexpr double kMantissa = 6755399441055744.0;  // 1.5 2^52
+    const auto bits = std::bit_cast<std::int64_t>(kMantissa);
+    const Four steps = {0, 1, 2, 3};
+    Four lows = {low, low, low, low}, highs = {high, high, high, high};
+    for (; i + 4 <= n; i += 4) {
+      const FourStamps whole = *reinterpret_cast<const FourStampsInMemory*>(stamps + i);
+      const FourStamps shifted = (whole - origin_.stamp) + bits;
+      Four d;
+      std::memcpy(&d, &shifted, sizeof d);
+      const Four r = (d - kMantissa) -
+                     slope_ * (static_cast<double>(index + static_cast<std::int64_t>(i)) + steps);
+      lows = r < lows ? r : lows;
+      highs = r > highs ? r : highs;
+    }
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      low = std::min(low, lows[lane]);
+      high = std::max(high, highs[lane]);
+    }
+  }
+  for (; i < n; ++i) {
+    const double r = residual({from.index + static_cast<std::int64_t>(i), stamps[i]});
+    low = std::min(low, r);
+    high = std::max(high, r);
+  }
+}
+
+void StampSketch::add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n) {
+  while (n > 0) {
+    // Most stretches hold no new extreme: two of them are looked for before one by one.
+    const auto m = static_cast<std::size_t>(std::min<std::uint64_t>(n, in_cell_));
+    double low = low_, high = high_;
+    if (m > 0) extremes(stamps, m, {index, stamps[0]}, low, high);
+    const bool none = m > 0 && low == low_ && high == high_;
+    const std::size_t taken = std::max<std::size_t>(m, 1);
+    if (none)
+      in_cell_ -= m;
+    else
+      for (std::size_t i = 0; i < taken; ++i) add(index + static_cast<std::int64_t>(i), stamps[i]);
+    index += static_cast<std::int64_t>(taken);
+    stamps += taken;
+    n -= taken;
+  }
+}
+
+void StampSketch::thin() {
+  slope_ = interval_ns();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i + 1 < cells_.size(); i += 2) {
+    Cell cell = cells_[i];
+    const Cell& other = cells_[i + 1];
+    for (const Pair& pair : {other.first, other.low, other.high}) {
+      if (residual(pair) < residual(cell.low)) cell.low = pair;
+      if (residual(pair) > residual(cell.high)) cell.high = pair;
+    }
+    cells_[kept++] = cell;
+  }
+  cells_.resize(kept);
+  per_cell_ *= 2;
+}
+
+double StampSketch::interval_ns() const {
+  const std::size_t n = cells_.size();
+  if (n == 0) return 0;
+  const std::size_t half = n / 2;
+  std::vector<double> slopes;
+  for (std::size_t i = 0; half > 0 && i + half < n; ++i) {
+    const Pair &a = cells_[i].first, &b = cells_[i + half].first;
+    slopes.push_back(static_cast<double>(b.stamp - a.stamp) /
+                     static_cast<double>(b.index - a.index));
+  }
+  return median(slopes);
+}
+
+StampSketch::Deviation StampSketch::deviation(double interval) const {
+  if (cells_.size() < 3) return {};
+  const Pair origin = cells_.front().first;
+  const auto off = [&](const Pair& pair) {
+    return static_cast<double>(pair.stamp - origin.stamp) -
+           interval * static_cast<double>(pair.index - origin.index);
+  };
+  std::vector<double> r;
+  for (const Cell& cell : cells_) r.push_back(off(cell.first));
+  const double centre = median(r);
+  Deviation result;
+  for (const Cell& cell : cells_)
+    result.largest = std::max(
+        {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
+  for (double& value : r) value = std::fabs(value - centre);
+  result.robust = 1.4826 * median(r);
+  return result;
+}
+
+FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
+  std::vector<double> steps;
+  std::size_t zeros = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    std::int64_t step = 0;
+    if (__builtin_sub_overflow(stamps[i], stamps[i - 1], &step)) continue;
+    zeros += step == 0;
+    if (step > 0) steps.push_back(static_cast<double>(step));
+  }
+  FirstInterval result;
+  if (steps.empty()) return result;
+  result.coarse = stamps.size() > 8 && zeros * 4 > stamps.size();
+  const double middle = median(steps);
+  std::vector<double> scatter;
+  for (const double step : steps) scatter.push_back(std::fabs(step - middle));
+  const double deviation = 1.4826 * median(scatter);
+  double sum = 0;
+  std::size_t close = 0;
+  for (const double step : steps) {
+    if (std::fabs(step - middle) > 0.1 * middle) continue;
+    sum += step;
+    ++close;
+  }
+  if (!result.coarse && close * 2 >= steps.size()) {
+    result.ns = sum / static_cast<double>(close);
+    result.longest_step = 1.5 * result.ns;
+    return result;
+  }
+  // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
+  // dominate.
+  std::vector<double> slopes;
+  const std::size_t half = stamps.size() / 2;
+  for (std::size_t i = 0; i + half < stamps.size(); ++i)
+    slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
+                     static_cast<double>(half));
+  const double slope = median(slopes);
+  result.ns = result.coarse || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
+  if (!(result.ns > 0)) result.ns = middle;
+  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
+  return result;
+}
+
+}  // namespace libchar

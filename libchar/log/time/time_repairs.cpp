@@ -1,0 +1,219 @@
+// What becomes of a row whose stamp is not one regular step behind the last: doubled, late, ahead,
+// backward, behind a rollover, or the first of another rate.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/time/time_base.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kLargestGap = 1e8;  // grid points in one gap
+constexpr std::uint64_t kBackward =
+    64;                               // backward rows in a row before the clock is called restarted
+constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
+constexpr int kRateRun = 8;           // equal odd steps in a row that make a change of rate
+
+}  // namespace
+
+std::string TimeGrid::place(const Pending& front, std::size_t row) const {
+  return source_.place(front.block, row, front.rows_before);
+}
+
+void TimeGrid::fail(const Pending& front,
+                    std::size_t row,
+                    std::string code,
+                    std::string what,
+                    std::string hint) const {
+  throw Error({ErrorKind::input,
+               std::move(code),
+               source_.where(front.block, row, front.rows_before),
+               std::move(what),
+               "",
+               std::move(hint)});
+}
+// A row whose stamp is not one regular step behind the last one.
+TimeGrid::Verdict TimeGrid::decide(const Pending& front,
+                                   std::size_t row,
+                                   std::int64_t& stamp,
+                                   std::size_t ahead) {
+  if (!have_last_) {
+    first_stamp_ = stamp;
+    return Verdict::keep;
+  }
+  std::int64_t step = 0;
+  if (__builtin_sub_overflow(stamp, last_, &step))
+    fail(front,
+         row,
+         "E0316",
+         "wild time stamp: the distance to the row before does not fit 64-bit nanoseconds",
+         "remove the row, or --time-column none --rate HZ");
+  if (step == 0) {
+    if (stamp < raw_last_) return backward(front, row, stamp);
+    if (coarse_) return Verdict::keep;
+    warnings_.add("duplicate_timestamp",
+                  "rows with the stamp of the row before: the first is kept",
+                  place(front, row));
+    return Verdict::drop;
+  }
+  if (step < 0) return backward(front, row, stamp);
+  watch_rate(front, row, static_cast<double>(step) / dt_);
+  const std::int64_t gap = lag(front, row, stamp, ahead);
+  if (gap <= 0) {
+    // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
+    if (static_cast<double>(step) > kWildSteps * dt_)
+      fail(front,
+           row,
+           "E0316",
+           fmt::format("wild time stamp: {} s ahead of the rows around it",
+                       shortest(static_cast<double>(step) * 1e-9)),
+           "remove the row, or --time-column none --rate HZ");
+    warnings_.add("late_stamp",
+                  "stamps far ahead of the rows behind them: the rows are placed on the grid",
+                  place(front, row));
+    stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
+    return Verdict::keep;
+  }
+  if (static_cast<double>(gap) > kLargestGap)
+    fail(front,
+         row,
+         "E0316",
+         fmt::format("wild time stamp: {} s after the row before ({} missing samples)",
+                     shortest(static_cast<double>(step) * 1e-9),
+                     gap),
+         "remove the row, --from and --to choose a stretch, --time-column none --rate HZ ignores "
+         "the stamps");
+  ++gaps_;
+  warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
+  // Grid points before the window's start are passed over.
+  std::int64_t first = 1;
+  const double before = static_cast<double>(last_ - first_stamp_);
+  if (before < static_cast<double>(from_ns_))
+    first = std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(std::ceil((static_cast<double>(from_ns_) - before) / dt_)));
+  std::int64_t end = gap;
+  if (to_ns_ != INT64_MAX)
+    end = std::min<std::int64_t>(
+        gap,
+        static_cast<std::int64_t>(std::ceil((static_cast<double>(to_ns_) - before) / dt_)) - 1);
+  if (end >= first) {
+    if (!start_ns_)
+      start_ns_ = last_ + static_cast<std::int64_t>(std::llround(static_cast<double>(first) * dt_));
+    missing_ += static_cast<std::uint64_t>(end - first + 1);
+    emit_missing(static_cast<std::uint64_t>(end - first + 1));
+  }
+  index_ += gap;
+  return Verdict::keep;
+}
+
+// Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
+// the row.
+TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
+  const std::int64_t unit = std::max<std::int64_t>(1,
+                                                   source_.info().time.unit == "ns"   ? 1
+                                                   : source_.info().time.unit == "us" ? 1000
+                                                   : source_.info().time.unit == "ms" ? 1000000
+                                                                                      : 0);
+  const std::int64_t raw = stamp - wrap_, before = last_ - wrap_;
+  for (const int bits : {16, 32}) {
+    const double range = std::ldexp(static_cast<double>(unit), bits);
+    if (range > 4e18 || source_.info().time.unit == "s" || raw < 0 || before < 0 ||
+        static_cast<double>(before) >= range)
+      continue;
+    const double step = static_cast<double>(raw - before) + range;
+    if (step > 0 && step < 0.5 * range && step < 1000 * dt_) {
+      wrap_ += static_cast<std::int64_t>(range);
+      stamp += static_cast<std::int64_t>(range);
+      warnings_.add("clock_rollover",
+                    fmt::format("the {}-bit clock ran over: unwrapped", bits),
+                    place(front, row));
+      const std::int64_t late =
+          stamp - last_ <= limit_
+              ? 0
+              : static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_) / dt_)) -
+                    1;
+      if (late > 0) {
+        ++gaps_;
+        missing_ += static_cast<std::uint64_t>(late);
+        index_ += late;
+        emit_missing(static_cast<std::uint64_t>(late));
+      }
+      return Verdict::keep;
+    }
+  }
+  if (dropped_in_a_row_ == 0) first_dropped_ = source_.where(front.block, row, front.rows_before);
+  if (++dropped_in_a_row_ >= kBackward)
+    throw Error({ErrorKind::input,
+                 "E0317",
+                 first_dropped_,
+                 fmt::format("the time steps back here and {} rows do not catch up (concatenated "
+                             "logs, or a wild stamp before?)",
+                             kBackward),
+                 "",
+                 "split the file there, --to ends before it, --time-column none --rate HZ ignores "
+                 "the stamps"});
+  warnings_.add("backward_timestamp",
+                "rows whose stamp lies before that of the row before: dropped",
+                place(front, row));
+  return Verdict::drop;
+}
+
+// Missing grid points before this row: how much later than expected it and the rows behind it are.
+// A single late row whose followers are on time is no gap.
+std::int64_t TimeGrid::lag(const Pending& front,
+                           std::size_t row,
+                           std::int64_t stamp,
+                           std::size_t ahead) const {
+  const auto late = [&](std::int64_t t, std::size_t j) {
+    return static_cast<double>(t - last_) / dt_ - static_cast<double>(j + 1);
+  };
+  const double own = late(stamp, 0);
+  std::vector<double> lags{own};
+  std::size_t item = 0, i = row;
+  const Pending* at = &front;
+  for (std::size_t j = 1; j < std::min(ahead, kRowsAhead); ++j) {
+    if (++i >= at->block.rows) {
+      if (++item >= pending_.size()) break;
+      at = &pending_[item];
+      i = 0;
+    }
+    std::int64_t t = 0, unused = 0;
+    if (__builtin_add_overflow(at->block.time_ns[i], wrap_, &t) ||
+        __builtin_sub_overflow(t, last_, &unused) || t <= last_)
+      continue;
+    lags.push_back(late(t, j));
+  }
+  std::nth_element(
+      lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 4), lags.end());
+  return static_cast<std::int64_t>(std::llround(std::min(own, lags[lags.size() / 4])));
+}
+
+// The same odd step many times in a row is another sampling rate, not gaps.
+void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
+  const bool odd = ratio > 1.25 || ratio < 0.75;
+  if (!odd) {
+    same_ratio_ = 0;
+    last_ratio_ = 1;
+    return;
+  }
+  if (same_ratio_ == 0 || std::fabs(ratio - last_ratio_) > 0.1 * last_ratio_) {
+    same_ratio_ = 0;
+    last_ratio_ = ratio;
+    // The last row at the old distance.
+    ratio_place_ = row > 0 ? place(front, row - 1) : end_of_block_;
+  }
+  if (++same_ratio_ != kRateRun) return;
+  warnings_.add(
+      "rate_change",
+      fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
+                  1e9 / dt_,
+                  1e9 / (dt_ * ratio)),
+      ratio_place_);
+}
+
+}  // namespace libchar

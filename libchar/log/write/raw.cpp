@@ -1,0 +1,79 @@
+// Raw binary with a JSON sidecar: the format that keeps everything (names, units, rate, start).
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/binary/sidecar.hpp"
+#include "libchar/log/write/log_writers.hpp"
+
+namespace libchar {
+namespace {
+
+// Another sidecar beside the log would contradict ours.
+void refuse_other_sidecar(const std::string& path) {
+  for (const char* suffix : {".yaml", ".yml"}) {
+    struct stat status {};
+    if (::stat((path + suffix).c_str(), &status) == 0)
+      throw Error({ErrorKind::output,
+                   "E0509",
+                   path + suffix,
+                   "is a sidecar of this name already",
+                   "",
+                   "remove it or choose another name"});
+  }
+}
+
+class RawWriter final : public LogWriter {
+ public:
+  RawWriter(const std::string& path, const LogInfo& info, const WriteOptions& options)
+      : file_(path, options.overwrite), beside_(path + ".json", options.overwrite) {
+    refuse_other_sidecar(path);
+    sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64,
+                       options.big_endian};
+    sidecar_.planar = options.order == "planar";
+    sidecar_.named = !unnamed(info.channels);
+    for (const Channel& channel : info.channels) {
+      sidecar_.named = sidecar_.named || !channel.unit.empty();
+      sidecar_.channels.push_back({printable(channel.name), printable(channel.unit), 1, 0});
+    }
+    refine(info);
+    values_.emplace(file_, sidecar_.channels.size(), sidecar_.number, sidecar_.planar);
+  }
+
+  void write(std::span<const std::span<const double>> columns) override { values_->write(columns); }
+
+  void refine(const LogInfo& info) override {
+    sidecar_.rate_hz = info.time.rate_hz;
+    sidecar_.t0_ns = info.time.start_ns;
+  }
+
+  void finish() override {
+    values_->finish();
+    sidecar_.rows = values_->rows();
+    beside_.write(sidecar_json(sidecar_));
+    commit_with_description(file_, beside_);
+  }
+  std::vector<std::string> files() const override { return {file_.path(), beside_.path()}; }
+
+  std::vector<std::string> losses() const override {
+    if (values_->rounded() == 0) return {};
+    return {fmt::format("{} values were rounded to 32 bits", values_->rounded())};
+  }
+
+ private:
+  WholeFile file_, beside_;
+  Sidecar sidecar_;
+  std::optional<ValueWriter> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<LogWriter> write_raw(const std::string& path,
+                                     const LogInfo& info,
+                                     const WriteOptions& options) {
+  return std::make_unique<RawWriter>(path, info, options);
+}
+
+}  // namespace libchar

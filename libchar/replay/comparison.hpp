@@ -1,0 +1,61 @@
+#pragma once
+// Two replay reports side by side: A, the older or the accepted one, and B.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/replay/replay_summary.hpp"
+
+namespace libchar {
+
+/// What the intervals of two RMSE say of their difference.
+enum class Difference {
+  equal,         ///< the same number
+  not_resolved,  ///< the 95 % intervals overlap
+  better,        ///< B's interval is wholly below A's
+  worse,         ///< B's interval is wholly above A's
+  unknown,       ///< one of them has no RMSE or no interval
+};
+
+/// "equal", "not resolved", "better", "worse", "unknown".
+std::string_view name_of(Difference difference);
+
+/// One label; a side that does not have it is null.
+struct ComparedAlgorithm {
+  std::string label;
+  const AlgorithmSummary *a = nullptr, *b = nullptr;
+  Difference difference = Difference::unknown;
+  double rmse_change = 0;   ///< B / A - 1; NaN: one side has none
+  double ns_change = 0;     ///< B / A - 1 of ns per sample
+  double bytes_change = 0;  ///< B / A - 1 of the peak memory
+  /// Both ran.
+  bool both_ran() const { return a != nullptr && b != nullptr && a->ran && b->ran; }
+};
+
+struct Comparison {
+  ReplaySummary a, b;
+  /// Why these are not two replays of one scene; empty: they are.
+  std::vector<std::string> unlike;
+  /// What differs and makes no other scene of it: learning window, options, noise levels, program.
+  std::vector<std::string> remarks;
+  /// By RMSE of B; then those without one in B, by A's. Points into `a` and `b`.
+  std::vector<ComparedAlgorithm> algorithms;
+
+  Comparison() = default;
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
+  Comparison(Comparison&&) = default;
+  Comparison& operator=(Comparison&&) = default;
+};
+
+/// Puts them side by side, like or unlike.
+Comparison compare_replays(ReplaySummary a, ReplaySummary b);
+
+/// Throws Error(input) that names the differences when the two are not of one scene.
+void refuse_unlike(const Comparison& comparison);
+
+/// "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each.
+std::string comparison_verdict(const Comparison& comparison);
+
+}  // namespace libchar

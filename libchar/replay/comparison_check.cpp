@@ -1,0 +1,133 @@
+#include "libchar/replay/comparison_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+[[noreturn]] void refuse(std::string_view text, const std::string& what, const std::string& hint) {
+  throw Error({ErrorKind::usage, "E0922", "--fail-if", what, std::string(text), hint});
+}
+
+struct Metric {
+  const char* name;
+  double AlgorithmSummary::*value;
+  double slack;  ///< smaller differences fail no check
+};
+// The same algorithm holds some ten bytes more or less by where the allocator finds room.
+constexpr Metric kMetrics[] = {{"rmse", &AlgorithmSummary::rmse, 0},
+                               {"regret", &AlgorithmSummary::regret, 0},
+                               {"ns_per_sample", &AlgorithmSummary::ns_per_sample, 0},
+                               {"peak_bytes", &AlgorithmSummary::peak_bytes, 1024}};
+
+const Metric& metric_of(std::string_view name, std::string_view text) {
+  std::vector<std::string> names;
+  for (const Metric& metric : kMetrics) {
+    if (name == metric.name) return metric;
+    names.emplace_back(metric.name);
+  }
+  const auto near = nearest(name, names);
+  refuse(text,
+         "expected rmse, regret, ns_per_sample or peak_bytes in front of the plus sign",
+         near ? fmt::format("did you mean {}?", *near) : "--fail-if rmse+5%");
+}
+
+double value_of(const AlgorithmSummary* one, const Metric& metric) {
+  return one != nullptr && one->ran ? one->*metric.value : std::nan("");
+}
+
+std::string number(double value, bool share) {
+  return share ? fmt::format("{} %", significant(100 * value, 4)) : significant(value, 5);
+}
+
+// Empty: it holds.
+std::string failure(const ComparedAlgorithm& row,
+                    const Metric& metric,
+                    const ComparisonCheck& check) {
+  const bool regret = check.metric == "regret";
+  const double a = value_of(row.a, metric), b = value_of(row.b, metric);
+  if (std::isnan(b))
+    return fmt::format("{}: {} is {} in A, and there is none in B{}",
+                       row.label,
+                       metric.name,
+                       number(a, regret),
+                       row.b != nullptr && !row.b->why.empty() ? ": " + row.b->why : "");
+  const double limit = regret ? a + check.share : a * (1 + check.share);
+  if (b <= limit || b - a <= metric.slack) return "";
+  const std::string allowed = shortest(100 * check.share);
+  return regret ? fmt::format("{}: regret {} in A, {} in B: {} points more, {} are allowed",
+                              row.label,
+                              number(a, true),
+                              number(b, true),
+                              significant(100 * (b - a), 3),
+                              allowed)
+                : fmt::format("{}: {} {} in A, {} in B: {} more, {} % is allowed",
+                              row.label,
+                              metric.name,
+                              number(a, false),
+                              number(b, false),
+                              a > 0 ? significant(100 * (b / a - 1), 3) + " %" : "from nothing",
+                              allowed);
+}
+
+}  // namespace
+
+ComparisonCheck parse_comparison_check(std::string_view text) {
+  ComparisonCheck out;
+  out.text = text;
+  const std::string_view example = "--fail-if rmse+5%, --fail-if minque:regret+0.5%";
+  const std::size_t plus = text.rfind('+');
+  if (plus == std::string_view::npos || text.empty() || text.back() != '%')
+    refuse(text, "expected METRIC+NUMBER%", std::string(example));
+  const auto percent = parse_double(text.substr(plus + 1, text.size() - plus - 2));
+  if (!percent || *percent < 0)
+    refuse(text, "expected a number of at least 0 between + and %", std::string(example));
+  out.share = *percent / 100;
+  std::string_view metric = text.substr(0, plus);
+  if (const std::size_t colon = metric.rfind(':'); colon != std::string_view::npos) {
+    out.label = metric.substr(0, colon);
+    if (out.label.empty()) refuse(text, "no algorithm in front of the colon", std::string(example));
+    metric.remove_prefix(colon + 1);
+  }
+  out.metric = metric_of(metric, text).name;
+  return out;
+}
+
+std::vector<std::string> failures(const Comparison& comparison, const ComparisonCheck& check) {
+  const Metric& metric = metric_of(check.metric, check.text);
+  std::vector<std::string> out, labels;
+  std::size_t checked = 0;
+  bool found = false;
+  for (const ComparedAlgorithm& row : comparison.algorithms) {
+    labels.push_back(row.label);
+    if (!check.label.empty() && row.label != check.label) continue;
+    found = true;
+    if (std::isnan(value_of(row.a, metric))) continue;
+    // Not asked for in B, unless by name: nothing was lost.
+    if (row.b == nullptr && check.label.empty()) continue;
+    ++checked;
+    if (const std::string sentence = failure(row, metric, check); !sentence.empty())
+      out.push_back(sentence);
+  }
+  if (!found && !check.label.empty()) {
+    const auto near = nearest(check.label, labels);
+    refuse(check.text,
+           "neither report has this algorithm",
+           near ? fmt::format("did you mean {}?", *near) : "labels are those of the table");
+  }
+  if (checked == 0)
+    throw Error({ErrorKind::check,
+                 "E0923",
+                 "--fail-if",
+                 fmt::format("A has no {} that B could be held against", metric.name),
+                 check.text,
+                 ""});
+  return out;
+}
+
+}  // namespace libchar

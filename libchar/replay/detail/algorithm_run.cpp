@@ -1,0 +1,228 @@
+#include "libchar/replay/detail/algorithm_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/tilt_angle.hpp"
+#include "libchar/replay/detail/timeline.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+using Clock = std::chrono::steady_clock;
+
+// Teaching takes long enough for the scheduler to come in between, and for this clock's cost.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Errors with gaps at every turn have no curve, and everything else all the same.
+AllanCurve curve_of(const AllanPyramid& pyramid, double dt_s) {
+  try {
+    return pyramid.finish(dt_s);
+  } catch (const Error& error) {
+    if (error.fault().kind != ErrorKind::numeric) throw;
+    return {};
+  }
+}
+
+}  // namespace
+
+AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why) {
+  AlgorithmResult out;
+  out.label = planned.label;
+  out.card = planned.entry->card;
+  out.settings = planned.settings;
+  out.bound = planned.learns_run();
+  out.why = why;
+  out.rmse = out.regret = out.weight_distance = out.variance_error = kNone;
+  out.rmse_ci95 = {kNone, kNone};
+  out.ns_per_sample = kNone;
+  return out;
+}
+
+// What teaching or making an algorithm refuses is a result of the replay, not its end.
+template <class Work>
+void AlgorithmRun::guarded(const Work& work) {
+  if (!failure_.empty()) return;
+  try {
+    const double start = thread_seconds();
+    accounted(work);
+    learning_s_ += thread_seconds() - start;
+  } catch (const Error& error) {
+    if (error.fault().kind != ErrorKind::numeric && error.fault().kind != ErrorKind::usage) throw;
+    const std::string what = error.fault().what, name(planned_->entry->card->name);
+    failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
+    runner_.reset();
+  }
+}
+
+template <class Work>
+double AlgorithmRun::accounted(const Work& work) {
+  if (frame_->heap != nullptr) frame_->heap->begin();
+  const auto start = Clock::now();
+  const auto account = [&] {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (frame_->heap != nullptr) {
+      const HeapUse use = frame_->heap->end();
+      peak_ = std::max(peak_, held_ + use.peak);
+      held_ += use.held;
+    }
+    return seconds;
+  };
+  try {
+    work();
+  } catch (...) {
+    account();
+    throw;
+  }
+  return account();
+}
+
+AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& frame)
+    : planned_(&planned), frame_(&frame) {
+  const auto inputs = static_cast<std::size_t>(frame.given->inputs());
+  meters_.resize(inputs);
+  if (frame.allan) allan_.resize(inputs);
+  guarded([&] { runner_ = planned.entry->make(*frame.given, planned.settings); });
+}
+
+void AlgorithmRun::learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+  if (!alive()) return;
+  learnt_ += static_cast<std::uint64_t>(samples.cols());
+  guarded([&] { runner_->learn(samples, truth); });
+}
+
+void AlgorithmRun::finish_learning() {
+  if (!alive()) return;
+  guarded([&] { runner_->finish_learning(); });
+}
+
+void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
+  const double seconds = accounted([&] { runner_->run(samples, x_, variance_); });
+  ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
+}
+
+void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
+  if (!alive()) return;
+  x_.resize(frame_->given->inputs(), samples.cols());
+  variance_.resize(x_.rows(), x_.cols());
+  timed_run(samples);
+  steps_ += static_cast<std::uint64_t>(samples.cols());
+}
+
+void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
+  if (!alive()) return;
+  x_.resize(frame_->given->inputs(), samples.cols());
+  variance_.resize(x_.rows(), x_.cols());
+  timed_run(samples);
+}
+
+double AlgorithmRun::median_ns() const {
+  if (ns_.empty()) return kNone;
+  std::vector<double> sorted = ns_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth) {
+  if (!alive()) return;
+  available_ += static_cast<double>((x_.row(0).array().isFinite()).count());
+  for (Eigen::Index j = 0; j < truth.rows(); ++j) {
+    error_.resize(static_cast<std::size_t>(x_.cols()));
+    for (Eigen::Index k = 0; k < x_.cols(); ++k) {
+      double error = x_(j, k) - truth(j, k);
+      if (frame_->tilt) error = fusion::wrapped(error);
+      // An estimate that overflowed is none.
+      error_[static_cast<std::size_t>(k)] =
+          std::isfinite(error) ? error * frame_->output_scale : kNone;
+    }
+    meters_[static_cast<std::size_t>(j)].push(error_);
+    if (!allan_.empty()) allan_[static_cast<std::size_t>(j)].push(error_);
+  }
+  if (frame_->tracks)
+    note_tracks(frame_->start_s + static_cast<double>(first + x_.cols()) / frame_->rate_hz);
+  x_ *= frame_->output_scale;
+}
+
+void AlgorithmRun::note_tracks(double time_s) {
+  const auto weights = runner_->weights();
+  const auto variances = runner_->variances();
+  const bool one_input = weights && weights->cols() == 1;
+  if (!one_input && !variances) return;
+  track_times_.push_back(time_s);
+  const auto add = [](std::vector<std::vector<double>>& series, const auto& values) {
+    series.resize(static_cast<std::size_t>(values.size()));
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      series[static_cast<std::size_t>(i)].push_back(values(i));
+  };
+  if (one_input) add(weight_samples_, weights->col(0));
+  if (variances) add(variance_samples_, *variances);
+}
+
+std::vector<FoundFault> AlgorithmRun::found_faults() const {
+  std::vector<FoundFault> out;
+  const fusion::FaultLog* log = runner_->faults();
+  if (log == nullptr) return out;
+  std::vector<std::ptrdiff_t> open(static_cast<std::size_t>(frame_->given->channels), -1);
+  for (const fusion::FaultEvent& event : log->events()) {
+    const double time_s = frame_->start_s + static_cast<double>(event.sample) / frame_->rate_hz;
+    auto& place = open[static_cast<std::size_t>(event.channel)];
+    if (event.faulty && place < 0) {
+      place = static_cast<std::ptrdiff_t>(out.size());
+      out.push_back({static_cast<std::size_t>(event.channel),
+                     std::string(fusion::name(event.rule)),
+                     time_s,
+                     {}});
+    } else if (!event.faulty && place >= 0) {
+      out[static_cast<std::size_t>(place)].to_s = time_s;
+      place = -1;
+    }
+  }
+  return out;
+}
+
+AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_s) const {
+  AlgorithmResult out = not_run(*planned_, failure_);
+  out.ran = alive();
+  if (!out.ran) return out;
+  for (std::size_t j = 0; j < meters_.size() && !meters_[j].cells().empty(); ++j) {
+    InputScore input;
+    input.error = libchar::score(meters_[j], frame_->rate_hz, options);
+    input.optimum_ratio = kNone;
+    input.window_rms = window_rms(meters_[j], frame_->rate_hz, frame_->start_s, window_s);
+    if (!allan_.empty()) input.allan = curve_of(allan_[j], 1 / frame_->rate_hz);
+    out.inputs.push_back(std::move(input));
+  }
+  if (!out.inputs.empty()) {
+    out.rmse = out.inputs[0].error.rmse;
+    out.rmse_ci95 = out.inputs[0].error.rmse_ci95;
+  }
+  out.availability = steps_ > 0 ? available_ / static_cast<double>(steps_) : 0;
+  out.ns_per_sample = median_ns();
+  out.learning_s = learning_s_;
+  if (frame_->heap != nullptr)
+    out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));
+  out.weights = runner_->weights();
+  out.variances = runner_->variances();
+  out.weight_track = thinned(track_times_, weight_samples_, kTrackBins);
+  out.variance_track = thinned(track_times_, variance_samples_, kTrackBins);
+  out.faults = found_faults();
+  if (const fusion::FaultLog* log = runner_->faults()) {
+    out.watches_faults = true;
+    out.faults_not_kept = log->dropped();
+  }
+  runner_->remarks(out.remarks);
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,84 @@
+#pragma once
+// One algorithm on its way through a replay: taught, run block by block, timed and scored.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/fusion/runner.hpp"
+#include "libchar/replay/detail/plan.hpp"
+
+namespace libchar {
+
+/// What all runs of one replay share.
+struct RunFrame {
+  const fusion::Given* given = nullptr;
+  HeapMeter* heap = nullptr;
+  double rate_hz = 0, start_s = 0;  ///< of the run
+  double output_scale = 1;
+  bool tilt = false;  ///< errors are taken the short way round
+  bool allan = false;
+  bool tracks = false;  ///< weights and variances over time are wanted
+};
+
+/// The result of an algorithm that does not run.
+AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why);
+
+class AlgorithmRun {
+ public:
+  AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& frame);
+  const PlannedAlgorithm& planned() const { return *planned_; }
+  /// Empty: it is running. Else why it cannot (what teaching it said).
+  const std::string& failure() const { return failure_; }
+  bool alive() const { return runner_ != nullptr; }
+
+  void learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth);
+  void finish_learning();
+  void run(const Eigen::MatrixXd& samples);
+  /// After `run`: errors of its estimates. `first` instant of the run.
+  void score(std::int64_t first, const Eigen::MatrixXd& truth);
+  /// Once more on a block, for the clock alone: its state is not looked at afterwards.
+  void repeat(const Eigen::MatrixXd& samples);
+
+  /// r x m estimates of the last block, in output units.
+  const Eigen::MatrixXd& estimates() const { return x_; }
+  const std::vector<ErrorMeter>& meters() const { return meters_; }
+  std::size_t timed_blocks() const { return ns_.size(); }
+  double median_ns() const;  ///< of an instant; NaN before the first block
+  /// Everything that is known without the others: scores, tracks, faults, cost.
+  AlgorithmResult result(const ScoreOptions& options, double window_s) const;
+  /// Weights of one input at the end of each block.
+  const std::vector<double>& track_times() const { return track_times_; }
+  const std::vector<std::vector<double>>& weight_samples() const { return weight_samples_; }
+  const std::vector<std::vector<double>>& variance_samples() const { return variance_samples_; }
+  std::optional<Eigen::MatrixXd> weights() const { return runner_->weights(); }
+  std::uint64_t learnt() const { return learnt_; }
+  std::uint64_t steps() const { return steps_; }
+
+ private:
+  template <class Work>
+  void guarded(const Work& work);
+  template <class Work>
+  double accounted(const Work& work);  // wall seconds
+  void timed_run(const Eigen::MatrixXd& samples);
+  void note_tracks(double time_s);
+  std::vector<FoundFault> found_faults() const;
+
+  const PlannedAlgorithm* planned_;
+  const RunFrame* frame_;
+  std::unique_ptr<fusion::Runner> runner_;
+  std::string failure_;
+  Eigen::MatrixXd x_, variance_;
+  std::vector<double> error_;
+  std::vector<ErrorMeter> meters_;
+  std::vector<AllanPyramid> allan_;
+  std::vector<double> ns_;
+  std::vector<double> track_times_;
+  std::vector<std::vector<double>> weight_samples_, variance_samples_;
+  double learning_s_ = 0, available_ = 0;
+  std::int64_t held_ = 0, peak_ = 0;
+  std::uint64_t learnt_ = 0, steps_ = 0;
+};
+
+}  // namespace libchar

@@ -1,0 +1,46 @@
+#pragma once
+// Scores of an algorithm where there is no reference.
+//   leave-one-out   e_i = h_i x(without sensor i) - y_i        (the sensor's own noise is in it;
+//                   of more than 32 sensors 32 are left out in turn, evenly chosen)
+//   split array     e   = (x(even sensors) - x(odd sensors)) / 2: with equal halves of independent
+//                   errors its RMS is that of the whole array's estimate
+// What all sensors have in common (an error of the board, of the temperature) is in neither.
+
+#include <memory>
+#include <vector>
+
+#include "libchar/fusion/runner.hpp"
+#include "libchar/replay/detail/plan.hpp"
+
+namespace libchar {
+
+class BlindRun {
+ public:
+  BlindRun(const PlannedAlgorithm& planned, const fusion::Given& given);
+  void run(const Eigen::MatrixXd& samples);
+  BlindScore result(double rate_hz, const ScoreOptions& options) const;
+  /// Root mean square over the sensors, instant by instant: for intervals and comparisons.
+  const ErrorMeter& meter() const { return all_; }
+  std::uint64_t steps() const { return steps_; }
+
+ private:
+  struct Part {
+    std::vector<Eigen::Index> channels;
+    std::unique_ptr<fusion::Runner> runner;  // none: cannot run on these channels
+    Eigen::MatrixXd samples, x, variance;
+  };
+  Part part(const std::vector<Eigen::Index>& channels) const;
+  bool step(Part& part, const Eigen::MatrixXd& samples);
+
+  const PlannedAlgorithm* planned_;
+  const fusion::Given* given_;
+  Eigen::MatrixXd h_;
+  std::vector<Part> others_;  // without sensor i
+  std::vector<Part> halves_;
+  std::vector<ErrorMeter> meters_;
+  ErrorMeter all_, split_;
+  std::vector<double> errors_, squares_, counts_;
+  std::uint64_t steps_ = 0;
+};
+
+}  // namespace libchar

@@ -1,0 +1,74 @@
+#pragma once
+// The instants that are fused: sensors and truth side by side, a column an instant, in blocks.
+// Every pass gives the same columns in the same blocks.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/replay/detail/reference_track.hpp"
+#include "libchar/replay/detail/scene_source.hpp"
+
+namespace libchar {
+
+struct FeedInfo {
+  double rate_hz = 0;         ///< of the instants
+  std::int64_t instants = 0;  ///< in the whole recording
+  double start_s = 0;         ///< of instant 0, seconds from the recording's first sample
+  std::size_t averaged = 1;   ///< samples in an instant (a slow reference)
+  bool has_reference = false;
+  std::string reference_use;       ///< how truth and samples are matched, for people
+  std::vector<std::string> units;  ///< of the sensors, as fused
+  std::vector<std::string> input_names, input_units;  ///< of the true inputs, as scored
+  std::vector<LogInfo> logs;
+  double output_scale =
+      1;  ///< estimates and truth times this are in `input_units` (tilt: rad inside)
+};
+
+/// `first` instant of the block, n x m samples, r x m truth (no rows without a reference).
+using FeedBlock = std::function<void(
+    std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth)>;
+
+class Feed {
+ public:
+  /// Throws Error(input) when the scene does not fit its files.
+  Feed(const Scene& scene, Progress& progress);
+  const FeedInfo& info() const { return info_; }
+  const SceneSource& source() const { return source_; }
+
+  /// Instants [from, to) in blocks of `size` columns, the last one shorter.
+  void pass(std::int64_t from,
+            std::int64_t to,
+            std::size_t size,
+            const FeedBlock& block,
+            Progress& progress) const;
+  /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
+  double factor(std::size_t sensor) const { return factors_[sensor]; }
+  /// Subtracted from every sample of a sensor from now on.
+  void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
+  /// The truth of an instant is the reference so much earlier, from now on. Reads the reference
+  /// into memory when it is not there yet.
+  void set_lag(double lag_s, Progress& progress);
+  /// The first instant at or after a time in seconds from the recording's first sample.
+  std::int64_t instant_at(double time_s) const;
+
+ private:
+  void fit_slow_reference();
+  void convert_tilt();
+  class Columns;
+
+  const Scene* scene_;
+  SceneSource source_;
+  std::optional<ReferenceTrack> track_;
+  FeedInfo info_;
+  std::vector<double> offsets_, factors_;  // a sensor each
+  double truth_factor_ = 1, lag_s_ = 0;
+  std::size_t sensors_, inputs_;
+};
+
+}  // namespace libchar

@@ -1,0 +1,141 @@
+#include "libchar/replay/detail/judgement.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace libchar {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// A method that has an estimate at clearly fewer instants than others does not win by them.
+constexpr double kLeastShare = 0.9;
+
+// The diagonal of (H' R^-1 H)^-1, R the sensors' mean square errors: by QR of R^-1/2 H.
+Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Given& given) {
+  Eigen::MatrixXd scaled = given.h();
+  for (std::size_t i = 0; i < rms.size(); ++i) {
+    // A sensor that was never sound tells nothing.
+    const double information = rms[i] > 0 ? 1 / rms[i] : 0;
+    scaled.row(static_cast<Eigen::Index>(i)) *= information;
+  }
+  const Eigen::Index r = scaled.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::MatrixXd upper = qr.matrixQR().topRows(r).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse =
+      upper.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(r, r));
+  return inverse.rowwise().norm();
+}
+
+double regret_of(const AlgorithmResult& algorithm) {
+  double squares = 0;
+  for (const InputScore& input : algorithm.inputs)
+    squares += input.optimum_ratio * input.optimum_ratio;
+  return algorithm.inputs.empty()
+             ? kNone
+             : std::sqrt(squares / static_cast<double>(algorithm.inputs.size())) - 1;
+}
+
+}  // namespace
+
+void judge_optimum(ReplayResult& result,
+                   const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& sound_rms,
+                   const fusion::Given& given) {
+  if (!result.has_reference) return;
+  ScoreOptions quick;
+  quick.replicates = 0;
+  if (given.plain() || given.tilt) {
+    for (const AlgorithmRun& bound : optimum)
+      if (bound.alive())
+        result.inputs[0].optimum_rmse = std::fmin(
+            result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
+  } else {
+    const Eigen::VectorXd best = gauss_markov(sound_rms, given);
+    for (std::size_t j = 0; j < result.inputs.size(); ++j)
+      result.inputs[j].optimum_rmse = best[static_cast<Eigen::Index>(j)];
+  }
+  for (AlgorithmResult& algorithm : result.algorithms) {
+    for (std::size_t j = 0; j < algorithm.inputs.size(); ++j)
+      algorithm.inputs[j].optimum_ratio =
+          algorithm.inputs[j].error.rmse / result.inputs[j].optimum_rmse;
+    algorithm.regret = regret_of(algorithm);
+  }
+}
+
+void judge_tracking(AlgorithmResult& algorithm,
+                    const AlgorithmRun& run,
+                    const std::vector<AlgorithmRun>& optimum,
+                    const ReplayResult& result,
+                    const fusion::Given& given) {
+  if (!algorithm.ran || !result.has_reference || !given.plain() || !given.section_starts.empty())
+    return;
+  const auto& weights = run.weight_samples();
+  if (!weights.empty() && !optimum.empty() && optimum[0].alive())
+    if (const auto best = optimum[0].weights()) {
+      double squares = 0;
+      for (std::size_t i = 0; i < weights.size(); ++i)
+        for (const double w : weights[i])
+          squares += std::pow(w - (*best)(static_cast<Eigen::Index>(i), 0), 2);
+      algorithm.weight_distance = std::sqrt(squares / static_cast<double>(weights[0].size()));
+    }
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < run.variance_samples().size(); ++i) {
+    const double rmse = result.sensors[i].error.rmse;
+    for (const double v : run.variance_samples()[i])
+      if (v > 0 && rmse > 0) {
+        squares += std::pow(std::log(v / (rmse * rmse)), 2);
+        count += 1;
+      }
+  }
+  if (count > 0) algorithm.variance_error = std::sqrt(squares / count);
+}
+
+void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result) {
+  if (!algorithm.ran || !algorithm.watches_faults) return;
+  const double end_s = result.start_s + static_cast<double>(result.instants) / result.rate_hz;
+  for (std::size_t f = 0; f < result.faults.size(); ++f) {
+    const SensorFault& fault = result.faults[f];
+    if (fault.from_s >= end_s || fault.to_s <= result.start_s) continue;
+    FaultAnswer answer{f, {}, {}};
+    for (const FoundFault& found : algorithm.faults) {
+      if (found.sensor != fault.sensor || found.from_s >= fault.to_s) continue;
+      const double until = found.to_s.value_or(std::numeric_limits<double>::infinity());
+      if (until <= fault.from_s) continue;
+      if (!answer.found_s) answer.found_s = std::max(0.0, found.from_s - fault.from_s);
+      // The last time it was out while the fault lasted.
+      answer.returned_s.reset();
+      if (found.to_s && *found.to_s >= fault.to_s) answer.returned_s = *found.to_s - fault.to_s;
+    }
+    algorithm.answers.push_back(answer);
+  }
+}
+
+void judge_best(ReplayResult& result,
+                const std::vector<const ErrorMeter*>& meters,
+                const ScoreOptions& scoring) {
+  double most_available = 0;
+  for (const AlgorithmResult& a : result.algorithms)
+    if (a.ran && !a.bound) most_available = std::max(most_available, a.availability);
+  for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
+    const AlgorithmResult& a = result.algorithms[k];
+    if (!a.ran || a.bound || !std::isfinite(a.rmse) ||
+        a.availability < kLeastShare * most_available)
+      continue;
+    if (!result.best || a.rmse < result.algorithms[*result.best].rmse) result.best = k;
+  }
+  if (!result.best) return;
+  const std::size_t best = *result.best;
+  result.algorithms[best].as_good_as_best = true;
+  for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
+    AlgorithmResult& a = result.algorithms[k];
+    if (k == best || meters[k] == nullptr || !std::isfinite(a.rmse)) continue;
+    a.ratio_to_best = rmse_ratio_ci95(*meters[k], *meters[best], scoring);
+    // Equal errors, zero among them, have no ratio to speak of.
+    a.as_good_as_best = a.rmse == result.algorithms[best].rmse ||
+                        (a.ratio_to_best->low <= 1 && a.ratio_to_best->high >= 1);
+  }
+}
+
+}  // namespace libchar

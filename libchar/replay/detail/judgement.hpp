@@ -1,0 +1,39 @@
+#pragma once
+// What follows from the scores of all algorithms of one replay together.
+//   regret          RMSE / RMSE of the best fixed weights taught on the run, known faults left
+//                   out, - 1   (design.md 1)
+//   as good as best the 95 % interval of RMSE / RMSE of the best method holds 1
+//   weight distance root mean square over time of |w - w of the best fixed weights|
+//   variance error  root mean square over time and sensors of ln(variance / mean square error)
+
+#include <vector>
+
+#include "libchar/replay/detail/algorithm_run.hpp"
+
+namespace libchar {
+
+/// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one
+/// input, or rows of H that differ: from the sensors' own errors without known
+/// faults (`sound_rms`), (H' R^-1 H)^-1.
+void judge_optimum(ReplayResult& result,
+                   const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& sound_rms,
+                   const fusion::Given& given);
+
+/// Distances over time; needs `sensors` of the result.
+void judge_tracking(AlgorithmResult& algorithm,
+                    const AlgorithmRun& run,
+                    const std::vector<AlgorithmRun>& optimum,
+                    const ReplayResult& result,
+                    const fusion::Given& given);
+
+/// Which known faults were found, and when.
+void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
+
+/// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, an
+/// algorithm each, null where there is none.
+void judge_best(ReplayResult& result,
+                const std::vector<const ErrorMeter*>& meters,
+                const ScoreOptions& scoring);
+
+}  // namespace libchar

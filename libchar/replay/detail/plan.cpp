@@ -1,0 +1,289 @@
+#include "libchar/replay/detail/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+// Enough blocks that their median time means something, and that tracks over time have points;
+// blocks large enough that reading the clock costs nothing.
+constexpr std::int64_t kBlocks = 512;
+constexpr std::int64_t kSmallestBlock = 256, kLargestBlock = 4096;
+
+[[noreturn]] void refuse(const Scene& scene,
+                         const char* code,
+                         const std::string& what,
+                         const std::string& got = "",
+                         const std::string& hint = "") {
+  throw Error({ErrorKind::input, code, scene.file, what, got, hint});
+}
+
+Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
+  if (scene.tilt) return {};
+  // A simulation's rows weigh all its truth signals, a reference may name some of them.
+  std::vector<std::size_t> columns;
+  for (std::size_t j = 0; j < inputs; ++j) columns.push_back(j);
+  if (scene.simulate && scene.reference) {
+    const auto& names = scene.simulate->truth_names;
+    for (std::size_t j = 0; j < inputs; ++j)
+      columns[j] = static_cast<std::size_t>(
+          std::find(names.begin(), names.end(), scene.reference->channels[j]) - names.begin());
+  }
+  Eigen::MatrixXd h(scene.sensors.size(), inputs);
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    for (std::size_t j = 0; j < inputs; ++j)
+      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          scene.sensors[i].h[columns[j]];
+  if (inputs == 1 && (h.array() == 1).all()) return {};
+  return h;
+}
+
+// Up to where no sensor is known to fail; 0 when nobody knows.
+std::int64_t fault_free(const Scene& scene,
+                        const Feed& feed,
+                        std::int64_t run_from,
+                        std::int64_t run_to) {
+  if (scene.fault_free_s)
+    return std::clamp<std::int64_t>(
+        static_cast<std::int64_t>(*scene.fault_free_s * feed.info().rate_hz), 0, run_to - run_from);
+  const auto& faults = feed.source().known_faults();
+  if (faults.empty() && !scene.simulate && !scene.simulated) return 0;
+  std::int64_t first = run_to;
+  for (const SensorFault& fault : faults)
+    if (feed.instant_at(fault.to_s) > run_from)
+      first = std::min(first, feed.instant_at(fault.from_s));
+  return std::max<std::int64_t>(0, first - run_from);
+}
+
+std::vector<std::int64_t> section_starts(const Feed& feed,
+                                         std::int64_t run_from,
+                                         std::int64_t run_to) {
+  std::set<std::int64_t> starts;
+  for (const SensorFault& fault : feed.source().known_faults())
+    for (const double t : {fault.from_s, fault.to_s}) {
+      const std::int64_t instant = feed.instant_at(t);
+      if (instant > run_from && instant < run_to) starts.insert(instant - run_from);
+    }
+  return {starts.begin(), starts.end()};
+}
+
+fusion::Given make_given(const Scene& scene,
+                         const Feed& feed,
+                         const SensorKnowledge& knowledge,
+                         const ReplayPlan& plan) {
+  fusion::Given given;
+  const FeedInfo& info = feed.info();
+  given.channels = static_cast<Eigen::Index>(scene.sensors.size());
+  given.observation_matrix = observation_matrix(scene, info.input_names.size());
+  const auto& levels = knowledge.noise_variances;
+  if (std::all_of(levels.begin(), levels.end(), [](double v) { return v > 0; }))
+    given.noise_levels = Eigen::Map<const Eigen::VectorXd>(levels.data(), given.channels);
+  given.rate_hz = info.rate_hz;
+  given.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
+  given.reference_throughout = info.has_reference;
+  given.fault_free_samples = fault_free(scene, feed, plan.run_from, plan.run_to);
+  given.section_starts = section_starts(feed, plan.run_from, plan.run_to);
+  if (scene.tilt)
+    given.tilt = fusion::TiltChannels{static_cast<Eigen::Index>(scene.tilt->gyroscope),
+                                      static_cast<Eigen::Index>(scene.tilt->accelerometer_x),
+                                      static_cast<Eigen::Index>(scene.tilt->accelerometer_z)};
+  return given;
+}
+
+// Seconds from the recording's first sample to instants.
+void place_windows(const Scene& scene,
+                   const ReplayOptions& options,
+                   const Feed& feed,
+                   ReplayPlan& plan) {
+  const auto learning = options.learning ? options.learning : scene.learning;
+  const auto evaluation = options.evaluation ? options.evaluation : scene.evaluation;
+  const double end_s =
+      feed.info().start_s + static_cast<double>(feed.info().instants) / feed.info().rate_hz;
+  const auto check = [&](const TimeWindow& window, const char* key) {
+    if (window.from_s >= end_s)
+      refuse(scene,
+             "E0903",
+             fmt::format("{}: the window begins after the end of the recording, which is at {} s",
+                         key,
+                         significant(end_s, 6)),
+             significant(window.from_s, 6));
+    if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / feed.info().rate_hz)
+      plan.warnings.add("window_beyond_end",
+                        "a window reaches beyond the end of the recording and ends with it",
+                        fmt::format("{} to {} s, the end is at {} s",
+                                    key,
+                                    significant(window.to_s, 6),
+                                    significant(end_s, 6)));
+  };
+  if (learning) {
+    check(*learning, "learning");
+    plan.learning = {learning->from_s, std::min(learning->to_s, end_s)};
+    plan.learn_from = feed.instant_at(learning->from_s);
+    plan.learn_to = feed.instant_at(learning->to_s);
+  }
+  plan.evaluation = evaluation.value_or(TimeWindow{learning ? learning->to_s : 0, end_s});
+  // What was learnt from the whole recording can only be tried on the same.
+  if (!evaluation && learning && feed.instant_at(learning->to_s) >= feed.info().instants)
+    plan.evaluation = {0, end_s};
+  check(plan.evaluation, "evaluation");
+  plan.evaluation.to_s = std::min(plan.evaluation.to_s, end_s);
+  plan.run_from = feed.instant_at(plan.evaluation.from_s);
+  plan.run_to = feed.instant_at(plan.evaluation.to_s);
+  if (plan.run_to - plan.run_from < 2)
+    refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
+  for (const SensorFault& fault : feed.source().known_faults())
+    if (fault.from_s >= end_s)
+      plan.warnings.add(
+          "fault_after_end",
+          "a fault begins after the end of the recording and changes nothing",
+          fmt::format(
+              "{} from {} s", scene.sensors[fault.sensor].name, significant(fault.from_s, 6)));
+  if (plan.learn_to > plan.run_from && plan.learn_from < plan.run_to)
+    plan.warnings.add("learning_in_evaluation",
+                      "the evaluation holds instants of the learning window: methods that learn "
+                      "there look better than they are",
+                      "");
+}
+
+std::string label_of(const SceneAlgorithm& algorithm, bool repeated) {
+  std::string label = algorithm.name;
+  if (!repeated || algorithm.options.empty()) return label;
+  std::string options;
+  for (const auto& [name, value] : algorithm.options)
+    options += (options.empty() ? "" : ", ") + name + "=" + shortest(value);
+  return label + " (" + options + ")";
+}
+
+PlannedAlgorithm planned(const SceneAlgorithm& asked, bool repeated, const Scene& scene) {
+  try {
+    const fusion::Entry& entry = fusion::algorithm(asked.name);
+    PlannedAlgorithm out{
+        label_of(asked, repeated), &entry, fusion::Settings(entry.options), "", true};
+    for (const auto& [name, value] : asked.options) out.settings.set(name, value);
+    return out;
+  } catch (const Error& error) {
+    if (asked.line == 0) throw;
+    Fault fault = error.fault();
+    fault.kind = ErrorKind::input;
+    fault.where = fmt::format("{}:{}:{}", scene.file, asked.line, asked.column);
+    throw Error(fault);
+  }
+}
+
+std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& options) {
+  const auto& asked = options.algorithms.empty() ? scene.algorithms : options.algorithms;
+  std::vector<PlannedAlgorithm> out;
+  std::map<std::string, int> times;
+  for (const SceneAlgorithm& algorithm : asked) ++times[algorithm.name];
+  std::set<std::string> labels;
+  for (const SceneAlgorithm& algorithm : asked) {
+    out.push_back(planned(algorithm, times[algorithm.name] > 1, scene));
+    if (!labels.insert(out.back().label).second)
+      refuse(scene, "E0904", "an algorithm stands twice with the same options", out.back().label);
+  }
+  if (asked.empty() || options.no_skip)
+    for (const fusion::Entry& entry : fusion::algorithms())
+      if (!times.contains(std::string(entry.card->name)))
+        out.push_back({std::string(entry.card->name),
+                       &entry,
+                       fusion::Settings(entry.options),
+                       "",
+                       asked.empty()});
+  return out;
+}
+
+// The smallest error that fixed weights can have, taught on the run itself: with and without
+// calibration, of the sensors that are sound at each instant. For a tilt: the best filter,
+// as it stands or tuned on the run, and either sensor alone.
+std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
+  std::vector<PlannedAlgorithm> out;
+  const auto add = [&](const char* name, std::vector<std::pair<std::string, double>> options) {
+    const fusion::Entry& entry = fusion::algorithm(name);
+    PlannedAlgorithm bound{name, &entry, fusion::Settings(entry.options), "", false};
+    for (const auto& [option, value] : options) bound.settings.set(option, value);
+    fusion::Given on_run = given;
+    if (given.tilt) on_run.learning_samples = std::numeric_limits<std::int64_t>::max();
+    bound.why = fusion::why_not(*entry.card, on_run);
+    if (bound.runs()) out.push_back(std::move(bound));
+  };
+  if (given.tilt) {
+    for (const char* name : {"tilt-kalman-tuned",
+                             "tilt-complementary-tuned",
+                             "tilt-kalman",
+                             "tilt-complementary",
+                             "tilt-gyroscope",
+                             "tilt-accelerometer"})
+      add(name, {});
+    return out;
+  }
+  add("optimal-weights", {});
+  add("optimal-weights", {{"calibrate", 1}});
+  return out;
+}
+
+}  // namespace
+
+ReplayPlan make_plan(const Scene& scene,
+                     const ReplayOptions& options,
+                     const Feed& feed,
+                     const SensorKnowledge& knowledge) {
+  ReplayPlan plan;
+  place_windows(scene, options, feed, plan);
+  if (scene.reference && !scene.reference->recording && !scene.simulate)
+    for (const SceneSensor& sensor : scene.sensors) {
+      const auto& channels = scene.reference->channels;
+      if (std::find(channels.begin(), channels.end(), sensor.channel) != channels.end())
+        plan.warnings.add("reference_is_a_sensor",
+                          "a sensor is part of the reference: its error is hidden in every score",
+                          sensor.name);
+    }
+  plan.given = make_given(scene, feed, knowledge, plan);
+  plan.algorithms = choose(scene, options);
+  for (PlannedAlgorithm& algorithm : plan.algorithms)
+    algorithm.why = fusion::why_not(*algorithm.entry->card, plan.given);
+  if (feed.info().has_reference) plan.optimum = optimum(plan.given);
+  const auto any = [&](auto&& wanted) {
+    return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {
+      return a.runs() && wanted(a);
+    });
+  };
+  plan.learning_pass = any([](const auto& a) { return a.learns_before(); }) ||
+                       (options.no_skip && plan.learn_to > plan.learn_from);
+  plan.run_learning_pass =
+      !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
+  plan.without_reference = (!feed.info().has_reference || options.no_skip) && !scene.tilt;
+  if (!any([](const auto&) { return true; }))
+    throw Error(
+        {ErrorKind::numeric,
+         "E0905",
+         scene.file,
+         "no algorithm can run on this scene: " +
+             (plan.algorithms.empty() ? std::string("none was asked for") : plan.algorithms[0].why),
+         "",
+         "--explain says what each of them needs"});
+  const std::int64_t run = plan.run_to - plan.run_from;
+  plan.block =
+      options.block > 0
+          ? options.block
+          : static_cast<std::size_t>(std::clamp(run / kBlocks, kSmallestBlock, kLargestBlock));
+  return plan;
+}
+
+fusion::Given subset(const fusion::Given& given, const std::vector<Eigen::Index>& channels) {
+  fusion::Given part = given;
+  part.channels = static_cast<Eigen::Index>(channels.size());
+  if (given.observation_matrix.size() > 0)
+    part.observation_matrix = given.observation_matrix(channels, Eigen::all);
+  if (given.noise_levels.size() > 0) part.noise_levels = given.noise_levels(channels);
+  return part;
+}
+
+}  // namespace libchar

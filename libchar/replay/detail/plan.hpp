@@ -1,0 +1,65 @@
+#pragma once
+// What a replay will read, learn and run, and what it leaves out, with the reason.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libchar/fusion/registry.hpp"
+#include "libchar/replay/detail/feed.hpp"
+#include "libchar/replay/replay.hpp"
+
+namespace libchar {
+
+struct PlannedAlgorithm {
+  std::string label;
+  const fusion::Entry* entry = nullptr;
+  fusion::Settings settings;
+  std::string why;    ///< why it does not run, a sentence; empty: it runs
+  bool asked = true;  ///< false: run for `no_skip` alone, shown nowhere
+  bool runs() const { return why.empty(); }
+  bool learns_before() const { return entry->card->needs.reference; }
+  bool learns_run() const { return entry->card->needs.reference_throughout; }
+};
+
+/// What was found out about each sensor before the plan.
+struct SensorKnowledge {
+  std::vector<double> offsets;
+  std::vector<double> noise_variances;     ///< NaN: not known
+  std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
+};
+
+/// Measures the rest when the scene has one, and asks scene and models for noise levels.
+SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& progress);
+
+struct ReplayPlan {
+  fusion::Given given;
+  TimeWindow learning, evaluation;
+  std::int64_t learn_from = 0, learn_to = 0;  ///< instants of the learning window; equal: none
+  std::int64_t run_from = 0, run_to = 0;
+  std::size_t block = 0;
+  bool learning_pass = false;      ///< some algorithm learns in the learning window
+  bool run_learning_pass = false;  ///< some bound learns on the run itself
+  bool without_reference = false;  ///< leave-one-out and split arrays
+  std::vector<PlannedAlgorithm> algorithms;
+  std::vector<PlannedAlgorithm> optimum;  ///< bounds that tell the optimum of the scene
+  Warnings warnings;
+};
+
+/// Throws Error(input) for unknown algorithms or options of the scene (with place), windows outside
+/// the recording, an empty run.
+ReplayPlan make_plan(const Scene& scene,
+                     const ReplayOptions& options,
+                     const Feed& feed,
+                     const SensorKnowledge& knowledge);
+
+/// The plan for people, a sentence a line.
+std::vector<std::string> sentences(const ReplayPlan& plan,
+                                   const Scene& scene,
+                                   const Feed& feed,
+                                   const SensorKnowledge& knowledge);
+
+/// The same array with some of its channels only.
+fusion::Given subset(const fusion::Given& given, const std::vector<Eigen::Index>& channels);
+
+}  // namespace libchar

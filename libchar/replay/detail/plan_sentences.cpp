@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/replay/detail/plan.hpp"
+
+namespace libchar {
+namespace {
+
+std::string seconds(double s) {
+  return significant(s, 6) + " s";
+}
+
+std::string names_of(const std::vector<PlannedAlgorithm>& algorithms, auto&& wanted) {
+  std::string out;
+  for (const PlannedAlgorithm& a : algorithms)
+    if (a.asked && a.runs() && wanted(a)) out += (out.empty() ? "" : ", ") + a.label;
+  return out;
+}
+
+std::string reading(const Scene& scene, const Feed& feed) {
+  const SourceInfo& source = feed.source().info();
+  if (scene.simulate)
+    return fmt::format("simulates {} sensors, {} samples at {} Hz, seed {}, anew for each pass",
+                       scene.sensors.size(),
+                       source.samples,
+                       significant(source.rate_hz, 6),
+                       scene.simulate->seed);
+  return fmt::format("reads {} channel{} of {}: {} samples at {} Hz, again for each pass",
+                     source.units.size() + source.reference_units.size(),
+                     source.units.size() + source.reference_units.size() == 1 ? "" : "s",
+                     source.logs[0].file,
+                     source.samples,
+                     significant(source.rate_hz, 6));
+}
+
+std::string reference(const Scene& scene, const Feed& feed) {
+  if (!scene.reference)
+    return "no reference: no algorithm learns, scores are leave-one-out and split-array";
+  std::string names;
+  for (const std::string& name : scene.reference->channels)
+    names += (names.empty() ? "" : ", ") + name;
+  return fmt::format("reference {}: {}", names, feed.info().reference_use);
+}
+
+std::string learning(const ReplayPlan& plan) {
+  if (plan.learn_to <= plan.learn_from) return "no learning window: nothing is learnt beforehand";
+  if (!plan.learning_pass)
+    return "the learning window is not read: no algorithm that runs learns there";
+  return fmt::format("learning on {} instants from {} to {}: {}",
+                     plan.learn_to - plan.learn_from,
+                     seconds(plan.learning.from_s),
+                     seconds(plan.learning.to_s),
+                     names_of(plan.algorithms, [](const auto& a) { return a.learns_before(); }));
+}
+
+std::string levels(const Scene& scene, const SensorKnowledge& knowledge) {
+  std::string out;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    if (knowledge.noise_sources[i].empty())
+      out += (out.empty() ? "" : ", ") + scene.sensors[i].name;
+  if (!out.empty()) return "noise levels: not known of " + out;
+  auto sources = knowledge.noise_sources;
+  std::sort(sources.begin(), sources.end());
+  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+  return fmt::format("noise levels: from {}", fmt::join(sources, " and "));
+}
+
+std::string optimum(const ReplayPlan& plan) {
+  if (plan.optimum.empty()) return "";
+  return plan.given.tilt
+             ? "optimum: the best filter tuned on the evaluation itself"
+             : fmt::format("optimum: best fixed weights taught on the evaluation itself{}",
+                           plan.given.section_starts.empty() ? "" : ", failed sensors left out");
+}
+
+}  // namespace
+
+std::vector<std::string> sentences(const ReplayPlan& plan,
+                                   const Scene& scene,
+                                   const Feed& feed,
+                                   const SensorKnowledge& knowledge) {
+  std::vector<std::string> out = {reading(scene, feed), reference(scene, feed)};
+  if (!scene.tilt) out.push_back(levels(scene, knowledge));
+  if (scene.rest)
+    out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
+                              seconds(scene.rest->from_s),
+                              seconds(scene.rest->to_s)));
+  if (scene.reference) out.push_back(learning(plan));
+  out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
+                            plan.run_to - plan.run_from,
+                            significant(feed.info().rate_hz, 6),
+                            seconds(plan.evaluation.from_s),
+                            seconds(plan.evaluation.to_s)));
+  if (plan.given.fault_free_samples > 0)
+    out.push_back(fmt::format(
+        "no sensor fails in the first {} of it",
+        seconds(static_cast<double>(plan.given.fault_free_samples) / feed.info().rate_hz)));
+  if (const std::string text = optimum(plan); !text.empty()) out.push_back(text);
+  out.push_back("runs " + names_of(plan.algorithms, [](const auto&) { return true; }));
+  for (const PlannedAlgorithm& a : plan.algorithms)
+    if (a.asked && !a.runs()) out.push_back("skips " + a.why);
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,244 @@
+#include "libchar/replay/detail/scene_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/replay/detail/resampled.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kSimulatedRows = 4096;
+
+[[noreturn]] void refuse(const Scene& scene,
+                         const char* code,
+                         const std::string& what,
+                         const std::string& got,
+                         const std::string& hint) {
+  throw Error({ErrorKind::input, code, scene.file, what, got, hint});
+}
+
+struct Silent final : BlockSink {
+  void begin(const LogInfo&) override {}
+  void block(const SampleBlock&) override {}
+};
+
+struct Forward final : BlockSink {
+  explicit Forward(std::function<void(const SampleBlock&)> to) : next(std::move(to)) {}
+  void begin(const LogInfo&) override {}
+  void block(const SampleBlock& samples) override { next(samples); }
+  std::function<void(const SampleBlock&)> next;
+};
+
+std::size_t position(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+// What the sensors of one pass go through on their way.
+class SensorPath {
+ public:
+  SensorPath(const Scene& scene, double rate_hz, std::uint64_t seed) : scene_(scene) {
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+      std::vector<SensorFault> own;
+      for (const SensorFault& fault : scene.faults)
+        if (fault.sensor == i) own.push_back(fault);
+      injectors_.emplace_back(std::move(own), rate_hz, seed, i);
+    }
+    changed_.resize(scene.sensors.size());
+  }
+  std::span<const double> operator()(std::size_t sensor, std::span<const double> y) {
+    const double scale = scene_.sensors[sensor].scale;
+    if (scale == 1 && injectors_[sensor].idle()) return y;
+    std::vector<double>& out = changed_[sensor];
+    out.assign(y.begin(), y.end());
+    if (scale != 1)
+      for (double& value : out) value *= scale;
+    if (!injectors_[sensor].idle()) injectors_[sensor].apply(out);
+    return out;
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<FaultInjector> injectors_;
+  std::vector<std::vector<double>> changed_;
+};
+
+}  // namespace
+
+SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene) {
+  for (const SceneSensor& sensor : scene.sensors) wanted_.push_back(sensor.channel);
+  if (scene.reference && !scene.reference->recording)
+    for (const std::string& channel : scene.reference->channels) wanted_.push_back(channel);
+  known_faults_ = scene.faults;
+  if (scene.simulate) {
+    simulation_ = *scene.simulate;
+    info_.rate_hz = simulation_.rate_hz;
+    info_.samples = simulation_.samples;
+    std::vector<std::string> names;
+    for (const SimulatedSensor& sensor : simulation_.sensors) {
+      names.push_back(sensor.name);
+      const SensorModel& m = sensor.model;
+      info_.units.push_back(m.sensitivity.unit.empty() ? m.unit : m.sensitivity.unit);
+    }
+    for (const std::string& truth : simulation_.truth_names) names.push_back(truth);
+    for (const std::string& name : wanted_) columns_.push_back(position(names, name));
+    for (std::size_t k = scene.sensors.size(); k < wanted_.size(); ++k)
+      info_.reference_units.push_back(
+          simulation_.truth.size() == 1 ? simulation_.sensors[0].model.unit : "");
+  } else {
+    if (scene.simulated)
+      known_faults_.insert(
+          known_faults_.end(), scene.simulated->faults.begin(), scene.simulated->faults.end());
+    if (scene.resample_hz)
+      read_even(progress);
+    else
+      scan(progress);
+  }
+}
+
+void SceneSource::read_even(Progress& progress) {
+  ResampledLog even = read_resampled(scene_->recording,
+                                     scene_->reading,
+                                     wanted_,
+                                     *scene_->resample_hz,
+                                     scene_->tilt ? scene_->sensors.size() : wanted_.size(),
+                                     progress);
+  even_ = std::move(even.samples);
+  info_.rate_hz = *scene_->resample_hz;
+  info_.samples = even.log.samples;
+  for (std::size_t k = 0; k < wanted_.size(); ++k)
+    for (const Channel& channel : even.log.channels)
+      if (channel.name == wanted_[k])
+        (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
+  info_.logs.push_back(std::move(even.log));
+}
+
+void SceneSource::scan(Progress& progress) {
+  reading_ = scene_->reading;
+  // New names stand for the columns in their order, so all of them must be read.
+  if (reading_.names.empty()) {
+    std::set<std::string> once;
+    for (const std::string& name : wanted_)
+      if (once.insert(name).second) reading_.channels.push_back(name);
+  }
+  Silent silent;
+  LogInfo log;
+  try {
+    log = read_log(scene_->recording, reading_, silent, progress);
+  } catch (const Error& error) {
+    // What a scene asks of a file is the scene's mistake, not one of the command line.
+    if (error.fault().kind != ErrorKind::usage) throw;
+    Fault fault = error.fault();
+    fault.kind = ErrorKind::input;
+    if (fault.code.empty()) fault.code = "E0900";
+    if (fault.where.empty() || fault.where.starts_with("--")) fault.where = scene_->recording;
+    throw Error(fault);
+  }
+  std::vector<std::string> names;
+  for (const Channel& channel : log.channels) names.push_back(channel.name);
+  for (std::size_t k = 0; k < wanted_.size(); ++k) {
+    const std::size_t column = position(names, wanted_[k]);
+    if (column == names.size()) {
+      const auto near = nearest(wanted_[k], names);
+      refuse(*scene_,
+             "E0900",
+             fmt::format("the recording {} has no channel of this name", scene_->recording),
+             wanted_[k],
+             near ? "did you mean " + *near + "?" : "inspect lists the channels");
+    }
+    columns_.push_back(column);
+    (k < scene_->sensors.size() ? info_.units : info_.reference_units)
+        .push_back(log.channels[column].unit);
+  }
+  if (!(log.time.rate_hz > 0))
+    refuse(*scene_,
+           "E0901",
+           fmt::format("the recording {} states no sampling rate", scene_->recording),
+           "",
+           "recording: {file: …, rate_hz: …}");
+  info_.rate_hz = log.time.rate_hz;
+  info_.samples = log.samples;
+  info_.logs.push_back(std::move(log));
+}
+
+void SceneSource::stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
+  if (scene_->simulate)
+    stream_simulation(until, block, progress);
+  else if (!even_.empty())
+    stream_even(until, block);
+  else
+    stream_recording(until, block, progress);
+}
+
+std::vector<std::vector<double>> SceneSource::reference_columns(Progress& progress) const {
+  std::vector<std::vector<double>> out(info_.reference_units.size());
+  const std::size_t sensors = info_.units.size();
+  stream(
+      info_.samples,
+      [&](std::uint64_t, std::span<const std::span<const double>> columns) {
+        for (std::size_t c = 0; c < out.size(); ++c)
+          out[c].insert(out[c].end(), columns[sensors + c].begin(), columns[sensors + c].end());
+      },
+      progress);
+  return out;
+}
+
+void SceneSource::stream_even(std::uint64_t until, const SourceBlock& block) const {
+  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  const auto rows = static_cast<std::size_t>(std::min(until, info_.samples));
+  if (rows == 0) return;
+  std::vector<std::span<const double>> out;
+  for (std::size_t k = 0; k < even_.size(); ++k) {
+    const std::span<const double> column(even_[k].data(), rows);
+    out.push_back(k < scene_->sensors.size() ? path(k, column) : column);
+  }
+  block(0, out);
+}
+
+void SceneSource::stream_recording(std::uint64_t until,
+                                   const SourceBlock& block,
+                                   Progress& progress) const {
+  ReadOptions reading = reading_;
+  reading.hash = false;
+  if (until < info_.samples) {
+    // One sample more than is wanted, so that rounding cannot cut one off.
+    const double end_s =
+        reading.from_s.value_or(0) + static_cast<double>(until + 1) / info_.rate_hz;
+    reading.to_s = std::min(reading.to_s.value_or(end_s), end_s);
+  }
+  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  std::vector<std::span<const double>> out(columns_.size());
+  Forward forward([&](const SampleBlock& samples) {
+    if (samples.first >= until) return;
+    const auto rows =
+        static_cast<std::size_t>(std::min<std::uint64_t>(samples.rows, until - samples.first));
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::span<const double> column(samples.channels[columns_[k]], rows);
+      out[k] = k < scene_->sensors.size() ? path(k, column) : column;
+    }
+    block(samples.first, out);
+  });
+  read_log(scene_->recording, reading, forward, progress);
+}
+
+void SceneSource::stream_simulation(std::uint64_t until,
+                                    const SourceBlock& block,
+                                    Progress& progress) const {
+  ArraySimulator simulator(simulation_, 0);
+  std::vector<std::span<const double>> out(columns_.size());
+  for (std::uint64_t done = 0; done < std::min(until, info_.samples);) {
+    progress.update(static_cast<double>(done) / static_cast<double>(info_.samples), "simulating");
+    const auto made = simulator.next(
+        static_cast<std::size_t>(std::min<std::uint64_t>(kSimulatedRows, until - done)));
+    for (std::size_t k = 0; k < columns_.size(); ++k) out[k] = made[columns_[k]];
+    block(done, out);
+    done += out[0].size();
+  }
+}
+
+}  // namespace libchar

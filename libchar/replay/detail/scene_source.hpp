@@ -1,0 +1,61 @@
+#pragma once
+// The samples of a scene on their own grid of time, wherever they come from: a recording that is
+// read again for each pass, or a simulation that is made again. Memory does not grow with the
+// length.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/log/recording.hpp"
+#include "libchar/scene/scene.hpp"
+
+namespace libchar {
+
+struct SourceInfo {
+  double rate_hz = 0;
+  std::uint64_t samples = 0;
+  std::vector<std::string> units;            ///< of the sensors, as the channels say
+  std::vector<std::string> reference_units;  ///< of the reference channels in this source
+  std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
+};
+
+/// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
+/// stand in the same recording. Valid during the call.
+using SourceBlock =
+    std::function<void(std::uint64_t first, std::span<const std::span<const double>>)>;
+
+class SceneSource {
+ public:
+  /// Reads a recording once, for its length and rate. Throws Error(input) when a channel of the
+  /// scene is not in the recording or no rate is known.
+  SceneSource(const Scene& scene, Progress& progress);
+  const SourceInfo& info() const { return info_; }
+  /// Samples 0 to `until` (not included).
+  void stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
+  /// The reference channels that stand in this source, whole.
+  std::vector<std::vector<double>> reference_columns(Progress& progress) const;
+  /// The faults that are injected here or were simulated: what the scene knows.
+  const std::vector<SensorFault>& known_faults() const { return known_faults_; }
+
+ private:
+  void scan(Progress& progress);
+  void read_even(Progress& progress);
+  void stream_even(std::uint64_t until, const SourceBlock& block) const;
+  void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
+  void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
+
+  const Scene* scene_;
+  ArraySimulation simulation_;
+  ReadOptions reading_;
+  std::vector<std::string> wanted_;        // channels of the recording, sensors first
+  std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
+  std::vector<std::vector<double>> even_;  // a resampled recording, for each of `wanted_`
+  SourceInfo info_;
+  std::vector<SensorFault> known_faults_;
+};
+
+}  // namespace libchar

@@ -1,0 +1,78 @@
+// Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
+// scene's own figure, else from the sensor's model, else from the stretch at rest.
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/replay/detail/noise_level.hpp"
+#include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/rest.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kRestBlock = 4096;
+
+RestMeter at_rest(const Scene& scene, const Feed& feed, Progress& progress) {
+  RestMeter meter(scene.sensors.size());
+  const std::int64_t from = feed.instant_at(scene.rest->from_s),
+                     to = feed.instant_at(scene.rest->to_s);
+  if (to - from < 2)
+    throw Error({ErrorKind::input,
+                 "E0903",
+                 scene.file,
+                 "rest: the window holds fewer than two instants of the recording",
+                 "",
+                 ""});
+  feed.pass(
+      from,
+      to,
+      kRestBlock,
+      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
+        meter.push(samples);
+      },
+      progress);
+  return meter;
+}
+
+}  // namespace
+
+SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& progress) {
+  SensorKnowledge out;
+  const std::size_t n = scene.sensors.size();
+  out.offsets.assign(n, 0);
+  out.noise_variances.assign(n, kMissing);
+  out.noise_sources.assign(n, "");
+  if (scene.rest) {
+    const RestMeter rest = at_rest(scene, feed, progress);
+    out.offsets = rest.means();
+    out.noise_variances = rest.noise_variances();
+    out.noise_sources.assign(n, "rest");
+    // Gravity is no offset.
+    if (scene.tilt)
+      out.offsets[scene.tilt->accelerometer_x] = out.offsets[scene.tilt->accelerometer_z] = 0;
+  }
+  const FeedInfo& info = feed.info();
+  for (std::size_t i = 0; i < n; ++i) {
+    const SceneSensor& sensor = scene.sensors[i];
+    const double to_fused = feed.factor(i) * feed.factor(i) / static_cast<double>(info.averaged);
+    if (sensor.noise) {
+      out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
+      out.noise_sources[i] = "the scene";
+    } else if (sensor.model) {
+      const double scale = sensor.scale * sensor.scale;
+      const std::uint64_t oversampling = scene.simulate    ? scene.simulate->oversampling
+                                         : scene.simulated ? scene.simulated->oversampling
+                                                           : 1;
+      const double variance =
+          sample_noise_variance(*sensor.model, feed.source().info().rate_hz, oversampling);
+      if (variance > 0) {
+        out.noise_variances[i] = variance * scale * to_fused;
+        out.noise_sources[i] = "the models";
+      }
+    }
+    if (!(out.noise_variances[i] > 0)) out.noise_sources[i].clear();
+  }
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,200 @@
+#include "libchar/replay/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+/// Names of equals beyond so many are only counted.
+constexpr std::size_t kMostEquals = 4;
+
+std::string list_of(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  const std::vector<std::string> head(names.begin(), names.end() - 1);
+  return fmt::format("{} and {}", fmt::join(head, ", "), names.back());
+}
+
+bool learns(const AlgorithmResult& a) {
+  return a.card->needs.reference;
+}
+
+// The cheapest of those that cannot be told from the best.
+const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
+  const AlgorithmResult* out = nullptr;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && !a.bound && a.as_good_as_best && a.ns_per_sample > 0 &&
+        (out == nullptr || a.ns_per_sample < out->ns_per_sample))
+      out = &a;
+  return out;
+}
+
+std::string regret_for_people(const ReplayResult& r, double regret) {
+  const std::string optimum = "the optimum of " + optimum_of(r);
+  // The best of a few filters may be the optimum itself.
+  if (std::abs(regret) < 1e-9) return optimum;
+  if (regret > 1) return fmt::format("{} times {}", significant(1 + regret, 2), optimum);
+  return fmt::format("{} % {} {}",
+                     significant(std::abs(100 * regret), 2),
+                     regret >= 0 ? "above" : "below",
+                     optimum);
+}
+
+// "RMSE 0.0331 rad/s (95 %: 0.0329 to 0.0333), 0.1 % above the optimum of fixed weights"
+std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
+  std::string out = fmt::format("{} {}{}",
+                                r.has_reference ? "RMSE" : "leave-one-out RMS",
+                                r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "",
+                                people_error(a.rmse, r.inputs[0].unit));
+  if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
+    out += fmt::format(
+        " (95 %: {} to {})", significant(a.rmse_ci95.low, 4), significant(a.rmse_ci95.high, 4));
+  for (std::size_t j = 1; j < std::min(a.inputs.size(), r.inputs.size()); ++j)
+    out += fmt::format(
+        ", of {} {}", r.inputs[j].name, people_error(a.inputs[j].error.rmse, r.inputs[j].unit));
+  if (std::isfinite(a.regret)) out += ", " + regret_for_people(r, a.regret);
+  return out;
+}
+
+std::string costs_of(const AlgorithmResult& a) {
+  std::string out;
+  if (std::isfinite(a.ns_per_sample))
+    out += ", " + people_nanoseconds(a.ns_per_sample) + " a sample";
+  if (a.peak_bytes) out += ", " + people_bytes(a.peak_bytes) + " of memory";
+  return out;
+}
+
+std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
+  std::vector<std::string> equals;
+  for (const AlgorithmResult* a : ranked(r))
+    if (!a->bound && a->as_good_as_best && a->label != best.label)
+      equals.push_back(a->label + (learns(*a) ? " (learns from a reference)" : ""));
+  if (equals.empty()) {
+    const auto others =
+        std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+          return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
+        });
+    return others == 0 ? "No other method has a score."
+                       : "Every other method is worse, and the record is long enough to tell.";
+  }
+  const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
+  equals.resize(equals.size() - more);
+  if (more > 0) equals.push_back(fmt::format("{} more", more));
+  std::string out = fmt::format("This record does not tell {} from it.", list_of(equals));
+  const AlgorithmResult* cheap = cheapest_equal(r);
+  if (costs && cheap != nullptr && cheap->label != best.label &&
+      cheap->ns_per_sample < 0.8 * best.ns_per_sample)
+    out += fmt::format(" Of these {} is the cheapest, {} a sample.",
+                       cheap->label,
+                       people_nanoseconds(cheap->ns_per_sample));
+  return out;
+}
+
+// The best that needs no teaching, when the best of all does.
+std::string untaught_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
+  if (!learns(best)) return "";
+  for (const AlgorithmResult* a : ranked(r))
+    if (!a->bound && !learns(*a) && std::isfinite(a->rmse))
+      return fmt::format(
+          "{} learns from a reference; of the methods that need none {} is best: {}{}.",
+          best.label,
+          a->label,
+          figures(r, *a),
+          costs ? costs_of(*a) : "");
+  return best.label + " learns from a reference.";
+}
+
+std::string bounds_sentence(const ReplayResult& r) {
+  std::vector<std::string> bounds;
+  for (const AlgorithmResult* a : ranked(r))
+    if (a->bound && std::isfinite(a->rmse))
+      bounds.push_back(a->label + " " + people_error(a->rmse, r.inputs[0].unit));
+  return bounds.empty()
+             ? ""
+             : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) +
+                   ".";
+}
+
+}  // namespace
+
+std::string optimum_of(const ReplayResult& r) {
+  return r.scene.tilt ? "tilt filters" : "fixed weights";
+}
+
+std::string people_nanoseconds(double ns) {
+  if (!std::isfinite(ns)) return "–";
+  if (ns < 1e3) return significant(ns, 3) + " ns";
+  return ns < 1e6 ? significant(ns / 1e3, 3) + " µs" : significant(ns / 1e6, 3) + " ms";
+}
+
+std::string people_bytes(const std::optional<std::uint64_t>& bytes) {
+  if (!bytes) return "–";
+  const auto value = static_cast<double>(*bytes);
+  if (value < 1e4) return fmt::format("{} B", *bytes);
+  return value < 1e6 ? significant(value / 1e3, 3) + " kB" : significant(value / 1e6, 3) + " MB";
+}
+
+std::string people_error(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "–";
+  return significant(value, 4) + (unit.empty() ? "" : " " + unit);
+}
+
+std::vector<const AlgorithmResult*> ranked(const ReplayResult& result) {
+  std::vector<const AlgorithmResult*> out;
+  for (const AlgorithmResult& a : result.algorithms)
+    if (a.ran) out.push_back(&a);
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
+    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
+  });
+  return out;
+}
+
+std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
+  std::vector<SkippedAlgorithms> out;
+  for (const AlgorithmResult& a : result.algorithms) {
+    if (a.ran) continue;
+    const std::string front = std::string(a.card->name) + " ";
+    const std::string reason = a.why.starts_with(front) ? a.why.substr(front.size()) : a.why;
+    const auto known = std::find_if(
+        out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
+    if (known == out.end())
+      out.push_back({reason, {a.label}});
+    else
+      known->labels.push_back(a.label);
+  }
+  return out;
+}
+
+std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
+  if (!r.best)
+    return {
+        "No algorithm has a score: without a reference and with these sensors nothing can be "
+        "compared."};
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  std::vector<std::string> out = {
+      fmt::format("Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
+  if (best.availability < 0.9995)
+    out[0] += fmt::format(" It has an estimate at {} % of the instants.",
+                          significant(100 * best.availability, 3));
+  const auto add = [&](const std::string& sentence) {
+    if (!sentence.empty()) out.push_back(sentence);
+  };
+  add(untaught_sentence(r, best, costs));
+  add(equals_sentence(r, best, costs));
+  if (r.has_reference)
+    add(bounds_sentence(r));
+  else
+    add("Without a reference nobody sees the errors that all sensors share.");
+  return out;
+}
+
+std::string replay_verdict(const ReplayResult& r, bool costs) {
+  return fmt::format("{}", fmt::join(verdict_sentences(r, costs), " "));
+}
+
+}  // namespace libchar

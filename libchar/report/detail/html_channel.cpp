@@ -1,0 +1,369 @@
+// One channel's section of report.html.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/verification.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/export/consumers.hpp"
+#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/escape.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kMostRows = 200;
+
+std::string status_chip(Status status) {
+  switch (status) {
+    case Status::detected:
+      return "<span class=\"chip detected\">detected</span>";
+    case Status::not_detected:
+      return "<span class=\"chip absent\">not detected</span>";
+    case Status::undetermined:
+      return "<span class=\"chip unsure\">undetermined</span>";
+    case Status::given:
+      return "<span class=\"chip\">given</span>";
+    case Status::not_fitted:
+      return "<span class=\"chip\">not fitted</span>";
+  }
+  return "";
+}
+
+std::string in_field_units(const Coefficient& c, std::size_t term, const std::string& unit) {
+  std::string out;
+  if (!c.value && !c.upper95) return out;
+  for (const HabitualValue& habit : habitual_units(kTermNames[term].key, unit)) {
+    out += fmt::format("<div><b>{}</b> {} <span class=\"dim\">{}</span></div>",
+                       html_text(people_value(c, habit.factor)),
+                       html_text(habit.symbol),
+                       html_text(habit.name));
+  }
+  return out;
+}
+
+std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::string& unit) {
+  const Coefficient& c = fit.term[t];
+  const TermName& name = kTermNames[t];
+  const std::string interval =
+      c.value ? people_coefficient(c).substr(people_coefficient(c).find('[')) : "–";
+  const std::string known = c.value ? "±" + people(100 * c.relative_sd, 2) + " %" : "–";
+  return fmt::format(
+      "<tr><th scope=\"row\">{} <b>{}</b><span class=\"dim\"> IEEE 952: {}</span></th><td "
+      "class=\"n\"><b>{}</b></td><td class=\"n\">{}</td>"
+      "<td class=\"u\">{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td "
+      "class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+      term_title(static_cast<Term>(t)),
+      name.letter,
+      name.ieee,
+      html_text(people_value(c)),
+      html_text(interval),
+      html_text(term_unit(name.key, unit)),
+      in_field_units(c, t, unit),
+      status_chip(c.status),
+      known,
+      c.bound ? "±" + people(100 * *c.bound, 2) + " %" : "–",
+      c.seconds_for_10_percent ? html_text(people_seconds(*c.seconds_for_10_percent)) : "–");
+}
+
+std::string derived_rows(const ChannelResult& c, double rate_hz) {
+  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  std::string out;
+  const Coefficient& white = (*c.fit)[Term::white];
+  const auto row = [&](const std::string& name, const std::string& value, const std::string& what) {
+    out += fmt::format(
+        "<tr class=\"derived\"><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td></td><td "
+        "class=\"u\">{}</td><td colspan=\"5\">{}</td></tr>\n",
+        html_text(name),
+        html_text(value),
+        html_text(unit),
+        html_text(what));
+  };
+  if (white.value) {
+    row("Noise of a single sample",
+        people_value(white, std::sqrt(rate_hz)),
+        fmt::format("Q·√f: what white noise alone gives at f = {} Hz; the samples of this "
+                    "recording have a standard deviation of {} {}",
+                    significant(rate_hz, 6),
+                    people(c.quality.standard_deviation, 4),
+                    unit));
+  }
+  if (const AllanPoint* lowest = allan_minimum(c.allan)) {
+    row("Minimum of the Allan curve",
+        people(lowest->deviation, 4),
+        fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
+                    people_seconds(lowest->tau_s)));
+  }
+  if (c.fit->bandwidth_hz) {
+    const auto& ci = c.fit->bandwidth_ci95;
+    out += fmt::format(
+        "<tr class=\"derived\"><th scope=\"row\">Bandwidth</th><td class=\"n\"><b>{}</b></td><td "
+        "class=\"n\">{}</td><td>Hz</td>"
+        "<td colspan=\"5\">corner of the first-order low-pass that the fit needed</td></tr>\n",
+        people(*c.fit->bandwidth_hz, 4),
+        ci ? fmt::format("[{}, {}]", people(ci->low, 4), people(ci->high, 4)) : "");
+  }
+  return out;
+}
+
+std::string numbers_table(const ChannelResult& c, double rate_hz) {
+  std::string out =
+      "<h3>Noise coefficients</h3>\n<div class=\"wide\"><table class=\"numbers\">\n<thead><tr><th "
+      "scope=\"col\">Term</th><th scope=\"col\">Value</th>"
+      "<th scope=\"col\">95 % interval</th><th scope=\"col\">Unit</th><th scope=\"col\">As the "
+      "field says it</th><th scope=\"col\">Status</th>"
+      "<th scope=\"col\" title=\"one standard deviation\">Known to</th><th scope=\"col\" "
+      "title=\"Cramér–Rao bound: one standard deviation, relative\">Best possible</th>"
+      "<th scope=\"col\" title=\"record length at which the bound is 10 %\">Record for 10 "
+      "%</th></tr></thead>\n<tbody>\n";
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (c.fit->term[t].status != Status::not_fitted)
+      out += coefficient_row(*c.fit, t, c.channel.unit);
+  }
+  out += derived_rows(c, rate_hz) + "</tbody></table></div>\n";
+  return out +
+         "<p class=\"note\">Q and K are roots of two-sided densities; a data sheet's noise density "
+         "is one-sided, √2·Q. "
+         "<i>Best possible</i> is the Cramér–Rao bound for this record length.</p>\n";
+}
+
+std::string second_opinion_table(const NoiseFit& fit, const std::string& unit) {
+  const SecondOpinion& opinion = *fit.second_opinion;
+  std::string out = "<div class=\"wide\"><table>\n" +
+                    table_head({"Term", "Spectral fit", "Allan fit", "± sd", "Unit", "Apart by"});
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (!opinion.value[t]) continue;
+    const Coefficient& c = fit.term[t];
+    const double sd = c.value ? std::hypot(opinion.sd[t], *c.value * c.relative_sd) : 0;
+    out += table_row(
+        {term_title(static_cast<Term>(t)),
+         people_value(c),
+         people(*opinion.value[t]),
+         people(opinion.sd[t], 2),
+         term_unit(kTermNames[t].key, unit),
+         c.value && sd > 0 ? people((*opinion.value[t] - *c.value) / sd, 2) + " sd" : "–"});
+  }
+  out += "</tbody></table></div>\n";
+  // The badge above says that much already.
+  return opinion.sentence == "agrees" ? out : out + "<p>" + html_text(opinion.sentence) + "</p>\n";
+}
+
+std::string trust(const ChannelResult& c, std::size_t index) {
+  const NoiseFit& fit = *c.fit;
+  std::string out = "<div class=\"halves\">\n<div>\n";
+  if (!fit.residuals.empty()) {
+    out +=
+        plot_figure("residuals",
+                    index,
+                    {"Residuals of the fit",
+                     "residual",
+                     "sd",
+                     "Each point: measured against model in one bin, as a standard normal deviate. "
+                     "They should scatter evenly, 95 % within "
+                     "the grey band; triangles on the edge lie beyond it."},
+                    c.channel.name);
+  }
+  out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" +
+         html_text(goodness_sentence(fit.goodness)) + "</p>\n";
+  out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " +
+         std::to_string(fit.iterations) +
+         (fit.converged ? " iterations, converged.</p>\n"
+                        : " iterations, <b>not converged</b>.</p>\n");
+  out += bullet_list(fit.sentences, "plain");
+  if (!fit.remedies.empty()) {
+    out += "<h4>What was done to the data before the fit</h4>\n<table>\n" +
+           table_head({"Remedy", "Because", "What was done", "Count"});
+    for (const Remedy& r : fit.remedies)
+      out += table_row({r.kind, r.alarm, r.action, people_count(r.count)});
+    out += "</tbody></table>\n";
+  }
+  if (fit.second_opinion) {
+    out += std::string("<h4>Second opinion: fit of the Allan curve ") +
+           (fit.second_opinion->agrees ? "<span class=\"chip detected\">agrees</span>"
+                                       : "<span class=\"chip alarm\">disagrees</span>") +
+           "</h4>\n" + second_opinion_table(fit, c.channel.unit);
+  }
+  return out + "</div>\n</div>\n";
+}
+
+std::string verification_section(const ChannelResult& c) {
+  const ChannelVerification& v = *c.verification;
+  std::string out = std::string("<h3>Simulated from the model ") +
+                    (v.agrees ? "<span class=\"chip detected\">agrees</span>"
+                              : "<span class=\"chip alarm\">disagrees</span>") +
+                    "</h3>\n" + bullet_list(v.sentences, "plain") +
+                    "<div class=\"wide\"><table>\n" +
+                    table_head({"Term", "Model", "Fit of the simulated record", "Unit", ""});
+  for (const TermVerification& t : v.terms) {
+    out += table_row({term_title(t.term),
+                      people_value(t.model),
+                      people_coefficient(t.simulated),
+                      term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, c.channel.unit),
+                      t.agrees ? "agrees" : "disagrees"});
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string lines_table(const ChannelResult& c) {
+  if (c.lines.empty()) return "";
+  std::string out = "<h4>Spectral lines</h4>\n<table>\n" +
+                    table_head({"Frequency", "Amplitude (peak)", "Above the floor", "Width"});
+  for (const SpectralLine& line : c.lines) {
+    out += table_row({people(line.frequency_hz, 5) + " Hz",
+                      people(line.amplitude, 3) + " " + c.channel.unit,
+                      "×" + people(line.excess, 3),
+                      people(line.width_hz, 2) + " Hz"});
+  }
+  return out + "</tbody></table>\n";
+}
+
+std::string quality(const ChannelResult& c) {
+  const ChannelQuality& q = c.quality;
+  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  const double all = static_cast<double>(q.samples + q.missing);
+  std::string out = "<h3>Data quality</h3>\n<table class=\"facts\"><tbody>\n";
+  out += table_row({"Samples", people_count(q.samples)});
+  out += table_row({"Missing",
+                    q.missing == 0
+                        ? "none"
+                        : fmt::format("{} ({} %)",
+                                      people_count(q.missing),
+                                      people(100 * static_cast<double>(q.missing) / all, 2))});
+  out += table_row({"Mean", people(q.mean, 6) + " " + unit});
+  const bool constant = q.samples > 0 && q.minimum == q.maximum;
+  out += table_row(
+      {"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
+  if (q.samples > 0)
+    out += table_row(
+        {"Range", fmt::format("{} … {} {}", people(q.minimum, 5), people(q.maximum, 5), unit)});
+  out +=
+      table_row({"Resolution (LSB)",
+                 q.resolution ? people(*q.resolution, 4) + " " + unit : "no grid of values found"});
+  out += table_row({"Distinct values",
+                    q.distinct_values >= 4096 ? "4096 or more" : people_count(q.distinct_values)});
+  out += table_row({"Saturated samples", q.saturated == 0 ? "none" : people_count(q.saturated)});
+  out +=
+      table_row({"Longest run of one value",
+                 people_count(q.longest_stuck) + (q.longest_stuck == 1 ? " sample" : " samples")});
+  if (!constant)
+    out += table_row({"Kurtosis of differences",
+                      people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
+  if (q.float32 && !constant)
+    out += table_row(
+        {"Number format", "32-bit floats, in steps of " + people(q.float32_step, 2) + " " + unit});
+  out += "</tbody></table>\n" + lines_table(c);
+  return out + bullet_list(q.suggestions, "plain");
+}
+
+std::string consumers(const ChannelResult& c, double rate_hz) {
+  const auto rows = c.fit && rate_hz > 0 ? consumer_rows(c.fit->term, c.channel.unit, rate_hz)
+                                         : std::vector<ConsumerRow>{};
+  if (rows.empty()) return "";
+  std::string out = "<h3>Which number goes where</h3>\n<div class=\"wide\"><table>\n" +
+                    table_head({"For", "Name there", "Formula", "Value", "Unit"});
+  const std::string* before = nullptr;
+  for (const ConsumerRow& row : rows) {
+    const bool repeated = before != nullptr && *before == row.consumer;
+    out += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"u\">{}</td><td class=\"n\">{}</td><td "
+        "class=\"u\">{}</td></tr>\n",
+        repeated ? "" : html_text(row.consumer),
+        html_text(row.key),
+        html_text(row.formula),
+        html_text(row.value),
+        html_text(row.unit));
+    before = &row.consumer;
+  }
+  return out +
+         "</tbody></table></div>\n<p class=\"note\">f = " + html_text(significant(rate_hz, 6)) +
+         " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.</p>\n";
+}
+
+std::string curve_points(const ChannelResult& c) {
+  const auto& points = c.allan.points;
+  if (points.empty()) return "";
+  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  const std::size_t stride = (points.size() + kMostRows - 1) / kMostRows;
+  std::string out = fmt::format(
+                        "<details><summary>Points of the {} curve ({})</summary>\n<div "
+                        "class=\"wide\"><table class=\"points\">\n",
+                        name_of(c.allan.type),
+                        points.size()) +
+                    table_head({"τ, s",
+                                "Deviation, " + unit,
+                                "68 % interval",
+                                "95 % interval",
+                                "Degrees of freedom",
+                                "Terms",
+                                ""});
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const AllanPoint& p = points[i];
+    const auto interval = [&](const Interval& ci) {
+      return p.edf > 0 ? people(ci.low) + " … " + people(ci.high) : std::string("–");
+    };
+    out += table_row({people(p.tau_s, 6),
+                      people(p.deviation, 5),
+                      interval(p.ci68),
+                      interval(p.ci95),
+                      p.edf > 0 ? people(p.edf, 4) : "–",
+                      people_count(p.terms),
+                      p.reliable ? "" : "unreliable"});
+  }
+  out += "</tbody></table></div>\n";
+  if (stride > 1)
+    out += fmt::format(
+        "<p class=\"note\">Every {}th point; all of them are in curves.csv and report.json.</p>\n",
+        stride);
+  out += bullet_list(c.allan.notes, "plain") + bullet_list(c.spectrum.notes, "plain");
+  return out + "</details>\n";
+}
+
+}  // namespace
+
+std::string table_row(const std::vector<std::string>& cells) {
+  std::string out = "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    out += i == 0 ? "<th scope=\"row\">" + html_text(cells[i]) + "</th>"
+                  : "<td>" + html_text(cells[i]) + "</td>";
+  }
+  return out + "</tr>\n";
+}
+
+std::string table_head(const std::vector<std::string>& cells) {
+  std::string out = "<thead><tr>";
+  for (const std::string& cell : cells) out += "<th scope=\"col\">" + html_text(cell) + "</th>";
+  return out + "</tr></thead>\n<tbody>\n";
+}
+
+std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
+  if (items.empty()) return "";
+  std::string out = fmt::format("<ul class=\"{}\">\n", css_class);
+  for (const std::string& item : items) out += "<li>" + html_text(item) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+std::string channel_section(const ChannelResult& c, const LogInfo& log, std::size_t index) {
+  const double rate_hz = log.time.rate_hz;
+  std::string out = fmt::format(
+      "<section class=\"channel\" id=\"channel-{}\">\n<h2>{}{}</h2>\n",
+      index,
+      html_text(c.channel.name),
+      c.channel.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
+                             : " <span class=\"unit\">" + html_text(c.channel.unit) + "</span>");
+  out += bullet_list(findings(c), "findings") + bullet_list(cautions(c), "cautions") +
+         curve_plots(c, index);
+  if (c.fit) out += numbers_table(c, rate_hz) + trust(c, index);
+  if (c.verification) out += verification_section(c);
+  const std::string where = consumers(c, rate_hz);
+  out += "<div class=\"halves\">\n<div>\n" + quality(c) + "</div>\n<div>\n" + where +
+         "</div>\n</div>\n";
+  return out + curve_points(c) + "</section>\n";
+}
+
+}  // namespace libchar

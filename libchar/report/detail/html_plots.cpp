@@ -1,0 +1,147 @@
+// The figures of one channel's section: titles, axes, captions that say what is drawn. page.js
+// draws into them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/escape.hpp"
+
+namespace libchar {
+namespace {
+
+std::string deviation_title(DeviationType type) {
+  switch (type) {
+    case DeviationType::adev:
+      return "Allan deviation";
+    case DeviationType::oadev:
+      return "Overlapping Allan deviation";
+    case DeviationType::mdev:
+      return "Modified Allan deviation";
+    case DeviationType::tdev:
+      return "Time deviation";
+    case DeviationType::hdev:
+      return "Hadamard deviation";
+    case DeviationType::ohdev:
+      return "Overlapping Hadamard deviation";
+    case DeviationType::totdev:
+      return "Total deviation";
+  }
+  return "";
+}
+
+std::string spectrum_title(const Spectrum& s) {
+  const char* sides = s.sides == Sides::one ? "One-sided" : "Two-sided";
+  switch (s.scaling) {
+    case Scaling::psd:
+      return fmt::format("{} power spectral density", sides);
+    case Scaling::ps:
+      return fmt::format("{} power spectrum", sides);
+    case Scaling::lsd:
+      return fmt::format("{} linear spectral density", sides);
+    case Scaling::ls:
+      return fmt::format("{} linear spectrum", sides);
+  }
+  return sides;
+}
+
+std::string spectrum_axis(const Spectrum& s) {
+  std::string scaling(key_of(s.scaling));
+  std::transform(scaling.begin(), scaling.end(), scaling.begin(), [](char c) {
+    return static_cast<char>(c - 'a' + 'A');
+  });
+  return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
+}
+
+std::string window_title(Window window) {
+  switch (window) {
+    case Window::hann:
+      return "Hann window";
+    case Window::rectangular:
+      return "no window";
+    case Window::blackman_harris:
+      return "Blackman–Harris window";
+    case Window::flat_top:
+      return "flat-top window";
+    case Window::hann_nonzero:
+      return "Hann window without its zeros";
+  }
+  return "";
+}
+
+// What is drawn, in full: two programs agree only when these do.
+std::string spectrum_caption(const Spectrum& s) {
+  return fmt::format(
+      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width "
+      "on the "
+      "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean "
+      "was removed. "
+      "Line: fitted model. Dashed: its terms.",
+      people_count(s.segments),
+      s.segments == 1 ? "" : "s",
+      people_count(s.segment),
+      people_seconds(static_cast<double>(s.segment) / s.rate_hz),
+      window_title(s.window));
+}
+
+}  // namespace
+
+std::string plot_figure(const char* kind,
+                        std::size_t index,
+                        const PlotText& text,
+                        const std::string& channel) {
+  return fmt::format(
+      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-axis=\"{2}\" "
+      "data-unit=\"{3}\">\n<h3>{4}</h3>\n"
+      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{5} of "
+      "{6}\"></canvas></div>\n<figcaption>{7}</figcaption>\n</figure>\n",
+      kind,
+      index,
+      html_attribute(text.axis),
+      html_attribute(text.unit),
+      html_text(text.title),
+      html_attribute(text.title),
+      html_attribute(channel),
+      html_text(text.caption));
+}
+
+std::string curve_plots(const ChannelResult& c, std::size_t index) {
+  const std::string& name = c.channel.name;
+  std::string out = "<div class=\"plots\">\n";
+  // A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
+  const auto& points = c.allan.points;
+  if (std::any_of(
+          points.begin(), points.end(), [](const AllanPoint& p) { return p.deviation > 0; })) {
+    const std::string title = deviation_title(c.allan.type);
+    out += plot_figure(
+        "allan",
+        index,
+        {title,
+         std::string(name_of(c.allan.type)),
+         c.channel.unit.empty() ? "U" : c.channel.unit,
+         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer "
+         "than 5 degrees of freedom make them "
+         "unreliable. Line: fitted model. Dashed: its terms; marked: where each "
+         "coefficient is read off."},
+        name);
+  }
+  const Spectrum& s = c.spectrum;
+  bool any = false;
+  for (std::size_t i = 0; i < s.value.size(); ++i)
+    any = any || (s.frequency_hz[i] > 0 && s.value[i] > 0);
+  if (any) {
+    out += plot_figure("spectrum",
+                       index,
+                       {spectrum_title(s),
+                        spectrum_axis(s),
+                        spectrum_unit(s.scaling, c.channel.unit),
+                        spectrum_caption(s)},
+                       name);
+  }
+  return out + "</div>\n";
+}
+
+}  // namespace libchar

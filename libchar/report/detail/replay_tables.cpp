@@ -1,0 +1,359 @@
+#include "libchar/report/detail/replay_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/escape.hpp"
+#include "libchar/report/replay_words.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kMostFaultRows = 60;
+
+/// From here on a regret is easier to read as a multiple of the optimum.
+constexpr double kLargeRegret = 1;
+
+// A cell with the number that the column is sorted by; empty: none.
+std::string cell(const std::string& shown, double value, const std::string& below = "") {
+  return fmt::format("<td class=\"n\" data-value=\"{}\">{}{}</td>",
+                     std::isfinite(value) ? shortest(value) : "",
+                     html_text(shown),
+                     below.empty() ? "" : "<span class=\"ci\">" + html_text(below) + "</span>");
+}
+
+std::string name_cell(const ReplayResult& r, std::size_t index) {
+  const AlgorithmResult& a = r.algorithms[index];
+  const ParetoFront front = pareto_front(r);
+  std::string chips;
+  const auto chip = [&](const char* css, const char* text) {
+    chips += fmt::format(" <span class=\"chip {}\">{}</span>", css, text);
+  };
+  if (r.best == index) chip("detected", "best");
+  if (a.bound) chip("", "bound");
+  if (!a.bound && r.best != index && a.as_good_as_best)
+    chip("unsure", "not resolved from the best");
+  if (!a.bound && a.card != nullptr && a.card->needs.reference) chip("", "learns from a reference");
+  if (front.time[index] || front.memory[index])
+    chip("",
+         front.time[index] && front.memory[index] ? "fronts: time, memory"
+         : front.time[index]                      ? "front: time"
+                                                  : "front: memory");
+  const std::string settings = settings_in_words(a.settings);
+  return "<th scope=\"row\">" + html_text(a.label) + chips +
+         (a.card != nullptr
+              ? "<span class=\"ci dim\">" + html_text(std::string(a.card->title)) + "</span>"
+              : "") +
+         (settings.empty() ? "" : "<span class=\"ci dim\">" + html_text(settings) + "</span>") +
+         "</th>";
+}
+
+std::string regret_in_words(double regret) {
+  return regret > kLargeRegret ? people(1 + regret, 3) + " × optimum" : people_percent(regret);
+}
+
+std::string plain_number(double value) {
+  return std::isfinite(value) ? significant(value, 4) : "–";
+}
+
+std::string with_reference_cells(const AlgorithmResult& a) {
+  const ErrorScore none;
+  const bool any = !a.inputs.empty();
+  const ErrorScore& e = any ? a.inputs[0].error : none;
+  const double nan = std::nan("");
+  const std::string ratio = a.ratio_to_best && std::isfinite(a.ratio_to_best->low)
+                                ? "× best: " + people_interval(*a.ratio_to_best)
+                                : "";
+  std::string out = cell(regret_in_words(a.regret), a.regret, ratio);
+  out += cell(people(any ? e.bias : nan, 3),
+              any ? std::fabs(e.bias) : nan,
+              any && std::isfinite(e.bias_ci95.low) ? people_interval(e.bias_ci95, 2) : "");
+  out += cell(people(any ? e.maximum : nan, 3), any ? e.maximum : nan);
+  out += cell(people_seconds(any ? e.converged_s : nan), any ? e.converged_s : nan);
+  return out;
+}
+
+std::string ranking_row(const ReplayResult& r, std::size_t index) {
+  const AlgorithmResult& a = r.algorithms[index];
+  std::string out = fmt::format("<tr class=\"{}\">",
+                                r.best == index ? "best"
+                                : a.bound       ? "bound"
+                                                : "");
+  out += name_cell(r, index);
+  out += cell(
+      people(a.rmse), a.rmse, std::isfinite(a.rmse_ci95.low) ? people_interval(a.rmse_ci95) : "");
+  if (r.has_reference)
+    out += with_reference_cells(a);
+  else
+    out += cell(a.blind ? people(a.blind->split_rms) : "–",
+                a.blind ? a.blind->split_rms : std::nan(""));
+  out += cell(people_percent(a.availability, 1), a.availability);
+  out += cell(people(a.ns_per_sample, 3), a.ns_per_sample);
+  const double bytes = a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::nan("");
+  out += cell(people_bytes(a.peak_bytes), bytes);
+  out += cell(people_seconds(a.learning_s), a.learning_s);
+  return out + "</tr>\n";
+}
+
+std::string joined(const std::vector<std::string>& all) {
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
+}  // namespace
+
+std::string ranking_table(const ReplayResult& r) {
+  const std::string unit = score_unit(r);
+  std::vector<std::string> head = {"Algorithm", score_name(r) + (unit.empty() ? "" : ", " + unit)};
+  if (r.has_reference)
+    for (const char* name : {"Regret", "Bias", "Maximum", "Converged"}) head.emplace_back(name);
+  else
+    head.emplace_back("Split-array RMS");
+  for (const char* name : {"Available", "ns a sample", "Memory", "Learning"})
+    head.emplace_back(name);
+  std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + table_head(head);
+  std::string bounds;
+  for (const AlgorithmResult* a : ranked(r))
+    (a->bound ? bounds : out) += ranking_row(r, index_of(r, *a));
+  // Their own body, so that sorting keeps them apart from what one could use.
+  if (!bounds.empty())
+    out +=
+        fmt::format(
+            "</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">Bounds: they look at the "
+            "reference of the run itself, and nobody could use them</th></tr>\n",
+            head.size()) +
+        bounds;
+  return out + "</tbody></table></div>\n";
+}
+
+std::string needs_table(const ReplayResult& r) {
+  std::string out = "<div class=\"wide\"><table>\n" + table_head({"Algorithm",
+                                                                  "What it is",
+                                                                  "Needs",
+                                                                  "A step costs",
+                                                                  "A learning instant costs",
+                                                                  "Source",
+                                                                  "Here"});
+  for (const AlgorithmResult& a : r.algorithms) {
+    if (a.card == nullptr) continue;
+    const auto needs = needs_in_words(*a.card);
+    out += table_row(
+        {a.label,
+         std::string(a.card->title),
+         needs.empty() ? "nothing but the samples" : joined(needs),
+         std::string(a.card->complexity),
+         a.card->learning_complexity.empty() ? "–" : std::string(a.card->learning_complexity),
+         std::string(a.card->source),
+         a.ran ? "ran" : "skipped: " + a.why});
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+namespace {
+
+std::string input_row(const ReplayResult& r, const AlgorithmResult& a, std::size_t j) {
+  const InputScore& input = a.inputs[j];
+  const ErrorScore& e = input.error;
+  const auto interval = [](const Interval& i) {
+    return std::isfinite(i.low) ? people_interval(i, 3) : "";
+  };
+  return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>",
+                     r.best == index_of(r, a) ? "best"
+                     : a.bound                ? "bound"
+                                              : "",
+                     html_text(a.label)) +
+         cell(people(e.rmse), e.rmse, interval(e.rmse_ci95)) +
+         cell(regret_in_words(input.optimum_ratio - 1), input.optimum_ratio) +
+         cell(people(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
+         cell(people(e.maximum, 3), e.maximum) +
+         cell(people_seconds(e.converged_s), e.converged_s) +
+         cell(people_percent(e.availability, 1), e.availability) + "</tr>\n";
+}
+
+std::string input_table(const ReplayResult& r, std::size_t j) {
+  const InputResult& input = r.inputs[j];
+  const std::string unit = usual_unit(input.unit);
+  std::string out = "<h3>Input " + html_text(input.name) + "</h3>\n<p class=\"note\">Optimum of " +
+                    optimum_of(r) + ": RMSE " + html_text(with_unit(input.optimum_rmse, 4, unit)) +
+                    "</p>\n<div class=\"wide\"><table class=\"ranking\">\n" +
+                    table_head({"Algorithm",
+                                "RMSE" + (unit.empty() ? "" : ", " + unit),
+                                "Above the optimum",
+                                "Bias",
+                                "Maximum",
+                                "Converged",
+                                "Available"});
+  std::vector<const AlgorithmResult*> scored = ranked(r);
+  std::erase_if(scored, [&](const AlgorithmResult* a) { return j >= a->inputs.size(); });
+  std::stable_sort(scored.begin(), scored.end(), [&](const auto* a, const auto* b) {
+    const double x = a->inputs[j].error.rmse, y = b->inputs[j].error.rmse;
+    return std::isfinite(x) && (!std::isfinite(y) || x < y);
+  });
+  for (const AlgorithmResult* a : scored) out += input_row(r, *a, j);
+  return out + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string inputs_table(const ReplayResult& r) {
+  if (r.inputs.size() < 2 || !r.has_reference) return "";
+  std::string out;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) out += input_table(r, j);
+  return out;
+}
+
+std::string sensors_table(const ReplayResult& r) {
+  std::vector<std::string> head = {"Sensor"};
+  if (r.has_reference)
+    for (const char* name : {"RMSE", "95 %", "Bias", "Maximum"}) head.emplace_back(name);
+  for (const char* name :
+       {"Unit", "Noise given", "From", "Offset taken off", "Missing", "Row of H", ""})
+    head.emplace_back(name);
+  std::string out = "<div class=\"wide\"><table>\n" + table_head(head);
+  for (const SensorResult& s : r.sensors) {
+    std::vector<std::string> row = {s.name};
+    if (r.has_reference) {
+      row.push_back(people(s.error.rmse));
+      row.push_back(std::isfinite(s.error.rmse) ? people_interval(s.error.rmse_ci95) : "–");
+      row.push_back(people(s.error.bias, 3));
+      row.push_back(people(s.error.maximum, 3));
+    }
+    row.push_back(usual_unit(s.unit));
+    row.push_back(s.noise_variance ? people(std::sqrt(*s.noise_variance), 4) : "not known");
+    row.push_back(s.noise_source);
+    row.push_back(s.offset == 0 ? "–" : people(s.offset, 4));
+    row.push_back(s.missing > 0 ? people_percent(s.missing) : "none");
+    std::string h;
+    for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
+    row.push_back(r.scene.tilt ? "–" : h);
+    row.push_back(s.constant ? "never changed" : "");
+    out += table_row(row);
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string blind_table(const ReplayResult& r) {
+  if (r.has_reference) return "";
+  std::vector<std::string> head = {"Leave-one-out RMS of"};
+  for (const SensorResult& s : r.sensors) head.push_back(s.name);
+  std::string out =
+      "<h3>Each sensor against the others</h3>\n<div class=\"wide\"><table>\n" + table_head(head);
+  for (const AlgorithmResult* one : ranked(r)) {
+    const AlgorithmResult& a = *one;
+    if (!a.blind) continue;
+    std::vector<std::string> row = {a.label};
+    for (const double v : a.blind->leave_one_out) row.push_back(people(v));
+    row.resize(head.size(), "–");
+    out += table_row(row);
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string weights_table(const ReplayResult& r) {
+  std::vector<std::string> head = {"At the end of the run"};
+  for (const SensorResult& s : r.sensors) head.push_back(s.name);
+  head.emplace_back("Distance");
+  std::string rows;
+  for (const AlgorithmResult* one : ranked(r)) {
+    const AlgorithmResult& a = *one;
+    if (a.weights)
+      for (Eigen::Index j = 0; j < a.weights->cols(); ++j) {
+        const std::string of =
+            a.weights->cols() > 1 && j < static_cast<Eigen::Index>(r.inputs.size())
+                ? " of " + r.inputs[static_cast<std::size_t>(j)].name
+                : "";
+        std::vector<std::string> row = {a.label + ": weights" + of};
+        for (Eigen::Index k = 0; k < a.weights->rows(); ++k)
+          row.push_back(people((*a.weights)(k, j), 4));
+        row.resize(head.size() - 1, "–");
+        row.push_back(j == 0 && a.weight_distance > 0 ? people(a.weight_distance, 3) : "–");
+        rows += table_row(row);
+      }
+    if (a.variances) {
+      std::vector<std::string> row = {a.label + ": standard deviations"};
+      for (const double v : *a.variances) row.push_back(v >= 0 ? people(std::sqrt(v), 4) : "–");
+      row.resize(head.size() - 1, "–");
+      row.push_back(a.variance_error > 0 ? people(a.variance_error, 3) : "–");
+      rows += table_row(row);
+    }
+  }
+  if (rows.empty()) return "";
+  return "<details><summary>Weights and noise levels at the end</summary>\n<div "
+         "class=\"wide\"><table>\n" +
+         table_head(head) + rows +
+         "</tbody></table></div>\n<p class=\"note\">Distance: of weights, root mean square over "
+         "the run of "
+         "their Euclidean distance from the optimal fixed weights; of standard deviations, root "
+         "mean square "
+         "of ln(variance / the sensor's mean square error).</p>\n</details>\n";
+}
+
+namespace {
+
+std::string answer_in_words(const AlgorithmResult& a, std::size_t fault) {
+  for (const FaultAnswer& answer : a.answers)
+    if (answer.fault == fault)
+      return !answer.found_s
+                 ? "missed"
+                 : "found after " + people_seconds(*answer.found_s) +
+                       (answer.returned_s ? ", used again " + people_seconds(*answer.returned_s) +
+                                                " after its end"
+                                          : "");
+  return "–";
+}
+
+// How much was raised where no fault is known: a false alarm, as far as the scene knows.
+std::size_t alarms_without_fault(const ReplayResult& r, const AlgorithmResult& a) {
+  return static_cast<std::size_t>(
+      std::count_if(a.faults.begin(), a.faults.end(), [&](const FoundFault& found) {
+        return std::none_of(r.faults.begin(), r.faults.end(), [&](const SensorFault& known) {
+          return known.sensor == found.sensor && found.from_s < known.to_s &&
+                 found.to_s.value_or(std::numeric_limits<double>::infinity()) > known.from_s;
+        });
+      }));
+}
+
+}  // namespace
+
+std::string faults_table(const ReplayResult& r) {
+  std::vector<const AlgorithmResult*> watchers;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && a.watches_faults) watchers.push_back(&a);
+  if (watchers.empty() && r.faults.empty()) return "";
+  std::vector<std::string> head = {"Known fault", "Sensor", "From", "To"};
+  for (const AlgorithmResult* a : watchers) head.push_back(a->label);
+  std::string out = "<div class=\"wide\"><table>\n" + table_head(head);
+  for (std::size_t f = 0; f < std::min(r.faults.size(), kMostFaultRows); ++f) {
+    const SensorFault& fault = r.faults[f];
+    std::vector<std::string> row = {
+        std::string(name_of(fault.kind)) +
+            (fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout
+                 ? ""
+                 : " " + plain_number(fault.value)),
+        fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
+        people_instant(fault.from_s),
+        std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
+    for (const AlgorithmResult* a : watchers) row.push_back(answer_in_words(*a, f));
+    out += table_row(row);
+  }
+  std::vector<std::string> row = {"alarms where no fault is known", "", "", ""};
+  for (const AlgorithmResult* a : watchers)
+    row.push_back(people_count(alarms_without_fault(r, *a)) +
+                  (a->faults_not_kept > 0
+                       ? " (" + people_count(a->faults_not_kept) + " events not kept)"
+                       : ""));
+  if (!watchers.empty()) out += table_row(row);
+  return out + "</tbody></table></div>\n" +
+         (r.faults.size() > kMostFaultRows
+              ? fmt::format("<p class=\"note\">The first {} of {}; all stand in report.json.</p>\n",
+                            kMostFaultRows,
+                            r.faults.size())
+              : "");
+}
+
+}  // namespace libchar

@@ -1,0 +1,222 @@
+// The blocks `recording` and `simulate` of a scene file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/scene_signal.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kMostSamples = 1'000'000'000'000'000;  // every index exact in a double
+
+std::uint64_t samples_of(const MapReader& at, double rate_hz) {
+  if (at.has("samples") == at.has("duration_s"))
+    refuse_scene("E0735",
+                 at,
+                 at.has("samples") ? "samples" : "duration_s",
+                 "a simulation has either duration_s or samples");
+  const char* key = at.has("samples") ? "samples" : "duration_s";
+  const double samples = at.has("samples") ? static_cast<double>(at.count(key))
+                                           : std::round(at.number(key, kPositive) * rate_hz);
+  if (samples < 1) at.refuse(key, "there is no sample to simulate");
+  if (samples > static_cast<double>(kMostSamples))
+    at.refuse(key, fmt::format("more than {} samples", kMostSamples));
+  return static_cast<std::uint64_t>(samples);
+}
+
+// Reads the samples of a signal that comes from a log.
+void read_samples(SignalSpec& spec,
+                  const MapReader& at,
+                  const ArraySimulation& simulation,
+                  const SceneFolder& folder,
+                  Scene& scene) {
+  ReadOptions reading;
+  reading.hash = false;
+  if (!spec.channel.empty()) reading.channels = {spec.channel};
+  spec.file = scene_file_of(at, "file", folder, scene);
+  Recording log = read_recording(spec.file, reading);
+  if (log.samples.size() != 1)
+    refuse_scene("E0742",
+                 at,
+                 "file",
+                 fmt::format("holds {} channels", log.samples.size()),
+                 "name one: channel: NAME");
+  const double rate = log.info.time.rate_hz;
+  if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
+    refuse_scene("E0742",
+                 at,
+                 "file",
+                 fmt::format("is a recording at {} Hz, and the simulation runs at {} Hz",
+                             significant(rate, 6),
+                             significant(simulation.rate_hz, 6)),
+                 "give the simulation the rate of the recording");
+  spec.samples = std::move(log.samples[0]);
+  if (spec.samples.empty()) refuse_scene("E0742", at, "file", "holds no sample");
+  if (spec.samples.size() < simulation.samples)
+    scene.warnings.add("recorded_signal_short",
+                       "a recorded signal ends before the simulation; its last sample is held",
+                       at.where(at.require("file")));
+}
+
+SignalSpec signal_of(const Document& node,
+                     const std::string& path,
+                     const ArraySimulation& simulation,
+                     const std::vector<std::string>& earlier,
+                     const SceneFolder& folder,
+                     Scene& scene) {
+  SignalSpec spec = read_signal(node, folder.scene, path, earlier);
+  if (spec.kind == "recording") {
+    const MapReader at(node, folder.scene, path, {"kind", "name", "offset", "file", "channel"});
+    read_samples(spec, at, simulation, folder, scene);
+  }
+  return spec;
+}
+
+void add_truth(const MapReader& at,
+               const Document& node,
+               const std::string& path,
+               const std::string& usual_name,
+               ArraySimulation& s,
+               const SceneFolder& folder,
+               Scene& scene) {
+  SignalSpec spec = signal_of(node, path, s, s.truth_names, folder, scene);
+  const DocumentEntry* named = node.find("name");
+  std::string name = named == nullptr ? usual_name : named->value.text;
+  const Document& place = named == nullptr ? node : named->value;
+  if (name.empty() || name.find('\0') != std::string::npos)
+    throw Error({ErrorKind::input,
+                 "E0737",
+                 at.where(place),
+                 fmt::format("{}.name: the name of a signal is empty or holds a zero byte", path),
+                 "",
+                 ""});
+  if (std::find(s.truth_names.begin(), s.truth_names.end(), name) != s.truth_names.end())
+    throw Error({ErrorKind::input,
+                 "E0737",
+                 at.where(place),
+                 fmt::format("{}.name: two truth signals have one name", path),
+                 name,
+                 ""});
+  s.truth.push_back(std::move(spec));
+  s.truth_names.push_back(std::move(name));
+}
+
+void read_truth(const MapReader& at, ArraySimulation& s, const SceneFolder& folder, Scene& scene) {
+  const Document& node = at.require("truth");
+  const std::string path = at.path_of("truth");
+  s.truth.clear();
+  s.truth_names.clear();
+  if (node.kind != Document::Kind::list)
+    return add_truth(at, node, path, "truth", s, folder, scene);
+  if (node.list.empty()) refuse_scene("E0736", at, "truth", "expected at least one signal");
+  for (std::size_t j = 0; j < node.list.size(); ++j)
+    add_truth(at,
+              node.list[j],
+              fmt::format("{}[{}]", path, j),
+              node.list.size() == 1 ? "truth" : fmt::format("truth{}", j + 1),
+              s,
+              folder,
+              scene);
+}
+
+}  // namespace
+
+std::string scene_file_of(const MapReader& at,
+                          std::string_view key,
+                          const SceneFolder& folder,
+                          Scene& scene) {
+  std::string path =
+      resolve_scene_file(at.text(key), folder, at.where(at.require(key)), at.path_of(key));
+  if (std::find(scene.files.begin(), scene.files.end(), path) == scene.files.end())
+    scene.files.push_back(path);
+  return path;
+}
+
+std::string scene_recording_of(const MapReader& at,
+                               std::string_view key,
+                               const SceneFolder& folder,
+                               ReadOptions& reading,
+                               Scene& scene) {
+  if (is_scalar(at.require(key))) return scene_file_of(at, key, folder, scene);
+  const MapReader map = at.map(key,
+                               {"file",
+                                "rate_hz",
+                                "resample_hz",
+                                "delimiter",
+                                "decimal",
+                                "header",
+                                "encoding",
+                                "names",
+                                "units",
+                                "time_column",
+                                "time_unit",
+                                "skip_rows",
+                                "format",
+                                "from_s",
+                                "to_s",
+                                "overflow_as_missing",
+                                "skip_repeated_header"});
+  reading.rate_hz = map.maybe_number("rate_hz", kPositive);
+  const auto resample_hz = map.maybe_number("resample_hz", kPositive);
+  if (resample_hz && (&reading != &scene.reading || reading.rate_hz))
+    map.refuse("resample_hz",
+               reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
+                               : "a reference is interpolated in any case");
+  if (resample_hz) scene.resample_hz = resample_hz;
+  reading.delimiter = map.text_or("delimiter", "auto");
+  const std::vector<std::string> words = {"auto", "tab", "space"};
+  if (reading.delimiter.size() != 1 &&
+      std::find(words.begin(), words.end(), reading.delimiter) == words.end())
+    map.refuse("delimiter", "expected auto, tab, space or one character");
+  reading.decimal = map.word_or("decimal", {"auto", "point", "comma"}, "auto");
+  reading.header = map.word_or("header", {"auto", "yes", "no"}, "auto");
+  reading.encoding = map.word_or("encoding", {"utf-8", "latin1"}, "utf-8");
+  if (map.has("names")) reading.names = map.texts("names");
+  if (map.has("units")) reading.units = map.texts("units");
+  reading.time_column = map.text_or("time_column", "auto");
+  reading.time_unit = map.word_or("time_unit", {"auto", "s", "ms", "us", "ns"}, "auto");
+  reading.skip_rows = map.count_or("skip_rows", 0);
+  reading.format = map.word_or("format", {"auto", "csv", "npy", "raw"}, "auto");
+  reading.from_s = map.maybe_number("from_s", kNotNegative);
+  reading.to_s = map.maybe_number("to_s", kPositive);
+  if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
+    refuse_scene("E0740", map, "to_s", "the recording is read from a time to a later one");
+  reading.overflow_as_missing = map.flag_or("overflow_as_missing", false);
+  reading.skip_repeated_header = map.flag_or("skip_repeated_header", false);
+  return scene_file_of(map, "file", folder, scene);
+}
+
+ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& folder, Scene& scene) {
+  const MapReader at = top.map("simulate",
+                               {"rate_hz",
+                                "duration_s",
+                                "samples",
+                                "seed",
+                                "oversampling",
+                                "truth",
+                                "truth_bandwidth_hz",
+                                "temperature",
+                                "low_pass_start"});
+  ArraySimulation s;
+  s.rate_hz = at.number("rate_hz", kPositive);
+  s.samples = samples_of(at, s.rate_hz);
+  s.seed = at.count_or("seed", 1);
+  s.oversampling = at.count_or("oversampling", 1);
+  if (s.oversampling < 1 || s.oversampling > 1024)
+    at.refuse("oversampling", "expected a whole number from 1 to 1024");
+  s.truth_bandwidth_hz = at.maybe_number("truth_bandwidth_hz", kPositive);
+  s.low_pass_starts_at_zero = at.word_or("low_pass_start", {"steady", "zero"}, "steady") == "zero";
+  if (at.has("truth")) read_truth(at, s, folder, scene);
+  if (at.has("temperature"))
+    s.temperature = signal_of(
+        at.require("temperature"), at.path_of("temperature"), s, s.truth_names, folder, scene);
+  return s;
+}
+
+}  // namespace libchar

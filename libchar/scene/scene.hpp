@@ -1,0 +1,85 @@
+#pragma once
+// A scene: a recording (or a simulation of one) plus what is known about it (design.md 1, 6.2).
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/document.hpp"
+#include "libchar/core/warnings.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/simulate/fault.hpp"
+#include "libchar/simulate/sensor_array.hpp"
+
+namespace libchar {
+
+struct SceneSensor {
+  std::string name;                  ///< unique in the scene
+  std::string channel;               ///< of the recording; the name when the file does not say
+  std::optional<SensorModel> model;  ///< inline or from a file beside the scene
+  std::vector<double> h = {1};       ///< row of the observation matrix
+  double scale = 1;                  ///< the recording's samples are multiplied by it on reading
+  /// Standard deviation of a sample's noise, in the unit after `scale`.
+  std::optional<double> noise = std::nullopt;
+};
+
+/// Which sensors (by index) a tilt filter reads: tilt = atan2(accelerometer_x, accelerometer_z).
+struct SceneTilt {
+  std::size_t gyroscope = 0, accelerometer_x = 0, accelerometer_z = 0;
+};
+
+/// A stretch of the recording, in seconds from its first sample.
+struct TimeWindow {
+  double from_s = 0;
+  double to_s = std::numeric_limits<double>::infinity();
+};
+
+struct SceneReference {
+  /// One a truth input; or several whose mean is the truth (`mean`).
+  std::vector<std::string> channels;
+  bool mean = false;
+  std::optional<std::string> recording;  ///< a log of its own (resolved path), else the scene's
+  ReadOptions reading;                   ///< of that log
+  double lag_s = 0;                      ///< the sensors lag the reference by this
+  bool estimate_lag = false;
+};
+
+struct SceneAlgorithm {
+  std::string name;
+  std::vector<std::pair<std::string, double>>
+      options;  ///< numbers, as the algorithm's table names them
+  int line = 0, column = 0;
+};
+
+/// What a simulated recording is known to hold; nothing of it is injected again.
+struct SimulatedFrom {
+  std::uint64_t seed = 1;
+  std::vector<SensorFault> faults;
+  std::uint64_t oversampling = 1;  ///< says how much noise its models gave a sample
+};
+
+struct Scene {
+  std::string file;  ///< of the scene
+  std::string name;
+  std::string recording;              ///< resolved path; empty for a simulation
+  ReadOptions reading;                ///< rate, delimiter, names… of the recording
+  std::optional<double> resample_hz;  ///< uneven stamps: interpolated to this rate
+  std::optional<ArraySimulation> simulate;
+  std::vector<SceneSensor> sensors;
+  std::optional<SceneReference> reference;
+  std::optional<SceneTilt> tilt;  ///< then the reference is the tilt, and rows h say nothing
+  std::optional<TimeWindow> learning, evaluation;
+  std::optional<TimeWindow> rest;  ///< the true inputs are zero there
+  std::optional<double>
+      fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
+  std::vector<SensorFault> faults;
+  std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
+  std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
+  std::vector<std::string> files;          ///< every file that was named and found, resolved
+  Warnings warnings;
+};
+
+inline constexpr std::size_t kMostSensors = 10000;
+
+}  // namespace libchar

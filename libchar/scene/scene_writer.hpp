@@ -1,0 +1,13 @@
+#pragma once
+// A scene as YAML.
+
+#include <string>
+
+#include "libchar/scene/scene.hpp"
+
+namespace libchar {
+
+/// The scene as YAML; paths relative to the folder of `scene.file`; models inline.
+std::string scene_yaml(const Scene& scene);
+
+}  // namespace libchar

@@ -1,0 +1,199 @@
+// Fractional differencing of order 1/2 (N. J. Kasdin, Proc. IEEE 83 (1995) 802) as a sum of
+// first-order sections.
+//
+//   h_k = Gamma(k + 1/2)/(Gamma(k + 1) sqrt pi) = (1/pi) int_0^1 p^k dp / sqrt(p (1 - p))
+//
+// With p = 1/(1 + s), s = e^x, this is (1/pi) int p^k sqrt(s)/(1 + s) dx over all x. The integrand
+// of h_k is analytic for |Im x| < pi, that of H(z) = sum_k h_k z^-k for |Im x| < pi/2 + pi nu
+// (there 1 = p/z), so the trapezoid rule of step a converges like exp(-pi^2/a), at every lag and
+// every frequency alike:
+//
+//   h_k = sum_j w_j p_j^k,  s_j = e^(j a),  p_j = 1/(1 + s_j),  w_j = (a/pi) sqrt(s_j)/(1 + s_j).
+//
+// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its
+// own Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on
+// the discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a
+// polynomial of low degree there.
+//
+// Every section x_j[t] = p_j x_j[t-1] + g[t] is driven by the same deviate. Jointly stationary, the
+// states have covariance C_ij = 1/(1 - p_i p_j), the Gram matrix of Szego kernels; the
+// Takenaka-Malmquist functions are orthonormal in that space, which gives the Cholesky factor in
+// closed form:
+//
+//   L_jk = sqrt(1 - p_k^2)/(1 - p_k p_j) prod_{l<k} (p_j - p_l)/(1 - p_l p_j).
+
+#include "libchar/simulate/detail/flicker.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "libchar/simulate/detail/sections.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kStep = 0.62;          // a: exp(-pi^2/a) = 1.2e-7
+constexpr int kSlowNodes = 5;           // Gauss nodes for s < 1/(2 length)
+constexpr int kFastNodes = 4;           // Gauss nodes for p < 1/2
+constexpr int kTailTerms = 200;         // of either tail: e^(-200 a/2) = 1e-27 of its weight
+constexpr double kShortestRecord = 64;  // shorter ones get this design
+
+struct Rule {
+  std::vector<double> node, weight;
+};
+
+double node_weight(double s) {
+  return kStep / std::numbers::pi * std::sqrt(s) / (1 + s);
+}
+
+/// The Gauss rule of n nodes of the discrete measure that has `weight` at `node` (largest node
+/// first).
+Rule gauss_rule(const Rule& measure, int n) {
+  const double scale = measure.node.front();
+  const Eigen::Map<const Eigen::ArrayXd> raw(measure.node.data(),
+                                             static_cast<Eigen::Index>(measure.node.size()));
+  const Eigen::Map<const Eigen::ArrayXd> w(measure.weight.data(), raw.size());
+  const Eigen::ArrayXd t = raw / scale;
+  Eigen::VectorXd diagonal(n), beside(n - 1);
+  Eigen::ArrayXd before = Eigen::ArrayXd::Zero(t.size());
+  Eigen::ArrayXd now = Eigen::ArrayXd::Constant(t.size(), 1 / std::sqrt(w.sum()));
+  for (int k = 0; k < n; ++k) {
+    diagonal[k] = (w * t * now.square()).sum();
+    Eigen::ArrayXd next = (t - diagonal[k]) * now;
+    if (k > 0) next -= beside[k - 1] * before;
+    if (k + 1 == n) break;
+    beside[k] = std::sqrt((w * next.square()).sum());
+    before = now;
+    now = next / beside[k];
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside);
+  Rule rule;
+  for (int k = n; k-- > 0;) {  // largest node first
+    rule.node.push_back(solver.eigenvalues()[k] * scale);
+    rule.weight.push_back(w.sum() * std::pow(solver.eigenvectors()(0, k), 2));
+  }
+  return rule;
+}
+
+/// The trapezoid nodes j = first, first + step, ... as far as they count, as a measure in node(s).
+template <typename Node>
+Rule tail(int first, int step, const Node& node) {
+  Rule measure;
+  for (int i = 0; i < kTailTerms; ++i) {
+    const double s = std::exp(kStep * (first + step * i));
+    measure.node.push_back(node(s));
+    measure.weight.push_back(node_weight(s));
+  }
+  return measure;
+}
+
+/// 1 - p_i p_j from the losses q = 1 - p: nothing cancels.
+double gap(double qi, double qj) {
+  return qi + qj - qi * qj;
+}
+
+}  // namespace
+
+FlickerFilter design_flicker(std::uint64_t length) {
+  const double n =
+      std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
+  const int first = static_cast<int>(std::floor(-std::log(2 * n) / kStep));
+  const Rule fast = gauss_rule(tail(1, 1, [](double s) { return 1 / (1 + s); }), kFastNodes);
+  const Rule slow = gauss_rule(tail(first - 1, -1, [](double s) { return s; }), kSlowNodes);
+  FlickerFilter filter;
+  for (std::size_t k = kFastNodes; k-- > 0;) {
+    filter.loss.push_back(1 - fast.node[k]);
+    filter.weight.push_back(fast.weight[k]);
+  }
+  for (int j = 0; j >= first; --j) {
+    const double s = std::exp(kStep * j);
+    filter.loss.push_back(s / (1 + s));
+    filter.weight.push_back(node_weight(s));
+  }
+  for (std::size_t k = 0; k < kSlowNodes; ++k) {
+    filter.loss.push_back(slow.node[k] / (1 + slow.node[k]));
+    filter.weight.push_back(slow.weight[k]);
+  }
+  return filter;
+}
+
+double flicker_response(const FlickerFilter& filter, double k) {
+  double sum = 0;
+  for (std::size_t j = 0; j < filter.loss.size(); ++j)
+    sum += filter.weight[j] * std::exp(k * std::log1p(-filter.loss[j]));
+  return sum;
+}
+
+double flicker_power(const FlickerFilter& filter, double nu) {
+  // 1 - p e^(-i w) = (1 - e^(-i w)) + q e^(-i w), the first bracket without cancellation
+  const double w = 2 * std::numbers::pi * nu, half = std::sin(w / 2);
+  const std::complex<double> chord(2 * half * half, std::sin(w)), turn(std::cos(w), -std::sin(w));
+  std::complex<double> sum = 0;
+  for (std::size_t j = 0; j < filter.loss.size(); ++j)
+    sum += filter.weight[j] / (chord + filter.loss[j] * turn);
+  return std::norm(sum);
+}
+
+double flicker_variogram(const FlickerFilter& filter, double n) {
+  double sum = 0;
+  for (std::size_t i = 0; i < filter.loss.size(); ++i) {
+    const double fall = -std::expm1(n * std::log1p(-filter.loss[i]));  // 1 - p^n
+    double shared = 0;
+    for (std::size_t j = 0; j < filter.loss.size(); ++j)
+      shared += filter.weight[j] / gap(filter.loss[i], filter.loss[j]);
+    sum += 2 * filter.weight[i] * fall * shared;
+  }
+  return sum;
+}
+
+std::vector<double> stationary_factor(const FlickerFilter& filter) {
+  const std::vector<double>& q = filter.loss;
+  const std::size_t n = q.size();
+  std::vector<double> factor(n * n, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    double product = 1;
+    for (std::size_t k = 0; k <= j; ++k) {
+      factor[j * n + k] = std::sqrt(gap(q[k], q[k])) / gap(q[k], q[j]) * product;
+      product *= (q[k] - q[j]) / gap(q[k], q[j]);
+    }
+  }
+  return factor;
+}
+
+std::vector<double> stationary_states(const FlickerFilter& filter, DeviateStream& deviates) {
+  const std::size_t n = filter.loss.size();
+  const std::vector<double> factor = stationary_factor(filter);
+  std::vector<double> drawn(n), states(n, 0.0);
+  deviates.fill_normal(drawn);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t k = 0; k <= j; ++k) states[j] += factor[j * n + k] * drawn[k];
+  return states;
+}
+
+FlickerStream::FlickerStream(const FlickerFilter& filter)
+    : loss_(filter.loss), weight_(filter.weight) {
+  const std::size_t whole = (loss_.size() + 3) / 4 * 4;
+  loss_.resize(whole, 1.0);  // a section of weight 0
+  weight_.resize(whole, 0.0);
+  state_.assign(whole, 0.0);
+}
+
+FlickerStream::FlickerStream(const FlickerFilter& filter, DeviateStream& start_deviates)
+    : FlickerStream(filter) {
+  const std::vector<double> states = stationary_states(filter, start_deviates);
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    state_[j] = weight_[j] * states[j];
+    level_ += state_[j];
+  }
+}
+
+void FlickerStream::run(std::span<double> values) {
+  run_sections({loss_.data(), weight_.data(), state_.data(), loss_.size() / 4}, level_, values);
+}
+
+}  // namespace libchar

@@ -1,0 +1,180 @@
+// y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))  [RV 2.2-2.6],
+// with
+//   alpha = N(alpha0, s_a) (1 + tc1 dT + tc2 dT^2)        beta = N(beta0, s_b) + tc1 dT + tc2 dT^2
+//   c1 = quadratic (1 + tc dT), c2 = cubic (1 + tc dT), both of the raw x (design.md 4)
+//   low_pass: y_k = a y_{k-1} + (1 - a) u_k, a = exp(-2 pi bandwidth / rate)
+// Oracle: fusion/sensor_model.csv, block by block.
+#include "libchar/simulate/detail/sensor_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "libchar/simulate/detail/noise_generator.hpp"
+
+namespace libchar {
+namespace {
+
+NoiseDesign noise_design(const SensorModel& m, const ChainOptions& options) {
+  NoiseDesign design;
+  for (std::size_t t = 0; t < kTerms; ++t) design.coefficient[t] = simulated_value(m.noise[t]);
+  if (m.white_hold_s) design.coefficient[static_cast<std::size_t>(Term::white)] = 0;
+  if (m.flicker_hold_s) design.coefficient[static_cast<std::size_t>(Term::flicker)] = 0;
+  design.rate_hz = options.rate_hz;
+  design.bandwidth_hz = m.bandwidth_hz;
+  if (m.noise_sampling == NoiseSampling::band_limited) design.sampling = Sampling::band_limited;
+  if (m.noise_start == NoiseStart::zero) design.start = Start::zero;
+  design.flicker_method = m.flicker_method;
+  return design;
+}
+
+// One term made at its own step and held in between, as published [RV 3.3]. Sample k of the
+// low-pass answers to what stood between k - 1 and k, so a value is renewed behind the instants m
+// hold_s, and the sample there still has the old one: read at renewals, its variance is (1 - a)/(1
+// + a) of the held noise, a = exp(-2 pi bandwidth hold_s).
+class HeldNoise {
+ public:
+  HeldNoise(const SensorModel& m, Term term, double hold_s, const ChainOptions& options)
+      : samples_per_renewal_(hold_s * options.rate_hz),
+        noise_(design(m, term, hold_s, options), options.seed, options.sensor) {}
+
+  void add(std::span<double> out) {
+    for (double& sample : out) {
+      const auto due = 1 + static_cast<std::uint64_t>(std::ceil(
+                               static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
+      for (; renewals_ < due; ++renewals_) {
+        value_ = 0;
+        noise_.add({&value_, 1}, {});
+      }
+      sample += value_;
+    }
+  }
+
+ private:
+  static NoiseDesign design(const SensorModel& m,
+                            Term term,
+                            double hold_s,
+                            const ChainOptions& options) {
+    NoiseDesign design = noise_design(m, options);
+    design.coefficient = {};
+    design.coefficient[static_cast<std::size_t>(term)] = simulated_value(m[term]);
+    design.rate_hz = 1 / hold_s;
+    design.bandwidth_hz = std::nullopt;
+    design.sampling = Sampling::per_sample;
+    return design;
+  }
+  double samples_per_renewal_, value_ = 0;
+  std::uint64_t k_ = 0, renewals_ = 0;
+  NoiseGenerator noise_;
+};
+
+double drawn(double value, double spread, const ChainOptions& options, Purpose purpose) {
+  if (!(spread > 0)) return value;
+  return value + spread * DeviateStream({options.seed, options.sensor, purpose}).normal();
+}
+
+}  // namespace
+
+struct SensorChain::State {
+  SensorModel model;
+  ChainOptions options;
+  DeviceDraw draw;
+  NoiseGenerator noise;
+  std::vector<HeldNoise> held;
+  double low_pass_memory = 0, low_pass_state = 0;
+  bool low_pass_started = false;
+  std::vector<double> after;
+
+  State(const SensorModel& m, const ChainOptions& o)
+      : model(m), options(o), noise(noise_design(m, o), o.seed, o.sensor) {
+    draw.scale_factor = drawn(m.scale_factor.value, m.scale_factor.spread, o, Purpose::scale_draw);
+    draw.bias = drawn(m.bias.value, m.bias.spread, o, Purpose::bias_draw);
+    if (m.white_hold_s && m[Term::white].value)
+      held.emplace_back(m, Term::white, *m.white_hold_s, o);
+    if (m.flicker_hold_s && m[Term::flicker].value)
+      held.emplace_back(m, Term::flicker, *m.flicker_hold_s, o);
+    if (m.bandwidth_hz)
+      low_pass_memory = std::exp(-2 * std::numbers::pi * *m.bandwidth_hz / o.rate_hz);
+  }
+
+  // Blocks 1 to 3 at one temperature.
+  struct Coefficients {
+    double scale, quadratic, cubic, bias;
+  };
+  Coefficients at(double dt) const {
+    const SensorModel& m = model;
+    return {
+        draw.scale_factor * (1 + dt * (m.scale_factor.tc1_per_k + dt * m.scale_factor.tc2_per_k2)),
+        m.nonlinearity.quadratic * (1 + m.nonlinearity.quadratic_tc_per_k * dt),
+        m.nonlinearity.cubic * (1 + m.nonlinearity.cubic_tc_per_k * dt),
+        draw.bias + dt * (m.bias.tc1_per_k + dt * m.bias.tc2_per_k2)};
+  }
+  static double deterministic(const Coefficients& c, double x) {
+    return x * (c.scale + x * (c.quadratic + x * c.cubic)) + c.bias;
+  }
+
+  void deterministic_blocks(std::span<double> y, std::span<const double> temperature) const {
+    if (temperature.empty()) {
+      const Coefficients c = at(0);
+      if (c.scale == 1 && c.quadratic == 0 && c.cubic == 0 && c.bias == 0) return;
+      for (double& v : y) v = deterministic(c, v);
+      return;
+    }
+    for (std::size_t i = 0; i < y.size(); ++i)
+      y[i] = deterministic(at(temperature[i] - model.reference_temperature_degc), y[i]);
+  }
+
+  // The level that the low-pass would have reached before the first sample: the signal's, and the
+  // noise of an infinite past.
+  double steady_start(double first_signal) const { return first_signal + noise.low_pass_start(); }
+
+  void low_pass(std::span<double> y, double first_signal) {
+    if (!low_pass_started) {
+      if (std::isnan(first_signal)) first_signal = 0;
+      low_pass_state = options.low_pass_starts_at_zero ? 0 : steady_start(first_signal);
+      low_pass_started = true;
+    }
+    const double a = low_pass_memory;
+    for (double& v : y) {
+      if (std::isnan(v)) continue;  // the filter waits for the next sample
+      low_pass_state = a * low_pass_state + (1 - a) * v;
+      v = low_pass_state;
+    }
+  }
+
+  void output_blocks(std::span<double> y) const {
+    if (model.saturation_low && model.saturation_high)
+      for (double& v : y)
+        if (!std::isnan(v)) v = std::clamp(v, *model.saturation_low, *model.saturation_high);
+    if (model.sensitivity.gain != 1)
+      for (double& v : y) v *= model.sensitivity.gain;
+    if (model.resolution)
+      for (double& v : y) v = std::nearbyint(v / *model.resolution) * *model.resolution;
+  }
+};
+
+SensorChain::SensorChain(const SensorModel& model, const ChainOptions& options)
+    : state_(std::make_unique<State>(model, options)) {}
+SensorChain::~SensorChain() = default;
+SensorChain::SensorChain(SensorChain&&) noexcept = default;
+
+void SensorChain::run(std::span<double> samples, std::span<const double> temperature_degc) {
+  State& s = *state_;
+  if (samples.empty()) return;
+  s.deterministic_blocks(samples, temperature_degc);
+  const double first_signal = samples[0];
+  if (s.noise.adds_after()) s.after.assign(samples.size(), 0.0);
+  s.noise.add(samples, s.after);
+  for (HeldNoise& held : s.held) held.add(samples);
+  if (s.model.bandwidth_hz) s.low_pass(samples, first_signal);
+  for (std::size_t i = 0; i < s.after.size(); ++i) samples[i] += s.after[i];
+  s.output_blocks(samples);
+}
+
+DeviceDraw SensorChain::draw() const {
+  return state_->draw;
+}
+
+}  // namespace libchar

@@ -1,0 +1,149 @@
+#include "libchar/spectrum/detail/half_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+namespace libchar::halves {
+namespace {
+
+constexpr std::size_t kColumns = 8;  // a line of the cache from each half
+constexpr std::size_t kPlaces = 2;   // for transformed rows
+
+/// Where a column of all rows is more than the cache holds at once, several lines are taken from
+/// each half.
+std::size_t columns_at_once(std::size_t h, std::size_t n2) {
+  std::size_t count = h <= (std::size_t{1} << 17U) ? kColumns : 2 * kColumns;
+  while (n2 % count != 0) count -= kColumns;
+  return count;
+}
+
+}  // namespace
+
+AlignedDoubles aligned_zeros(std::size_t n) {
+  AlignedDoubles values(
+      static_cast<double*>(::operator new[](n * sizeof(double), std::align_val_t{64})));
+  std::fill_n(values.get(), n, 0.0);
+  return values;
+}
+
+Complex turn(double numerator, double denominator) {
+  const double angle = std::numbers::pi * numerator / denominator;
+  return {std::cos(angle), -std::sin(angle)};
+}
+
+std::pair<std::size_t, std::size_t> rows_and_columns(std::size_t h) {
+  std::size_t rest = h;
+  for (const std::size_t prime : {2U, 3U, 5U, 7U})
+    while (rest > 1 && rest % prime == 0) rest /= prime;
+  if (rest != 1) return {0, 0};
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  double nearest = 8;  // the longer over the shorter, at most
+  for (std::size_t n2 = 16; n2 <= h / 16; n2 += 8) {
+    if (h % n2 != 0) continue;
+    const double ratio = static_cast<double>(n2) / static_cast<double>(h / n2);
+    const double unequal = std::max(ratio, 1 / ratio);
+    if (unequal > nearest) continue;
+    nearest = unequal;
+    best = {h / n2, n2};
+  }
+  return best;
+}
+
+RowTables::RowTables(std::size_t half)
+    : h(half),
+      n1(rows_and_columns(half).first),
+      n2(rows_and_columns(half).second),
+      pitch(2 * n2 + kPadding),
+      count(columns_at_once(half, n2)) {
+  const auto push = [](std::vector<double>& table, Complex value) {
+    table.push_back(value.real());
+    table.push_back(value.imag());
+  };
+  for (std::size_t t1 = 0; t1 < n1; ++t1)
+    push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
+  for (std::size_t odd = 0; odd < 2; ++odd) {
+    fine[odd].resize(2 * count * n1);
+    for (std::size_t m1 = 0; m1 < n1; ++m1)
+      for (std::size_t j = 0; j < count; ++j) {
+        const Complex value = turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd),
+                                   static_cast<double>(h));
+        double* const four = fine[odd].data() + 2 * count * m1 + j / 4 * 8;
+        four[j % 4] = value.real();
+        four[4 + j % 4] = value.imag();
+      }
+  }
+  const std::size_t period = 2 * h / count;
+  for (std::size_t j = 0; j < period; ++j)
+    push(coarse, turn(2 * static_cast<double>(j), static_cast<double>(period)));
+  quarter.resize(n2);
+  for (std::size_t m2 = 0; m2 < n2 / 2; ++m2)
+    put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(n2)));
+}
+
+RowScratch::RowScratch(const RowTables& tables)
+    : tables_(tables),
+      columns_(tables.n1, tables.count, tables.count, 1),
+      row_(tables.n2),
+      column_values_(aligned_zeros(4 * tables.count * tables.n1)),
+      row_values_{aligned_zeros(tables.n1 * tables.pitch), aligned_zeros(tables.n1 * tables.pitch)},
+      rows_(aligned_zeros(kPlaces * tables.pitch)),
+      moved_(aligned_zeros(2 * tables.n2)),
+      bins_(aligned_zeros((kBinRows + kSpareRows) * bin_pitch())) {}
+
+void RowScratch::transform_columns(const HalfPair& pair) {
+  const RowTables& t = tables_;
+  ColumnStep step{t.n1, t.n2, t.pitch, t.count, 0, t.shift.data()};
+  double* const even = column_values_.get();
+  double* const odd = even + 2 * t.count * t.n1;
+  for (; step.column < t.n2; step.column += t.count) {
+    gather_columns(pair, step, even, odd);
+    columns_.transform(even);
+    scatter_columns(even, step, {t.fine[0].data(), t.coarse.data(), false}, row_values_[0].get());
+    columns_.transform(odd);
+    scatter_columns(odd, step, {t.fine[1].data(), t.coarse.data(), true}, row_values_[1].get());
+  }
+}
+
+const double* RowScratch::row(std::size_t r, bool odd, std::size_t place) {
+  double* const to = rows_.get() + place * tables_.pitch;
+  row_.transform(row_values_[odd ? 1 : 0].get() + r * tables_.pitch, to);
+  return to;
+}
+
+const double* RowScratch::mirror_of(const double* first_row) {
+  std::memcpy(moved_.get(), first_row + 2, (2 * tables_.n2 - 2) * sizeof(double));
+  std::memcpy(moved_.get() + 2 * tables_.n2 - 2, first_row, 2 * sizeof(double));
+  return moved_.get();
+}
+
+std::shared_ptr<RowShop> RowShop::of(std::size_t half) {
+  static std::mutex mutex;
+  static std::map<std::size_t, std::weak_ptr<RowShop>> shops;
+  const std::lock_guard lock(mutex);
+  std::weak_ptr<RowShop>& known = shops[half];
+  std::shared_ptr<RowShop> shop = known.lock();
+  if (!shop) known = shop = std::make_shared<RowShop>(half);
+  return shop;
+}
+
+std::unique_ptr<RowScratch> RowShop::borrow() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      auto scratch = std::move(idle_.back());
+      idle_.pop_back();
+      return scratch;
+    }
+  }
+  return std::make_unique<RowScratch>(tables);
+}
+
+void RowShop::give_back(std::unique_ptr<RowScratch> scratch) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(scratch));
+}
+
+}  // namespace libchar::halves

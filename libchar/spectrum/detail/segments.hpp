@@ -1,0 +1,67 @@
+#pragma once
+// What welch() and WelchStream share: one segment at a time into a sum of power, and the sum into a
+// spectrum.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/spectrum/fft.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+
+namespace libchar::welch_detail {
+
+inline constexpr std::uint64_t kShortestSegment = 8;
+
+/// Lengths of a segmentation. Segments start at 0, hop, 2 hop, …; every `group` of them (an even
+/// number: halves go in pairs) are summed from zero and the sums of the groups added in order, so
+/// that the bits do not depend on which thread did which group, nor on how samples were pushed.
+struct Layout {
+  std::size_t segment = 0, hop = 0, group = 0;
+  std::uint64_t count(std::uint64_t samples) const {
+    return samples < segment ? 0 : (samples - segment) / hop + 1;
+  }
+};
+
+Layout layout_of(std::uint64_t segment, double overlap);
+/// Throws Error(usage) when options are impossible.
+void check_options(const WelchOptions& options);
+void check_rate(double rate_hz);  ///< Error(numeric) unless finite and above 0
+
+/// Detrend, window, transform.
+class Periodogram {
+ public:
+  Periodogram(const WelchOptions& options, const std::vector<double>& window);
+  /// Adds |X_k|^2 of the segment to `power` (n/2 + 1 values); false, and nothing added, when a
+  /// sample is missing.
+  bool add(const double* x, double* power);
+
+ private:
+  Detrend detrend_;
+  const std::vector<double>& window_;
+  RealFft fft_;
+};
+
+/// Sums over the segments seen so far, in their order.
+class Average {
+ public:
+  Average(const WelchOptions& options, const Layout& layout);
+  void add_group(const std::vector<double>& power);
+  void note_segment(bool used);  ///< in the order of the segments
+  std::uint64_t used() const { return used_; }
+  std::uint64_t dropped() const { return dropped_; }
+  /// No window: the periodic Hann window, half overlapping.
+  Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
+
+ private:
+  WelchOptions options_;
+  Layout layout_;
+  std::vector<double> power_;
+  std::vector<char> recent_;          // ring: was the segment used
+  std::vector<std::uint64_t> pairs_;  // [lag]: pairs of used segments so many hops apart
+  std::size_t next_ = 0;
+  std::uint64_t used_ = 0, dropped_ = 0;
+};
+
+}  // namespace libchar::welch_detail

@@ -1,0 +1,42 @@
+// nu P^ / P is chi-square with nu degrees of freedom, so with confidence c and equal tails
+//   P in [nu P^ / chi2_{nu, (1+c)/2},  nu P^ / chi2_{nu, (1-c)/2}].
+
+#include "libchar/spectrum/spectrum_interval.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+
+#include "libchar/spectrum/spectrum.hpp"
+
+namespace libchar {
+
+std::pair<double, double> interval_factors(double dof, double confidence) {
+  if (!(dof > 0)) return {0, std::numeric_limits<double>::infinity()};
+  const boost::math::chi_squared distribution(dof);
+  const double tail = (1 - confidence) / 2;
+  return {dof / quantile(complement(distribution, tail)), dof / quantile(distribution, tail)};
+}
+
+std::pair<double, double> IntervalFactors::of(double dof) {
+  const auto known = known_.find(dof);
+  return known != known_.end()
+             ? known->second
+             : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
+}
+
+std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, std::size_t i) {
+  const auto [low, high] = of(spectrum.dof[i]);
+  const bool root = spectrum.scaling == Scaling::lsd || spectrum.scaling == Scaling::ls;
+  const double value = spectrum.value[i];
+  if (root) return {value * std::sqrt(low), value * std::sqrt(high)};
+  return {value * low, value * high};
+}
+
+std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
+                                            std::size_t i,
+                                            double confidence) {
+  return IntervalFactors(confidence).interval(spectrum, i);
+}
+
+}  // namespace libchar
