@@ -34,6 +34,7 @@ MASKS = [
 REPLAY_MASKS = [
     (re.compile(r"\b[\d.]+ (ns|µs|ms|s|B|kB|MB|GB)\b"), r"# \1"),
     (re.compile(r'data-value="[^"]*">[^<]*'), 'data-value="">#'),  # report.json has the same numbers
+    (re.compile(r"% +[\d.]+ +# (B|kB|MB|GB) *"), "% # # "),
     (re.compile(r"fronts?: [a-z, ]*"), "fronts: "),
     (re.compile(r'("pareto_front"|"front[a-z_]*"): *(\{[^{}]*\}|\[[^\[\]]*\]|\w+)'), r"\1: MASKED"),
 ]
