@@ -1,6 +1,6 @@
 #pragma once
 // Which number goes where: the same coefficients in the units and under the names of the programs
-// and papers that ask for them (shared/reference/exports.md 1-2). Only Q, K and B are exchanged;
+// and papers that ask for them (docs/exports.md). Only Q, K and B are exchanged;
 // everything else follows by the formula shown.
 
 #include <string>

@@ -1,4 +1,4 @@
-// One test for each trap of shared/reference/exports.md 3, and for those found since.
+// One test for each trap of the consumers' conventions (docs/exports.md).
 
 #include <yaml-cpp/yaml.h>
 

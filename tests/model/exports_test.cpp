@@ -1,4 +1,4 @@
-// Exports: the known answers of shared/reference/exports.md 4, the table, groups of models, what
+// Exports: known answers (the numbers that EuRoC's files carry), the table, groups of models, what
 // stands for an absent term. Traps, simulations and strict readers: the files beside.
 
 #include <yaml-cpp/yaml.h>

@@ -188,7 +188,7 @@ TEST_CASE("outputs do not depend on the time it took, but for one key") {
   CHECK(again == report);
 }
 
-TEST_CASE("which number goes where: the formulas of exports.md on its own figures") {
+TEST_CASE("which number goes where: the formulas of docs/exports.md on figures of its own") {
   NoiseFit fit;
   fit.term[0].value = 1.6968e-4;
   fit.term[0].ci95 = {1.69679e-4, 1.69681e-4};
