@@ -11,7 +11,7 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "tests/model/imu_models.hpp"
+#include "tests/export/imu_models.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -11,7 +11,7 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "tests/model/imu_models.hpp"
+#include "tests/export/imu_models.hpp"
 
 using namespace libchar;
 using Catch::Contains;
