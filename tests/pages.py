@@ -37,7 +37,7 @@ def exists(name, page):
     if re.search(r"[A-Z]{4,}", re.sub(r"README|CMakeLists|INDEX|NOTICE|LICENSE|EXPECT", "", name)):
         return True  # a placeholder
     if re.search(r"\*", name):
-        pattern = re.compile(re.escape(name.rstrip("/")).replace(r"\*\*", ".*").replace(r"\*", "[^/]*") + "$")
+        pattern = re.compile("(^|/)" + re.escape(name.rstrip("/")).replace(r"\*", "[^/]*") + "$")
         return any(pattern.search(f) for f in files | folders)
     clean = name.rstrip("/")
     here = pathlib.PurePosixPath(page).parent
