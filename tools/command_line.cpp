@@ -143,9 +143,9 @@ Option VerbOptions::add_parsed(const std::string& names,
     try {
       read(text);
     } catch (const Error& error) {
-      libchar::Fault fault = error.fault();
-      if (fault.where.empty()) fault.where = name;
-      throw Error(fault);
+      libchar::Problem problem = error.problem();
+      if (problem.where.empty()) problem.where = name;
+      throw Error(problem);
     }
   };
   CLI::Option* option = app_->add_option_function<std::string>(names, named, help);
