@@ -21,7 +21,7 @@
 #include "libchar/spectrum/window.hpp"
 #include "numbers.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -258,55 +258,55 @@ void run_psd(Session& session, const PsdVerb& verb) {
                             : spectra_csv(result));
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<PsdVerb>();
+  options
+      .add_text("LOG",
+                verb->log,
+                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .required();
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag(
+      "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
+  options.add_flag(
+      "--lines", verb->lines, "list the spectral lines (with --json: beside the spectra)");
+  options.add_choice("--sides", verb->sides, {"one", "two"}, "one- or two-sided (default: one)");
+  options.add_choice("--scaling",
+                     verb->scaling,
+                     {"psd", "ps", "lsd", "ls"},
+                     "density U^2/Hz, power U^2, and their roots (default: psd)");
+  options
+      .add_text("--segment",
+                verb->segment,
+                "samples per segment, or a time such as 20s; a log of any length then streams "
+                "through (default: a quarter of the record)")
+      .value_name("N|TIME");
+  options.add_number(
+      "--overlap", verb->overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  options.add_choice("--window",
+                     verb->window,
+                     {"hann", "rectangular", "blackman_harris", "flat_top", "hann_nonzero"},
+                     "window (default: hann)");
+  options.add_choice("--detrend",
+                     verb->detrend,
+                     {"none", "constant", "linear"},
+                     "what is removed from each segment (default: constant)");
+  options.add_count(
+      "--log-bins",
+      verb->log_bins,
+      "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
+      0,
+      1000000);
+  add_reading_options(options, session, verb->reading);
+  return [&session, verb] { run_psd(session, *verb); };
+}
+
 }  // namespace
 
-void add_psd(CLI::App& app, Session& session) {
-  auto verb = std::make_shared<PsdVerb>();
-  CLI::App* sub = add_verb(app,
-                           session,
-                           "psd",
-                           "power spectrum of every channel (Welch), as CSV or JSON",
-                           [&session, verb] { run_psd(session, *verb); });
-  sub->add_option("LOG",
-                  verb->log,
-                  "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
-      ->required();
-  sub->add_option("-o,--output", verb->output, "write there instead of to stdout")
-      ->type_name("FILE");
-  sub->add_flag("--force", verb->force, "overwrite the output file");
-  sub->add_flag("--json", verb->json, "one JSON document, with degrees of freedom and intervals");
-  sub->add_flag(
-      "--lines", verb->lines, "list the spectral lines (with --json: beside the spectra)");
-  add_choice(*sub, "--sides", verb->sides, {"one", "two"}, "one- or two-sided (default: one)");
-  add_choice(*sub,
-             "--scaling",
-             verb->scaling,
-             {"psd", "ps", "lsd", "ls"},
-             "density U^2/Hz, power U^2, and their roots (default: psd)");
-  sub->add_option("--segment",
-                  verb->segment,
-                  "samples per segment, or a time such as 20s; a log of any length then streams "
-                  "through (default: a quarter of the record)")
-      ->type_name("N|TIME");
-  add_number(
-      *sub, "--overlap", verb->overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
-  add_choice(*sub,
-             "--window",
-             verb->window,
-             {"hann", "rectangular", "blackman_harris", "flat_top", "hann_nonzero"},
-             "window (default: hann)");
-  add_choice(*sub,
-             "--detrend",
-             verb->detrend,
-             {"none", "constant", "linear"},
-             "what is removed from each segment (default: constant)");
-  add_count(*sub,
-            "--log-bins",
-            verb->log_bins,
-            "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
-            0,
-            1000000);
-  add_reading_options(*sub, session, verb->reading);
+VerbEntry verb_psd() {
+  return {4, "psd", "power spectrum of every channel (Welch), as CSV or JSON", add_options};
 }
 
 }  // namespace sensorchar

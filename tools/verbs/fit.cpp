@@ -18,7 +18,7 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -205,48 +205,51 @@ void run_fit(Session& session, const FitVerb& verb) {
   }
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<FitVerb>();
+  options
+      .add_text("LOG|CURVE",
+                verb->input,
+                "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging "
+                "time or frequency, then values")
+      .required();
+  options.add_choice(
+      "--curve",
+      verb->curve,
+      {"none", "allan", "psd"},
+      "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
+  options.add_choice("--sides", verb->analysis.sides, {"one", "two"}, "of a --curve psd (one)");
+  options.add_choice(
+      "--quantity",
+      verb->quantity,
+      {"auto", "root", "power"},
+      "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
+      "root, psd power)");
+  options.add_duration("--duration",
+                       verb->duration_s,
+                       "length of the record behind a --curve allan: gives honest intervals");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout");
+  options
+      .add_text("--models",
+                verb->models,
+                "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and "
+                "model --to")
+      .value_name("FOLDER");
+  options.add_flag("--force", verb->force, "overwrite the output files");
+  options.add_flag("--json", verb->json, "one JSON document instead of a table");
+  add_reading_options(options, session, verb->analysis.options.reading);
+  add_data_options(options, verb->analysis);
+  add_fit_options(options, verb->analysis);
+  return [&session, verb] { run_fit(session, *verb); };
+}
+
 }  // namespace
 
-void add_fit(CLI::App& app, Session& session) {
-  auto verb = std::make_shared<FitVerb>();
-  CLI::App* sub = add_verb(
-      app,
-      session,
-      "fit",
-      "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
-      [&session, verb] { run_fit(session, *verb); });
-  sub->add_option("LOG|CURVE",
-                  verb->input,
-                  "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging "
-                  "time or frequency, then values")
-      ->required();
-  add_choice(*sub,
-             "--curve",
-             verb->curve,
-             {"none", "allan", "psd"},
-             "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  add_choice(*sub, "--sides", verb->analysis.sides, {"one", "two"}, "of a --curve psd (one)");
-  add_choice(*sub,
-             "--quantity",
-             verb->quantity,
-             {"auto", "root", "power"},
-             "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
-             "root, psd power)");
-  add_duration(*sub,
-               "--duration",
-               verb->duration_s,
-               "length of the record behind a --curve allan: gives honest intervals");
-  sub->add_option("-o,--output", verb->output, "write there instead of to stdout");
-  sub->add_option(
-         "--models",
-         verb->models,
-         "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and model --to")
-      ->type_name("FOLDER");
-  sub->add_flag("--force", verb->force, "overwrite the output files");
-  sub->add_flag("--json", verb->json, "one JSON document instead of a table");
-  add_reading_options(*sub, session, verb->analysis.options.reading);
-  add_data_options(*sub, verb->analysis);
-  add_fit_options(*sub, verb->analysis);
+VerbEntry verb_fit() {
+  return {5,
+          "fit",
+          "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
+          add_options};
 }
 
 }  // namespace sensorchar

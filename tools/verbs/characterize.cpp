@@ -18,7 +18,7 @@
 #include "libchar/report/outputs.hpp"
 #include "output_files.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -132,37 +132,43 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
          ""});
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<CharacterizeVerb>();
+  options
+      .add_texts("LOG",
+                 verb->logs,
+                 "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .required();
+  options
+      .add_text(
+          "-o,--output",
+          verb->folder,
+          "folder for the results (made when absent; with several logs one folder each inside)")
+      .required();
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
+  options.add_flag(
+      "--verify",
+      verb->verify,
+      "simulate every channel from its model, characterize that, and compare (exit code "
+      "6 when they disagree)");
+  options.add_count("--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
+  add_reading_options(options, session, verb->analysis.options.reading);
+  add_data_options(options, verb->analysis);
+  add_allan_options(options, verb->analysis);
+  add_spectrum_options(options, verb->analysis);
+  add_fit_options(options, verb->analysis);
+  return [&session, verb] { run_characterize(session, *verb); };
+}
+
 }  // namespace
 
-void add_characterize(CLI::App& app, Session& session) {
-  auto verb = std::make_shared<CharacterizeVerb>();
-  CLI::App* sub = add_verb(app,
-                           session,
-                           "characterize",
-                           "everything about a recording: report.html, report.json, curves.csv, a "
-                           "sensor model per channel",
-                           [&session, verb] { run_characterize(session, *verb); });
-  sub->add_option("LOG",
-                  verb->logs,
-                  "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
-      ->required();
-  sub->add_option(
-         "-o,--output",
-         verb->folder,
-         "folder for the results (made when absent; with several logs one folder each inside)")
-      ->required();
-  sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
-  sub->add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
-  sub->add_flag("--verify",
-                verb->verify,
-                "simulate every channel from its model, characterize that, and compare (exit code "
-                "6 when they disagree)");
-  add_count(*sub, "--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
-  add_reading_options(*sub, session, verb->analysis.options.reading);
-  add_data_options(*sub, verb->analysis);
-  add_allan_options(*sub, verb->analysis);
-  add_spectrum_options(*sub, verb->analysis);
-  add_fit_options(*sub, verb->analysis);
+VerbEntry verb_characterize() {
+  return {2,
+          "characterize",
+          "everything about a recording: report.html, report.json, curves.csv, a "
+          "sensor model per channel",
+          add_options};
 }
 
 }  // namespace sensorchar

@@ -12,12 +12,12 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
 
-struct ConvertOptions {
+struct ConvertVerb {
   std::string log, output;
   libchar::ReadOptions reading;
   libchar::WriteOptions writing;
@@ -29,12 +29,11 @@ struct ConvertOptions {
 // first rows say.
 class Writing final : public libchar::BlockSink {
  public:
-  Writing(const ConvertOptions& options, const libchar::LogInfo* known)
-      : options_(options), known_(known) {}
+  Writing(const ConvertVerb& verb, const libchar::LogInfo* known) : verb_(verb), known_(known) {}
 
   void begin(const libchar::LogInfo& so_far) override {
-    writer_ = libchar::open_log_writer(
-        options_.output, known_ != nullptr ? *known_ : so_far, options_.writing);
+    writer_ =
+        libchar::open_log_writer(verb_.output, known_ != nullptr ? *known_ : so_far, verb_.writing);
   }
   void block(const libchar::SampleBlock& samples) override {
     columns_.clear();
@@ -44,7 +43,7 @@ class Writing final : public libchar::BlockSink {
   libchar::LogWriter& writer() { return *writer_; }
 
  private:
-  const ConvertOptions& options_;
+  const ConvertVerb& verb_;
   const libchar::LogInfo* known_;
   std::unique_ptr<libchar::LogWriter> writer_;
   std::vector<std::span<const double>> columns_;
@@ -66,48 +65,48 @@ void write_whole(Writing& sink, const libchar::Recording& recording) {
 // CSV wants the rate before the first row, and the rate is best known after the last: such a log is
 // read twice (or, from a pipe, kept in memory).
 libchar::LogInfo transfer(Session& session,
-                          const ConvertOptions& options,
+                          const ConvertVerb& verb,
                           std::unique_ptr<Writing>& sink) {
-  const bool stamps = libchar::format_to_write(options.output, options.writing) == "csv" &&
-                      options.writing.time_column;
-  if (stamps && libchar::read_once(options.log)) {
+  const bool stamps =
+      libchar::format_to_write(verb.output, verb.writing) == "csv" && verb.writing.time_column;
+  if (stamps && libchar::read_once(verb.log)) {
     const libchar::Recording recording =
-        libchar::read_recording(options.log, options.reading, session.terminal);
-    sink = std::make_unique<Writing>(options, nullptr);
+        libchar::read_recording(verb.log, verb.reading, session.terminal);
+    sink = std::make_unique<Writing>(verb, nullptr);
     write_whole(*sink, recording);
     return recording.info;
   }
   libchar::LogInfo known;
   if (stamps) {
-    libchar::ReadOptions quick = options.reading;
+    libchar::ReadOptions quick = verb.reading;
     quick.hash = false;
     Nothing nothing;
-    known = libchar::read_log(options.log, quick, nothing, session.terminal);
+    known = libchar::read_log(verb.log, quick, nothing, session.terminal);
   }
-  sink = std::make_unique<Writing>(options, stamps ? &known : nullptr);
-  return libchar::read_log(options.log, options.reading, *sink, session.terminal);
+  sink = std::make_unique<Writing>(verb, stamps ? &known : nullptr);
+  return libchar::read_log(verb.log, verb.reading, *sink, session.terminal);
 }
 
-void check_paths(const ConvertOptions& options) {
+void check_paths(const ConvertVerb& verb) {
   for (const char* suffix : {"", ".json", ".yaml", ".yml"}) {
     for (const char* other : {"", ".json"})
-      libchar::refuse_same_file(options.log + suffix, options.output + other);
+      libchar::refuse_same_file(verb.log + suffix, verb.output + other);
   }
 }
 
-void run_convert(Session& session, ConvertOptions& options) {
-  options.writing.big_endian = options.endian == "big";
-  options.writing.time_column = !options.no_time_column;
-  check_paths(options);
+void run_convert(Session& session, ConvertVerb& verb) {
+  verb.writing.big_endian = verb.endian == "big";
+  verb.writing.time_column = !verb.no_time_column;
+  check_paths(verb);
   std::unique_ptr<Writing> sink;
-  const libchar::LogInfo info = transfer(session, options, sink);
+  const libchar::LogInfo info = transfer(session, verb, sink);
   session.terminal.clear();
   report_warnings(session, info);
   // With --strict nothing is written from a log that has warnings.
   if (session.strict && !info.warnings.empty()) return;
   libchar::LogWriter& writer = sink->writer();
   writer.refine(info);
-  session.terminal.update(1, "writing " + options.output);  // the last chance to be stopped
+  session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
   writer.finish();
   const std::vector<std::string> losses = writer.losses();
   for (const std::string& loss : losses)
@@ -127,7 +126,7 @@ void run_convert(Session& session, ConvertOptions& options) {
                               bytes)
                 : fmt::format("{}: its sidecar, {} bytes\n", libchar::printable(file), bytes);
   }
-  if (!options.json) return print(text);
+  if (!verb.json) return print(text);
   libchar::Json document = document_head(session, "convert", {&info});
   document["output"] = files;
   document["rows"] = info.samples;
@@ -136,46 +135,43 @@ void run_convert(Session& session, ConvertOptions& options) {
   print(libchar::dump_json(document));
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<ConvertVerb>();
+  options.add_text("LOG", verb->log, "log to read; - reads CSV from standard input").required();
+  options
+      .add_text("-o,--output",
+                verb->output,
+                "file to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+      .required()
+      .value_name("FILE");
+  options.add_choice("--as",
+                     verb->writing.format,
+                     {"auto", "csv", "npy", "raw"},
+                     "format to write (default: auto, by the suffix)");
+  options.add_choice("--dtype",
+                     verb->writing.dtype,
+                     {"f64", "f32"},
+                     "npy, raw: type of the numbers (default: f64)");
+  options.add_choice("--order",
+                     verb->writing.order,
+                     {"interleaved", "planar"},
+                     "npy, raw: row by row or channel by channel (default: interleaved)");
+  options.add_choice("--endian",
+                     verb->endian,
+                     {"little", "big"},
+                     "npy, raw: order of the bytes (default: little)");
+  options.add_flag(
+      "--no-time-column", verb->no_time_column, "csv: leave out the first column t[s] or t[ns]");
+  options.add_flag("--force", verb->writing.overwrite, "overwrite an existing file");
+  options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  add_reading_options(options, session, verb->reading);
+  return [&session, verb] { run_convert(session, *verb); };
+}
+
 }  // namespace
 
-void add_convert(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* verb = add_verb(app,
-                            session,
-                            "convert",
-                            "From one log format to another, without losing a bit",
-                            [&session, options] { run_convert(session, *options); });
-  verb->add_option("LOG", options->log, "log to read; - reads CSV from standard input")->required();
-  verb->add_option("-o,--output",
-                   options->output,
-                   "file to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
-      ->required()
-      ->type_name("FILE");
-  add_choice(*verb,
-             "--as",
-             options->writing.format,
-             {"auto", "csv", "npy", "raw"},
-             "format to write (default: auto, by the suffix)");
-  add_choice(*verb,
-             "--dtype",
-             options->writing.dtype,
-             {"f64", "f32"},
-             "npy, raw: type of the numbers (default: f64)");
-  add_choice(*verb,
-             "--order",
-             options->writing.order,
-             {"interleaved", "planar"},
-             "npy, raw: row by row or channel by channel (default: interleaved)");
-  add_choice(*verb,
-             "--endian",
-             options->endian,
-             {"little", "big"},
-             "npy, raw: order of the bytes (default: little)");
-  verb->add_flag(
-      "--no-time-column", options->no_time_column, "csv: leave out the first column t[s] or t[ns]");
-  verb->add_flag("--force", options->writing.overwrite, "overwrite an existing file");
-  verb->add_flag("--json", options->json, "one JSON document on stdout instead of text");
-  add_reading_options(*verb, session, options->reading);
+VerbEntry verb_convert() {
+  return {10, "convert", "From one log format to another, without losing a bit", add_options};
 }
 
 }  // namespace sensorchar

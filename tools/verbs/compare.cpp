@@ -13,7 +13,7 @@
 #include "libchar/replay/comparison_check.hpp"
 #include "libchar/replay/verdict.hpp"
 #include "libchar/report/comparison_text.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -110,28 +110,33 @@ void run_compare(Session& session, const CompareVerb& verb) {
   throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<CompareVerb>();
+  options.add_text("A", verb->a, "report.json of a replay, or the folder that holds it").required();
+  options.add_text("B", verb->b, "the same of the replay that is held against it").required();
+  options
+      .add_texts("--fail-if",
+                 verb->checks,
+                 "exit code 6 when B is worse than A by more: rmse+5%, ns_per_sample+20%, "
+                 "peak_bytes+10%, regret+0.5% (points); minque:rmse+5% for one algorithm; "
+                 "several times")
+      .value_name("[LABEL:]METRIC+N%")
+      .one_value_each();
+  options.add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
+  const Option json =
+      options.add_flag("--json", verb->json, "one JSON document instead of the table");
+  options.add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table")
+      .excludes(json);
+  return [&session, verb] { run_compare(session, *verb); };
+}
+
 }  // namespace
 
-void add_compare(CLI::App& app, Session& session) {
-  const auto verb = std::make_shared<CompareVerb>();
-  CLI::App* sub = add_verb(app,
-                           session,
-                           "compare",
-                           "Two reports of replay side by side; refuses those of unlike scenes",
-                           [&session, verb] { run_compare(session, *verb); });
-  sub->add_option("A", verb->a, "report.json of a replay, or the folder that holds it")->required();
-  sub->add_option("B", verb->b, "the same of the replay that is held against it")->required();
-  sub->add_option("--fail-if",
-                  verb->checks,
-                  "exit code 6 when B is worse than A by more: rmse+5%, ns_per_sample+20%, "
-                  "peak_bytes+10%, regret+0.5% (points); minque:rmse+5% for one algorithm; "
-                  "several times")
-      ->type_name("[LABEL:]METRIC+N%")
-      ->allow_extra_args(false);
-  sub->add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
-  CLI::Option* json = sub->add_flag("--json", verb->json, "one JSON document instead of the table");
-  sub->add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table")
-      ->excludes(json);
+VerbEntry verb_compare() {
+  return {9,
+          "compare",
+          "Two reports of replay side by side; refuses those of unlike scenes",
+          add_options};
 }
 
 }  // namespace sensorchar

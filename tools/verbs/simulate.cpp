@@ -24,7 +24,7 @@
 #include "libchar/scene/scene_writer.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "numbers.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -389,96 +389,96 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   print(dump_json(document));
 }
 
-}  // namespace
-
-void add_simulate(CLI::App& app, Session& session) {
+std::function<void()> add_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<SimulateVerb>();
-  CLI::App* sub = add_verb(app,
-                           session,
-                           "simulate",
-                           "A recording with known truth, from sensor models or a scene",
-                           [&session, verb] { run_simulate(session, *verb); });
-  sub->add_option("SOURCE",
-                  verb->sources,
-                  "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml)")
-      ->required()
-      ->type_name("MODEL…|SCENE");
-  sub->add_option("-o,--output",
-                  verb->output,
-                  "log to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
-      ->required()
-      ->type_name("LOG");
-  add_duration(*sub, "--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
-  add_count(*sub, "--samples", verb->samples, "length in samples", 1);
-  add_rate(*sub, "--rate", verb->rate_hz, "sampling rate (default: the model's)");
-  sub->add_option_function<std::string>(
-         "--seed",
-         [verb](const std::string& text) {
-           try {
-             verb->seed = parse_count(text);
-           } catch (const Error&) {
-             refuse("--seed", "expected a whole number from 0 to 18446744073709551615", text);
-           }
-           verb->seed_given = true;
-         },
-         "seed of all random numbers (default: 1); the same seed gives the same samples")
-      ->type_name("N");
-  add_count(
-      *sub,
+  options
+      .add_texts("SOURCE",
+                 verb->sources,
+                 "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml)")
+      .required()
+      .value_name("MODEL…|SCENE");
+  options
+      .add_text("-o,--output",
+                verb->output,
+                "log to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+      .required()
+      .value_name("LOG");
+  options.add_duration("--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
+  options.add_count("--samples", verb->samples, "length in samples", 1);
+  options.add_rate("--rate", verb->rate_hz, "sampling rate (default: the model's)");
+  options.add_parsed(
+      "--seed",
+      "N",
+      [verb](const std::string& text) {
+        try {
+          verb->seed = parse_count(text);
+        } catch (const Error&) {
+          refuse("--seed", "expected a whole number from 0 to 18446744073709551615", text);
+        }
+        verb->seed_given = true;
+      },
+      "seed of all random numbers (default: 1); the same seed gives the same samples");
+  options.add_count(
       "--devices",
       verb->devices,
       "devices made from each model, each with its own scale factor, bias and noise (default: 1)",
       1,
       kMostDevices);
-  sub->add_option(
-         "--truth",
-         verb->truth,
-         "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, "
-         "noise, uniform, random_walk, ramp, or recording,file=LOG,channel=NAME; its keys "
-         "are those of scenes (default: zero)")
-      ->type_name("SIGNAL");
-  sub->add_option("--temperature",
-                  verb->temperature,
-                  "temperature in degC, a signal as well (default: the models' reference)")
-      ->type_name("SIGNAL");
-  sub->add_option("--fault", verb->faults, kFaultHelp)->type_name("FAULT");
-  add_count(*sub,
-            "--oversampling",
-            verb->oversampling,
-            "signals and noise are made so many times faster than the samples (default: 1)",
-            1,
-            1024);
-  sub->add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
-  sub->add_option("--scene",
-                  verb->scene_path,
-                  "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
-      ->type_name("FILE");
-  sub->add_flag("--no-scene", verb->no_scene, "write no scene");
-  add_choice(*sub,
-             "--as",
-             verb->writing.format,
-             {"auto", "csv", "npy", "raw"},
-             "format to write (default: auto, by the suffix)");
-  add_choice(*sub,
-             "--dtype",
-             verb->writing.dtype,
-             {"f64", "f32"},
-             "npy, raw: type of the numbers (default: f64)");
-  add_choice(*sub,
-             "--order",
-             verb->writing.order,
-             {"interleaved", "planar"},
-             "npy, raw: row by row or channel by channel (default: interleaved)");
-  add_choice(*sub,
-             "--endian",
-             verb->endian,
-             {"little", "big"},
-             "npy, raw: order of the bytes (default: little)");
-  sub->add_flag("--no-time-column", verb->no_time_column, "csv: leave out the first column t[s]");
-  sub->add_flag(
+  options
+      .add_text("--truth",
+                verb->truth,
+                "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, "
+                "noise, uniform, random_walk, ramp, or recording,file=LOG,channel=NAME; its keys "
+                "are those of scenes (default: zero)")
+      .value_name("SIGNAL");
+  options
+      .add_text("--temperature",
+                verb->temperature,
+                "temperature in degC, a signal as well (default: the models' reference)")
+      .value_name("SIGNAL");
+  options.add_texts("--fault", verb->faults, kFaultHelp).value_name("FAULT");
+  options.add_count("--oversampling",
+                    verb->oversampling,
+                    "signals and noise are made so many times faster than the samples (default: 1)",
+                    1,
+                    1024);
+  options.add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
+  options
+      .add_text("--scene",
+                verb->scene_path,
+                "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+      .value_name("FILE");
+  options.add_flag("--no-scene", verb->no_scene, "write no scene");
+  options.add_choice("--as",
+                     verb->writing.format,
+                     {"auto", "csv", "npy", "raw"},
+                     "format to write (default: auto, by the suffix)");
+  options.add_choice("--dtype",
+                     verb->writing.dtype,
+                     {"f64", "f32"},
+                     "npy, raw: type of the numbers (default: f64)");
+  options.add_choice("--order",
+                     verb->writing.order,
+                     {"interleaved", "planar"},
+                     "npy, raw: row by row or channel by channel (default: interleaved)");
+  options.add_choice("--endian",
+                     verb->endian,
+                     {"little", "big"},
+                     "npy, raw: order of the bytes (default: little)");
+  options.add_flag(
+      "--no-time-column", verb->no_time_column, "csv: leave out the first column t[s]");
+  options.add_flag(
       "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
-  sub->add_flag("--force", verb->writing.overwrite, "overwrite existing files");
-  sub->add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  options.add_flag("--force", verb->writing.overwrite, "overwrite existing files");
+  options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  return [&session, verb] { run_simulate(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_simulate() {
+  return {
+      7, "simulate", "A recording with known truth, from sensor models or a scene", add_options};
 }
 
 }  // namespace sensorchar

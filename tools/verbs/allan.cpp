@@ -8,7 +8,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/report/outputs.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -91,26 +91,29 @@ void run_allan(Session& session, const AllanVerb& verb) {
   }
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<AllanVerb>();
+  options
+      .add_text("LOG",
+                verb->log,
+                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .required();
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag("--json", verb->json, "one JSON document instead of CSV");
+  add_reading_options(options, session, verb->analysis.options.reading);
+  add_data_options(options, verb->analysis);
+  add_allan_options(options, verb->analysis);
+  return [&session, verb] { run_allan(session, *verb); };
+}
+
 }  // namespace
 
-void add_allan(CLI::App& app, Session& session) {
-  auto verb = std::make_shared<AllanVerb>();
-  CLI::App* sub =
-      add_verb(app,
-               session,
-               "allan",
-               "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
-               [&session, verb] { run_allan(session, *verb); });
-  sub->add_option("LOG",
-                  verb->log,
-                  "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
-      ->required();
-  sub->add_option("-o,--output", verb->output, "write there instead of to stdout");
-  sub->add_flag("--force", verb->force, "overwrite the output file");
-  sub->add_flag("--json", verb->json, "one JSON document instead of CSV");
-  add_reading_options(*sub, session, verb->analysis.options.reading);
-  add_data_options(*sub, verb->analysis);
-  add_allan_options(*sub, verb->analysis);
+VerbEntry verb_allan() {
+  return {3,
+          "allan",
+          "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
+          add_options};
 }
 
 }  // namespace sensorchar

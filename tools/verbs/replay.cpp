@@ -25,7 +25,7 @@
 #include "libchar/scene/scene_file.hpp"
 #include "numbers.hpp"
 #include "output_files.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -332,60 +332,67 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   print(written + "\n");
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<ReplayVerb>();
+  options.add_text(
+      "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation");
+  options.add_text("-o,--output", verb->folder, "folder for the results, made when absent")
+      .value_name("DIR");
+  options
+      .add_texts("--algorithms",
+                 verb->algorithms,
+                 "run these only (default: the scene's, else all it can feed)")
+      .separated_by_commas()
+      .value_name("NAME,…");
+  options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
+      .value_name("SETTING");
+  options
+      .add_text("--learning",
+                verb->learning,
+                "learning window FROM..TO in seconds (default: the scene's)")
+      .value_name("WINDOW");
+  options
+      .add_text("--evaluation",
+                verb->evaluation,
+                "what is scored, FROM..TO in seconds (default: the scene's, else all behind the "
+                "learning window)")
+      .value_name("WINDOW");
+  options
+      .add_texts(
+          "--fault", verb->faults, std::string(kFaultHelp) + "; injected on top of the scene's")
+      .value_name("FAULT");
+  options.add_flag("--no-faults", verb->no_faults, "leave out the faults that the scene injects");
+  options.add_duration("--window",
+                       verb->window_s,
+                       "length of the window RMS (default: a fiftieth of the evaluation)");
+  options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
+  options
+      .add_text("--estimates",
+                verb->estimates,
+                "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
+      .value_name("FORMAT");
+  options.add_count("--seed", verb->seed, "seed of the bootstrap intervals (default: 1)");
+  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
+  options.add_flag("--explain",
+                   verb->explain,
+                   "print the plan: what would be read, learnt, run, skipped and why");
+  options.add_flag("--no-skip",
+                   verb->no_skip,
+                   "do all work whether an output needs it or not; the numbers are the same");
+  options.add_flag(
+      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--json", verb->json, "print report.json to stdout instead of the table");
+  return [&session, verb] { run_replay(session, *verb); };
+}
+
 }  // namespace
 
-void add_replay(CLI::App& app, Session& session) {
-  const auto verb = std::make_shared<ReplayVerb>();
-  CLI::App* sub = add_verb(
-      app,
-      session,
-      "replay",
-      "Every fusion algorithm a scene can feed, compared: report.html, report.json, report.md",
-      [&session, verb] { run_replay(session, *verb); });
-  sub->add_option(
-      "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation");
-  sub->add_option("-o,--output", verb->folder, "folder for the results, made when absent")
-      ->type_name("DIR");
-  sub->add_option("--algorithms",
-                  verb->algorithms,
-                  "run these only (default: the scene's, else all it can feed)")
-      ->delimiter(',')
-      ->type_name("NAME,…");
-  sub->add_option("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
-      ->type_name("SETTING");
-  sub->add_option(
-         "--learning", verb->learning, "learning window FROM..TO in seconds (default: the scene's)")
-      ->type_name("WINDOW");
-  sub->add_option("--evaluation",
-                  verb->evaluation,
-                  "what is scored, FROM..TO in seconds (default: the scene's, else all behind the "
-                  "learning window)")
-      ->type_name("WINDOW");
-  sub->add_option(
-         "--fault", verb->faults, std::string(kFaultHelp) + "; injected on top of the scene's")
-      ->type_name("FAULT");
-  sub->add_flag("--no-faults", verb->no_faults, "leave out the faults that the scene injects");
-  add_duration(*sub,
-               "--window",
-               verb->window_s,
-               "length of the window RMS (default: a fiftieth of the evaluation)");
-  sub->add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
-  sub->add_option("--estimates",
-                  verb->estimates,
-                  "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
-      ->type_name("FORMAT");
-  add_count(*sub, "--seed", verb->seed, "seed of the bootstrap intervals (default: 1)");
-  sub->add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
-  sub->add_flag("--explain",
-                verb->explain,
-                "print the plan: what would be read, learnt, run, skipped and why");
-  sub->add_flag("--no-skip",
-                verb->no_skip,
-                "do all work whether an output needs it or not; the numbers are the same");
-  sub->add_flag(
-      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
-  sub->add_flag("--force", verb->force, "overwrite results of an earlier run");
-  sub->add_flag("--json", verb->json, "print report.json to stdout instead of the table");
+VerbEntry verb_replay() {
+  return {8,
+          "replay",
+          "Every fusion algorithm a scene can feed, compared: report.html, report.json, report.md",
+          add_options};
 }
 
 }  // namespace sensorchar

@@ -11,12 +11,12 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/inspection.hpp"
 #include "reading_options.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
 
-struct InspectOptions {
+struct InspectVerb {
   std::vector<std::string> logs;
   libchar::ReadOptions reading;
   bool json = false;
@@ -63,8 +63,8 @@ std::string channel_table(const libchar::Inspection& inspection) {
   return table(rows);
 }
 
-std::string next_command(const InspectOptions& options, const libchar::LogInfo& info) {
-  const std::string flags = reading_flags(options.reading, info);
+std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {
+  const std::string flags = reading_flags(verb.reading, info);
   const std::string log = shell_word(info.file);
   if (info.time.rate_hz <= 0 && !info.time.column.empty())
     return fmt::format("  next: {} with a time stamp {} no sampling rate; two rows would\n",
@@ -82,7 +82,7 @@ std::string next_command(const InspectOptions& options, const libchar::LogInfo& 
                      shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
 }
 
-std::string for_people(const InspectOptions& options, const libchar::Inspection& inspection) {
+std::string for_people(const InspectVerb& verb, const libchar::Inspection& inspection) {
   const libchar::LogInfo& info = inspection.info;
   std::string text = libchar::summary_line(info) + "\n";
   std::string dialect = info.format;
@@ -100,20 +100,20 @@ std::string for_people(const InspectOptions& options, const libchar::Inspection&
       text += fmt::format("  {}: {}\n",
                           libchar::printable(info.channels[c].name, 40),
                           libchar::printable(suggestion));
-  return text + next_command(options, info);
+  return text + next_command(verb, info);
 }
 
-void run_inspect(Session& session, const InspectOptions& options) {
+void run_inspect(Session& session, const InspectVerb& verb) {
   std::vector<libchar::Inspection> inspections;
-  for (const std::string& log : options.logs) {
-    inspections.push_back(libchar::inspect(log, options.reading, session.terminal));
+  for (const std::string& log : verb.logs) {
+    inspections.push_back(libchar::inspect(log, verb.reading, session.terminal));
     session.terminal.clear();
     const libchar::LogInfo& info = inspections.back().info;
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
-    if (!options.json)
-      print((inspections.size() > 1 ? "\n" : "") + for_people(options, inspections.back()));
+    if (!verb.json)
+      print((inspections.size() > 1 ? "\n" : "") + for_people(verb, inspections.back()));
   }
-  if (!options.json) return;
+  if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;
   for (const libchar::Inspection& inspection : inspections) inputs.push_back(&inspection.info);
   libchar::Json document = document_head(session, "inspect", inputs);
@@ -121,19 +121,19 @@ void run_inspect(Session& session, const InspectOptions& options) {
   print(libchar::dump_json(document));
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<InspectVerb>();
+  options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input")
+      .required();
+  options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  add_reading_options(options, session, verb->reading);
+  return [&session, verb] { run_inspect(session, *verb); };
+}
+
 }  // namespace
 
-void add_inspect(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<InspectOptions>();
-  CLI::App* verb = add_verb(app,
-                            session,
-                            "inspect",
-                            "What is in a log: channels, rate, gaps, repairs, resolution",
-                            [&session, options] { run_inspect(session, *options); });
-  verb->add_option("LOG", options->logs, "logs to look at; - reads CSV from standard input")
-      ->required();
-  verb->add_flag("--json", options->json, "one JSON document on stdout instead of text");
-  add_reading_options(*verb, session, options->reading);
+VerbEntry verb_inspect() {
+  return {1, "inspect", "What is in a log: channels, rate, gaps, repairs, resolution", add_options};
 }
 
 }  // namespace sensorchar

@@ -15,7 +15,7 @@
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "numbers.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace sensorchar {
 namespace {
@@ -221,74 +221,70 @@ void run_model(Session& session, ModelVerb& verb) {
   run_export(session, verb);
 }
 
-void add_choices(CLI::App& sub, ModelVerb& verb) {
+void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
-  add_choice(
-      sub,
+  sub.add_choice(
       "--axes",
       verb.axes,
       {"auto", "max", "rms", "x", "y", "z"},
       "one number for three axes: the largest, their root mean square, or one axis (auto: each "
       "its own where the consumer takes three, else max)");
-  sub.add_option(
+  sub.add_texts(
          "--axis",
          verb.places,
          "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
          "a, m alone for all three axes")
-      ->type_name("CHANNEL=PLACE")
-      ->allow_extra_args(false);
-  add_number(sub, "--inflate", options.inflate, "multiply every noise number (1)", kSmall);
-  add_number(
-      sub,
+      .value_name("CHANNEL=PLACE")
+      .one_value_each();
+  sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
+  sub.add_number(
       "--floor-tau",
       options.floor_tau_s,
       "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from "
       "the model)",
       kSmall);
-  add_number(sub,
-             "--correlation-time",
-             options.correlation_s,
-             "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)",
-             kSmall);
-  add_number(sub,
-             "--airsim-tau",
-             options.bias_tau_s,
-             "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
-             kSmall);
-  add_number(sub,
-             "--filter-step",
-             options.filter_step_s,
-             "px4: step of the filter's prediction in s (0.01)",
-             kSmall);
-  add_number(
-      sub, "--gravity", options.gravity, "vins, gtsam: gravity in m/s² (not written)", kSmall);
-  sub.add_option("--topic", options.topic, "kalibr, openvins: ROS topic (/imu0)")
-      ->type_name("NAME");
+  sub.add_number("--correlation-time",
+                 options.correlation_s,
+                 "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)",
+                 kSmall);
+  sub.add_number("--airsim-tau",
+                 options.bias_tau_s,
+                 "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
+                 kSmall);
+  sub.add_number("--filter-step",
+                 options.filter_step_s,
+                 "px4: step of the filter's prediction in s (0.01)",
+                 kSmall);
+  sub.add_number(
+      "--gravity", options.gravity, "vins, gtsam: gravity in m/s² (not written)", kSmall);
+  sub.add_text("--topic", options.topic, "kalibr, openvins: ROS topic (/imu0)").value_name("NAME");
   sub.add_flag("--older",
                options.older,
                "basalt: one number in place of three; orbslam3: whole rate, no File.version");
 }
 
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<ModelVerb>();
+  options.add_texts(
+      "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
+  options.add_text("--to", verb->target, "target; --list names them").value_name("NAME");
+  options.add_flag("--list", verb->list, "the targets, each with its convention");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag("--json", verb->json, "one JSON document instead of text");
+  add_choices(options, *verb);
+  return [&session, verb] { run_model(session, *verb); };
+}
+
 }  // namespace
 
-void add_model(CLI::App& app, Session& session) {
-  const auto verb = std::make_shared<ModelVerb>();
-  CLI::App* sub =
-      add_verb(app,
-               session,
-               "model",
-               "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
-               [&session, verb] { run_model(session, *verb); });
-  sub->add_option(
-      "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
-  sub->add_option("--to", verb->target, "target; --list names them")->type_name("NAME");
-  sub->add_flag("--list", verb->list, "the targets, each with its convention");
-  sub->add_option("-o,--output", verb->output, "write there instead of to stdout")
-      ->type_name("FILE");
-  sub->add_flag("--force", verb->force, "overwrite the output file");
-  sub->add_flag("--json", verb->json, "one JSON document instead of text");
-  add_choices(*sub, *verb);
+VerbEntry verb_model() {
+  return {6,
+          "model",
+          "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
+          add_options};
 }
 
 }  // namespace sensorchar
