@@ -1,4 +1,4 @@
-#include "libchar/report/detail/replay_timeline.hpp"
+#include "libchar/replay/detail/thinned_tracks.hpp"
 
 #include <algorithm>
 #include <cmath>
