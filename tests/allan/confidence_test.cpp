@@ -9,7 +9,7 @@
 #include <random>
 
 #include "libchar/allan/allan_covariance.hpp"
-#include "libchar/allan/equivalent_dof.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/shared.hpp"

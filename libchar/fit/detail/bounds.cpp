@@ -3,7 +3,7 @@
 //   / theta_a,
 // (Whittle's form of the Fisher information), summed over log bins with three nodes each, so that N = 1e12 costs as much as N
 // = 1e3.
-#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/detail/bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

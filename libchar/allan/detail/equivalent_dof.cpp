@@ -9,7 +9,7 @@
 // m >> 1; at small m it promises more than there is. Used here: the exact edf of the overlapping
 // deviation plus what the reflection adds to it for m >> 1, but not above it.
 
-#include "libchar/allan/equivalent_dof.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
 
 #include <algorithm>
 #include <cassert>
