@@ -1,28 +1,15 @@
 #pragma once
-// The writers of write.hpp, one file each, and what they share.
+// Numbers of one type to a file, row by row or column by column.
 
-#include <memory>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/binary/number_type.hpp"
-#include "libchar/log/write.hpp"
 
 namespace libchar {
-
-std::unique_ptr<LogWriter> write_csv(const std::string& path,
-                                     const LogInfo& info,
-                                     const WriteOptions& options);
-std::unique_ptr<LogWriter> write_npy(const std::string& path,
-                                     const LogInfo& info,
-                                     const WriteOptions& options);
-std::unique_ptr<LogWriter> write_raw(const std::string& path,
-                                     const LogInfo& info,
-                                     const WriteOptions& options);
-
-/// Are the channels called c0, c1… in this order, as a reader calls channels without names?
-bool unnamed(const std::vector<Channel>& channels);
 
 /// Numbers of one type, row by row or column by column. Columns of unknown length are kept in a
 /// nameless file in the target's folder until their end is known.
