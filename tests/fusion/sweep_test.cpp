@@ -1,4 +1,4 @@
-// Promises that hold for every algorithm of the registry on every scene (reliability.md 4).
+// Promises that hold for every algorithm of the registry on every scene.
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -40,7 +40,7 @@ std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene
     }
     return runner;
   } catch (const Error& error) {
-    CHECK_FALSE(error.fault().what.empty());
+    CHECK_FALSE(error.problem().what.empty());
     return nullptr;
   }
 }
