@@ -15,8 +15,8 @@ struct ReadOff {
   std::optional<double> random_walk;  ///< K: the +1/2 line, read at tau = 3 s
   double minimum = 0;                 ///< of the curve, reliable points first
   double minimum_tau_s = 0;
-  double bias_instability_upper =
-      0;  ///< minimum/0.664: an upper bound of B wherever Q or K matters there
+  /// minimum/0.664: an upper bound of B wherever Q or K matters there
+  double bias_instability_upper = 0;
   double white_tau_s = 0, walk_tau_s = 0;  ///< where each line touches the curve; 0 without
 };
 
