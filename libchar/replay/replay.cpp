@@ -41,8 +41,15 @@ struct SensorMeter {
 
 class Replay {
  public:
-  Replay(const Scene& scene, const ReplayOptions& options, Progress& progress)
-      : scene_(scene), options_(options), progress_(progress), feed_(scene, progress) {
+  Replay(const Scene& scene,
+         const ReplayOptions& options,
+         Progress& progress,
+         const ReplayWorkspace& workspace)
+      : scene_(scene),
+        options_(options),
+        workspace_(workspace),
+        progress_(progress),
+        feed_(scene, progress) {
     if (scene.reference && scene.reference->estimate_lag) estimate_lag();
     PassProgress at_rest(progress, "measuring the rest");
     knowledge_ = know_sensors(scene, feed_, at_rest);
@@ -79,7 +86,7 @@ class Replay {
 
   void prepare() {
     frame_.given = &plan_.given;
-    frame_.heap = options_.heap;
+    frame_.heap = workspace_.heap;
     frame_.rate_hz = feed_.info().rate_hz;
     frame_.start_s = feed_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
     frame_.output_scale = feed_.info().output_scale;
@@ -157,7 +164,7 @@ class Replay {
   void run_all() {
     PassProgress passing(progress_, "replaying");
     ++passes_;
-    if (options_.estimates != nullptr) begin_estimates();
+    if (workspace_.estimates != nullptr) begin_estimates();
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     feed_.pass(
         plan_.run_from,
@@ -172,7 +179,7 @@ class Replay {
           for (const auto& blind : blind_)
             if (blind) blind->run(samples);
           judge_sensors(samples, sound, truth);
-          if (options_.estimates != nullptr) give_estimates(truth);
+          if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
         passing);
@@ -214,11 +221,11 @@ class Replay {
     std::vector<std::string> labels;
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked) labels.push_back(run.planned().label);
-    options_.estimates->begin(labels,
-                              inputs(),
-                              frame_.rate_hz,
-                              frame_.start_s,
-                              static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
+    workspace_.estimates->begin(labels,
+                                inputs(),
+                                frame_.rate_hz,
+                                frame_.start_s,
+                                static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
   }
 
   void give_estimates(const Eigen::MatrixXd& truth) {
@@ -229,7 +236,7 @@ class Replay {
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked)
         for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
-    options_.estimates->block(columns);
+    workspace_.estimates->block(columns);
   }
 
   // After everything else: what the algorithms hold then is of no interest.
@@ -254,11 +261,25 @@ class Replay {
     return out;
   }
 
+  /// A result, and the error by which it is compared with others; null: by none.
+  struct Scored {
+    AlgorithmResult result;
+    const ErrorMeter* meter = nullptr;
+  };
   ReplayResult collect();
+  void add_facts(ReplayResult& out) const;
+  void add_sensors(ReplayResult& out, const ScoreOptions& scoring) const;
+  Scored scored(const AlgorithmRun& run,
+                const BlindRun* blind,
+                const ReplayResult& so_far,
+                const ScoreOptions& scoring) const;
+  std::vector<const ErrorMeter*> add_algorithms(ReplayResult& out,
+                                                const ScoreOptions& scoring) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
   const Scene& scene_;
   const ReplayOptions& options_;
+  const ReplayWorkspace workspace_;
   Progress& progress_;
   Feed feed_;
   SensorKnowledge knowledge_;
@@ -290,17 +311,9 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   return out;
 }
 
-ReplayResult Replay::collect() {
-  const ScoreOptions scoring{40, 1000, options_.seed};
-  if (feed_.info().has_reference && truths_ == 0)
-    throw Error({ErrorKind::input,
-                 "E0902",
-                 scene_.file,
-                 "the reference has no value within the evaluation",
-                 "",
-                 "its stamps, its lag or its gaps put it elsewhere"});
+// What the scene is, as far as the reports tell it.
+void Replay::add_facts(ReplayResult& out) const {
   const FeedInfo& info = feed_.info();
-  ReplayResult out;
   out.scene = scene_;
   out.logs = info.logs;
   out.plan = explain();
@@ -322,41 +335,75 @@ ReplayResult Replay::collect() {
   out.warnings = scene_.warnings;
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
+}
+
+void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     out.sensors.push_back(sensor_result(i, scoring));
   for (const SensorResult& sensor : out.sensors)
     if (sensor.constant)
       out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
-  std::vector<const ErrorMeter*> meters;
-  auto run = runs_.begin();
-  for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
-    const bool ran = algorithm.runs();
-    const AlgorithmRun* mine = ran ? &*run : nullptr;
-    const BlindRun* blind =
-        ran ? blind_[static_cast<std::size_t>(run - runs_.begin())].get() : nullptr;
-    if (ran) ++run;
-    if (mine != nullptr) {
-      out.work.learnt += mine->learnt();
-      out.work.steps += mine->steps();
-    }
-    if (blind != nullptr) out.work.blind_steps += blind->steps();
-    if (!algorithm.asked) continue;
-    AlgorithmResult result =
-        mine != nullptr ? mine->result(scoring, out.window_s) : not_run(algorithm, algorithm.why);
-    meters.push_back(nullptr);
-    if (result.ran && !result.inputs.empty()) meters.back() = &mine->meters()[0];
-    if (result.ran && blind != nullptr && !info.has_reference) {
-      result.blind = blind->result(info.rate_hz, scoring);
-      result.rmse = result.blind->leave_one_out_rms;
-      result.rmse_ci95 = result.blind->leave_one_out_ci95;
-      meters.back() = &blind->meter();
-    }
-    if (!options_.allan)
-      for (InputScore& input : result.inputs) input.allan = {};
-    if (mine != nullptr) judge_tracking(result, *mine, optimum_, out, plan_.given);
-    answer_faults(result, out);
-    out.algorithms.push_back(std::move(result));
+}
+
+// One that ran, and by which of its errors it is compared with others; null: by none.
+Replay::Scored Replay::scored(const AlgorithmRun& run,
+                              const BlindRun* blind,
+                              const ReplayResult& so_far,
+                              const ScoreOptions& scoring) const {
+  Scored out{run.result(scoring, so_far.window_s), nullptr};
+  AlgorithmResult& result = out.result;
+  if (result.ran && !result.inputs.empty()) out.meter = &run.meters()[0];
+  if (result.ran && blind != nullptr && !so_far.has_reference) {
+    result.blind = blind->result(so_far.rate_hz, scoring);
+    result.rmse = result.blind->leave_one_out_rms;
+    result.rmse_ci95 = result.blind->leave_one_out_ci95;
+    out.meter = &blind->meter();
   }
+  if (!options_.allan)
+    for (InputScore& input : result.inputs) input.allan = {};
+  judge_tracking(result, run, optimum_, so_far, plan_.given);
+  return out;
+}
+
+// All that were asked for. Returns by which error each is compared.
+std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
+                                                      const ScoreOptions& scoring) const {
+  std::vector<const ErrorMeter*> meters;
+  std::size_t next = 0;
+  for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
+    Scored one{{}, nullptr};
+    if (algorithm.runs()) {
+      const AlgorithmRun& run = runs_[next];
+      const BlindRun* blind = blind_[next++].get();
+      out.work.learnt += run.learnt();
+      out.work.steps += run.steps();
+      if (blind != nullptr) out.work.blind_steps += blind->steps();
+      if (!algorithm.asked) continue;
+      one = scored(run, blind, out, scoring);
+    } else {
+      if (!algorithm.asked) continue;
+      one.result = not_run(algorithm, algorithm.why);
+    }
+    meters.push_back(one.meter);
+    answer_faults(one.result, out);
+    out.algorithms.push_back(std::move(one.result));
+  }
+  return meters;
+}
+
+ReplayResult Replay::collect() {
+  const ScoreOptions scoring{40, 1000, options_.seed};
+  if (feed_.info().has_reference && truths_ == 0)
+    throw Error({ErrorKind::input,
+                 "E0902",
+                 scene_.file,
+                 "the reference has no value within the evaluation",
+                 "",
+                 "its stamps, its lag or its gaps put it elsewhere"});
+  ReplayResult out;
+  add_facts(out);
+  add_sensors(out, scoring);
+  const std::vector<const ErrorMeter*> meters = add_algorithms(out, scoring);
   std::vector<double> sound_rms;
   for (const SensorMeter& meter : sensors_)
     sound_rms.push_back(std::sqrt(meter.sound_squares / meter.sound_samples));
@@ -375,12 +422,15 @@ ReplayResult Replay::collect() {
 std::vector<std::string> explain_replay(const Scene& scene,
                                         const ReplayOptions& options,
                                         Progress& progress) {
-  return Replay(scene, options, progress).explain();
+  return Replay(scene, options, progress, {}).explain();
 }
 
-ReplayResult replay(const Scene& scene, const ReplayOptions& options, Progress& progress) {
+ReplayResult replay(const Scene& scene,
+                    const ReplayOptions& options,
+                    Progress& progress,
+                    const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
-  ReplayResult out = Replay(scene, options, progress).run();
+  ReplayResult out = Replay(scene, options, progress, workspace).run();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

@@ -171,7 +171,7 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
     });
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
-      const Spectrum spectrum = welch(kept_, rate_hz, options_->spectrum);
+      const Spectrum spectrum = welch(kept_, rate_hz, options_->spectrum, &workspace_->welch);
       result.lines = find_lines(spectrum);
       result.spectrum = log_binned(spectrum, kPlottedBins);
     });
@@ -180,7 +180,8 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
       result.fit = fit_record(kept_,
                               rate_hz,
                               octaves && !result.allan.points.empty() ? &result.allan : nullptr,
-                              options_->fit);
+                              options_->fit,
+                              &workspace_->fit);
     });
 }
 
@@ -209,7 +210,8 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
                               rate_hz,
                               quality.samples,
                               result.allan.points.empty() ? nullptr : &result.allan,
-                              options_->fit);
+                              options_->fit,
+                              &workspace_->fit);
       if (streams_->cleaner && streams_->cleaner->count() > 0)
         result.fit->remedies.insert(result.fit->remedies.begin(),
                                     spikes_remedy(quality.difference_kurtosis,

@@ -25,9 +25,17 @@ struct ChannelStreams {
   std::optional<SpikeCleaner> cleaner;  // in the second pass
 };
 
+/// What the channels of one log share, from any number of threads.
+struct CharacterizeWorkspace {
+  FitWorkspace fit;
+  WelchWorkspace welch;
+};
+
 class ChannelStage {
  public:
-  explicit ChannelStage(const CharacterizeOptions& options) : options_(&options) {}
+  /// Both must live as long.
+  ChannelStage(const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
+      : options_(&options), workspace_(&workspace) {}
 
   /// Takes samples as the log has them.
   void push(std::span<const double> samples);
@@ -53,6 +61,7 @@ class ChannelStage {
   void finish_streams(ChannelResult& result, double rate_hz);
 
   const CharacterizeOptions* options_;
+  CharacterizeWorkspace* workspace_;
   QualityMeter quality_;
   bool keeping_ = true;
   std::vector<double> kept_;
