@@ -32,7 +32,7 @@ enum class SampleKind {
 struct Wanted {
   bool quality = true;
   bool allan =
-      true;  ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
+      true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
 };

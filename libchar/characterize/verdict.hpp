@@ -11,7 +11,7 @@ namespace libchar {
 /// One paragraph for the whole recording.
 std::string verdict_of(const Characterization& result);
 
-/// Name of a term for people: "white noise", "bias instability"…
+/// Title of a term: "white noise", "bias instability"…
 std::string term_title(Term term);
 
 /// What a fit found, in sentences with numbers in `unit`.

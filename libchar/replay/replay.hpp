@@ -1,5 +1,5 @@
 #pragma once
-// Every fusion algorithm that a scene can feed, on one recording.
+// Every fusion algorithm that a scene can run, on one recording.
 
 #include <functional>
 #include <memory>

@@ -7,7 +7,7 @@
 namespace libchar {
 namespace {
 
-// With a segment given nothing needs the whole record; short logs are still kept, because exact
+// Where a segment was asked for nothing needs the whole record; short logs are still kept, because exact
 // forms cost nothing there.
 constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
 
