@@ -57,6 +57,11 @@ class ChannelStage {
   std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
+  bool wants_fit() const;
+  bool wants_octaves() const;
+  AllanCurve allan_of_kept(double rate_hz) const;
+  NoiseFit fit_of_kept(const AllanCurve& allan, double rate_hz) const;
+  NoiseFit fit_of_streams(const AllanCurve& allan, double rate_hz);
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 
