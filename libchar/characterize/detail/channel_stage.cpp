@@ -159,8 +159,7 @@ bool ChannelStage::wants_fit() const {
   return options_->wanted.fit || options_->wanted.allan;
 }
 
-// Octaves of the overlapping deviation: the only curve that the streaming form gives, and the only
-// one that the second opinion takes.
+// Octaves of the overlapping deviation: what the streaming form gives.
 bool ChannelStage::wants_octaves() const {
   return options_->allan.type == DeviationType::oadev && options_->allan.grid == TauGrid::octave;
 }
