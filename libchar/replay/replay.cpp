@@ -374,7 +374,7 @@ std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
   std::vector<const ErrorMeter*> meters;
   std::size_t next = 0;
   for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
-    Scored one{{}, nullptr};
+    Scored one;
     if (algorithm.runs()) {
       const AlgorithmRun& run = runs_[next];
       const BlindRun* blind = blind_[next++].get();
