@@ -78,9 +78,13 @@ struct FitOptions {
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first
-  /// shared by the channels of one log; none: prepared for each fit
-  AllanCovarianceCache* covariances = nullptr;
   int threads = 1;
+};
+
+/// What the fits of one log's channels share, from any number of threads: it saves time and changes
+/// no result.
+struct FitWorkspace {
+  AllanCovarianceCache covariances;
 };
 
 /// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` feeds the second opinion (may be null).
@@ -89,7 +93,8 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         double rate_hz,
                         std::uint64_t samples,
                         const AllanCurve* allan,
-                        const FitOptions& options = {});
+                        const FitOptions& options = {},
+                        FitWorkspace* workspace = nullptr);
 
 /// The same on what a binner has seen, spectral lines clipped when remedies are on: the fit of a record that was streamed.
 /// `samples` without the missing ones. Spikes need the samples: SpikeCleaner before the binner.
@@ -97,12 +102,14 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     double rate_hz,
                     std::uint64_t samples,
                     const AllanCurve* allan,
-                    const FitOptions& options = {});
+                    const FitOptions& options = {},
+                    FitWorkspace* workspace = nullptr);
 
 /// Whole record in memory: bins, alarms, remedies, fit, second opinion.
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
-                    const FitOptions& options = {});
+                    const FitOptions& options = {},
+                    FitWorkspace* workspace = nullptr);
 
 }  // namespace libchar
