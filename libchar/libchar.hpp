@@ -34,6 +34,7 @@
 #include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
