@@ -10,8 +10,8 @@ cmake --install "$1" --prefix "$prefix/installed" >/dev/null
 # consumer FOLDER EXPECTED OPTION…
 consumer() {
   local build="$prefix/$(basename "$1")" expected=$2 result
-  cmake -S "$1" -B "$build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix/installed" --log-level=WARNING "${@:3}"
-  cmake --build "$build" >/dev/null
+  cmake -S "$1" -B "$build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix/installed" --log-level=WARNING --no-warn-unused-cli "${@:3}" >/dev/null
+  cmake --build "$build" >"$build/log" || { cat "$build/log"; exit 1; }
   result=$("$build/consumer")
   [ "$result" = "$expected" ] || { echo "$1 printed $result, $expected was expected"; exit 1; }
 }
