@@ -36,7 +36,6 @@
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/inspection.hpp"
-#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_file.hpp"

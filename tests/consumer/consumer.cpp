@@ -14,7 +14,6 @@ int main() {
   const libchar::Recording recording = libchar::simulate(model, options);
   const libchar::NoiseFit fit = libchar::fit(recording.channel(0), options.rate_hz);
   // A ramp of slope 1: tau / sqrt 2. The white noise that was put in, to a digit.
-  std::printf("%.6f %.1f\n",
-              curve.points.at(0).deviation,
-              fit[libchar::Term::white].value.value_or(0));
+  std::printf(
+      "%.6f %.1f\n", curve.points.at(0).deviation, fit[libchar::Term::white].value.value_or(0));
 }
