@@ -7,6 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_signal.hpp"
 
@@ -182,7 +183,7 @@ std::string scene_recording_of(const MapReader& at,
   reading.time_column = map.text_or("time_column", "auto");
   reading.time_unit = map.word_or("time_unit", {"auto", "s", "ms", "us", "ns"}, "auto");
   reading.skip_rows = map.count_or("skip_rows", 0);
-  reading.format = map.word_or("format", {"auto", "csv", "npy", "raw"}, "auto");
+  reading.format = map.word_or("format", format_words(), "auto");
   reading.from_s = map.maybe_number("from_s", kNotNegative);
   reading.to_s = map.maybe_number("to_s", kPositive);
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
