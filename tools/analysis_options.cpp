@@ -95,11 +95,8 @@ void add_data_options(CLI::App& verb, AnalysisOptions& a) {
 }
 
 void add_allan_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb,
-             "--type",
-             a.type,
-             {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
-             "deviation (default: oadev, overlapping Allan)");
+  add_choice(
+      verb, "--type", a.type, deviation_words(), "deviation (default: oadev, overlapping Allan)");
   verb.add_option(
       "--taus",
       a.taus,

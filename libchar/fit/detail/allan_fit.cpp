@@ -125,8 +125,8 @@ std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
                                             AllanCovarianceCache* cache) {
   const AllanCurve kept = usable(curve, first);
   const std::size_t terms = count_of(only_positive(first.theta));
-  const bool plain = kept.type == DeviationType::oadev || kept.type == DeviationType::adev;
-  if (!plain || terms == 0 || kept.points.size() < terms + 1) return std::nullopt;
+  if (!deviation_row(kept.type).is_allan() || terms == 0 || kept.points.size() < terms + 1)
+    return std::nullopt;
   AllanCovarianceCache own;
   const auto covariance = (cache != nullptr ? *cache : own).of(kept);
   const std::optional<Solution> solution = solve(kept, *covariance, first.theta);

@@ -70,7 +70,7 @@ void doubt(NoiseFit& fit, std::size_t term, const std::string& sentence) {
 }  // namespace
 
 void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
-  if (allan.type != DeviationType::oadev && allan.type != DeviationType::adev) return;
+  if (!deviation_row(allan.type).is_allan()) return;
   if (const auto clash = worst_clash(fit, allan))
     doubt(fit,
           clash->term,

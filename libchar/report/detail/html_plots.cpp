@@ -13,26 +13,6 @@
 namespace libchar {
 namespace {
 
-std::string deviation_title(DeviationType type) {
-  switch (type) {
-    case DeviationType::adev:
-      return "Allan deviation";
-    case DeviationType::oadev:
-      return "Overlapping Allan deviation";
-    case DeviationType::mdev:
-      return "Modified Allan deviation";
-    case DeviationType::tdev:
-      return "Time deviation";
-    case DeviationType::hdev:
-      return "Hadamard deviation";
-    case DeviationType::ohdev:
-      return "Overlapping Hadamard deviation";
-    case DeviationType::totdev:
-      return "Total deviation";
-  }
-  return "";
-}
-
 std::string spectrum_title(const Spectrum& s) {
   const char* sides = s.sides == Sides::one ? "One-sided" : "Two-sided";
   switch (s.scaling) {
@@ -115,7 +95,7 @@ std::string curve_plots(const ChannelResult& c, std::size_t index) {
   const auto& points = c.allan.points;
   if (std::any_of(
           points.begin(), points.end(), [](const AllanPoint& p) { return p.deviation > 0; })) {
-    const std::string title = deviation_title(c.allan.type);
+    const std::string title(deviation_row(c.allan.type).title);
     out += plot_figure(
         "allan",
         index,
