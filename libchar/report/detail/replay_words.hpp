@@ -1,0 +1,27 @@
+#pragma once
+// Numbers of a replay as its page writes them.
+
+#include <string>
+
+#include "libchar/replay/algorithm_words.hpp"
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+/// "RMSE" or "leave-one-out RMS": what `AlgorithmResult::rmse` holds.
+std::string score_name(const ReplayResult& result);
+/// "0.0331 rad/s"; "–" for NaN.
+std::string with_unit(double value, int digits, const std::string& unit);
+/// Unit of the first input in its usual spelling, "" when nobody said one.
+std::string score_unit(const ReplayResult& result);
+std::string usual_unit(const std::string& unit);
+/// "0.12 %".
+std::string people_percent(double share, int digits = 2);
+/// A point in time, in seconds without trailing zeros: "400 s".
+std::string people_instant(double seconds);
+/// "400 s … 500 s", "600 s … the end".
+std::string people_stretch(double from_s, double to_s);
+/// "0.033 … 0.034"; "–" when it is not known.
+std::string people_interval(const Interval& interval, int digits = 4);
+
+}  // namespace libchar

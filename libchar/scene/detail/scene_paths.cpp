@@ -1,0 +1,175 @@
+#include "libchar/scene/detail/scene_paths.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/scene/scene.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kOutside = "move the file beside the scene, or allow it with --allow-outside";
+
+// One name of a file in a scene, and where it stood, for refusals.
+struct Named {
+  const std::string& text;
+  const std::string& where;
+  const std::string& key;
+
+  [[noreturn]] void refuse(const char* code, const std::string& what, std::string hint = "") const {
+    throw Error(
+        {ErrorKind::input, code, where, fmt::format("{}: {}", key, what), text, std::move(hint)});
+  }
+};
+
+bool leaves(const fs::path& relative) {
+  return !relative.empty() && *relative.begin() == "..";
+}
+
+// Is `file` in `folder` or below? Both without links.
+bool is_beneath(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+         folder.end();
+}
+
+fs::path folder_of(const std::string& scene) {
+  const fs::path folder = fs::path(scene).parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+// What somebody may have meant by a name that is no file.
+std::string hint_for(const std::string& named, const fs::path& folder) {
+  if (named.starts_with('~')) return "~ is not expanded: write the path out";
+  if (named.find("://") != std::string::npos)
+    return "nothing is read from a network: save the file beside the scene";
+  if (named.find("$(") != std::string::npos || named.find_first_of("`|;") != std::string::npos)
+    return "it is taken as a file name, no command is run";
+  if (named.find_first_of("*?[") != std::string::npos)
+    return "patterns are not expanded: name one file";
+  if (named == "-") return "standard input cannot be replayed: name a file";
+  if (named.starts_with('-')) return "it is taken as a file name, not as an option";
+  return fmt::format("paths are relative to the scene's folder, {}", printable(folder.string()));
+}
+
+void check_text(const Named& named) {
+  if (named.text.empty()) named.refuse("E0730", "the name of a file is empty");
+  if (named.text.find('\0') != std::string::npos)
+    named.refuse("E0730", "the name of a file holds a zero byte");
+  const fs::path path(named.text);
+  const bool long_part = std::any_of(
+      path.begin(), path.end(), [](const fs::path& p) { return p.native().size() > 255; });
+  if (named.text.size() > 4095 || long_part)
+    named.refuse("E0730",
+                 fmt::format("a name of {} bytes is too long: 4095 are allowed, 255 between two "
+                             "slashes",
+                             named.text.size()));
+}
+
+void check_kind(const Named& named, const fs::path& whole) {
+  const std::string shown = printable(whole.string());
+  std::error_code problem;
+  const fs::file_status status = fs::status(whole, problem);
+  if (status.type() == fs::file_type::not_found)
+    named.refuse("E0732",
+                 fmt::format("there is no file {}", shown),
+                 hint_for(named.text, whole.parent_path()));
+  if (problem)
+    named.refuse("E0732", fmt::format("cannot look at {}: {}", shown, problem.message()));
+  if (fs::is_directory(status))
+    named.refuse("E0733", fmt::format("{} is a folder, a file was expected", shown));
+  if (!fs::is_regular_file(status))
+    named.refuse("E0733",
+                 fmt::format("{} is no regular file (a pipe, a device, a socket)", shown),
+                 "save its data in a file");
+}
+
+}  // namespace
+
+std::string resolve_scene_file(const std::string& text,
+                               const SceneFolder& folder,
+                               const std::string& where,
+                               const std::string& key) {
+  const Named named{text, where, key};
+  check_text(named);
+  const fs::path path(text), root = folder_of(folder.scene);
+  if (!folder.allow_outside && path.is_absolute())
+    named.refuse("E0731", "an absolute path leaves the scene's folder", kOutside);
+  if (!folder.allow_outside && leaves(path.lexically_normal()))
+    named.refuse("E0731",
+                 fmt::format("{} lies outside the scene's folder",
+                             printable((root / path).lexically_normal().string())),
+                 kOutside);
+  // As the system walks it: "link/.." is not always ".".
+  const fs::path whole = fs::path(folder.scene).parent_path() / path;
+  check_kind(named, whole);
+  std::error_code problem, root_problem;
+  const fs::path real = fs::canonical(whole, problem);
+  const fs::path real_root = fs::canonical(root, root_problem);
+  if (problem || root_problem)
+    named.refuse("E0732",
+                 fmt::format("cannot look at {}: {}",
+                             printable(whole.string()),
+                             (problem ? problem : root_problem).message()));
+  if (!folder.allow_outside && !is_beneath(real, real_root))
+    named.refuse(
+        "E0731",
+        fmt::format("a link leads out of the scene's folder, to {}", printable(real.string())),
+        kOutside);
+  // Some of what the kernel shows there calls itself a regular file and has no end.
+  for (const char* system : {"/proc", "/sys"})
+    if (is_beneath(real, system))
+      named.refuse("E0733", fmt::format("{} is no recorded file", printable(real.string())));
+  if (fs::equivalent(whole, folder.scene, problem))
+    named.refuse("E0734", "the scene names itself as data");
+  return whole.string();
+}
+
+std::string path_for_scene(const std::string& file, const std::string& scene) {
+  std::error_code problem;
+  const fs::path root = fs::weakly_canonical(fs::absolute(folder_of(scene)), problem);
+  const fs::path target = fs::weakly_canonical(fs::absolute(file), problem);
+  const fs::path relative = target.lexically_relative(root);
+  const std::string name =
+      relative.empty() || leaves(relative) ? target.string() : relative.string();
+  if (first_invalid_utf8(name) != std::string::npos || name.find('\0') != std::string::npos)
+    throw Error({ErrorKind::output,
+                 "E0745",
+                 scene,
+                 "a file whose name is no UTF-8 cannot be named in a scene",
+                 name,
+                 "rename it"});
+  return name;
+}
+
+void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& outputs) {
+  std::vector<std::string> inputs = scene.files;
+  inputs.push_back(scene.file);
+  if (!scene.recording.empty()) inputs.push_back(scene.recording);
+  if (scene.reference && scene.reference->recording) inputs.push_back(*scene.reference->recording);
+  std::set<std::string> seen;
+  for (const std::string& output : outputs) {
+    for (const std::string& input : inputs) refuse_same_file(input, output);
+    std::error_code problem;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(output), problem);
+    bool twice = !seen.insert(problem ? output : whole.string()).second;
+    for (const std::string& other : outputs)  // two names of one existing file
+      twice = twice || (&other < &output && fs::equivalent(other, output, problem) && !problem);
+    if (twice)
+      throw Error({ErrorKind::output,
+                   "E0746",
+                   output,
+                   "two outputs are one file",
+                   "",
+                   "give each a name of its own"});
+  }
+}
+
+}  // namespace libchar
