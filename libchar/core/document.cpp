@@ -189,36 +189,6 @@ int line_indented_by_tab(std::string_view text) {
   return 0;
 }
 
-Document from_json(const Json& json) {
-  Document node;
-  switch (json.type()) {
-    case Json::value_t::object:
-      node.kind = Document::Kind::map;
-      for (const auto& [key, value] : json.items())
-        node.map.push_back({key, 0, 0, from_json(value)});
-      return node;
-    case Json::value_t::array:
-      node.kind = Document::Kind::list;
-      for (const Json& value : json) node.list.push_back(from_json(value));
-      return node;
-    case Json::value_t::string:
-      return scalar(Document::Kind::text, json.get<std::string>());
-    case Json::value_t::boolean:
-      node = scalar(Document::Kind::boolean, json.dump());
-      node.boolean = json.get<bool>();
-      return node;
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned:
-    case Json::value_t::number_float:
-      node = scalar(Document::Kind::number, json.dump());
-      node.number = json.get<double>();
-      node.whole = !json.is_number_float();
-      return node;
-    default:
-      return node;
-  }
-}
-
 Json number_json(const Document& node) {
   const char* const end = node.text.data() + node.text.size();
   if (node.whole) {
@@ -259,10 +229,6 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
     refuse_text(fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1),
                 "is not valid YAML: " + error.msg);
   }
-}
-
-Document parse_json_document(std::string_view text, const std::string& file) {
-  return from_json(parse_json(text, file));
 }
 
 Json as_json(const Document& node) {
