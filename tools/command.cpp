@@ -48,9 +48,9 @@ CLI::Option* add_text(CLI::App& verb,
             try {
               read(text);
             } catch (const Error& error) {
-              libchar::Fault fault = error.fault();
-              if (fault.where.empty()) fault.where = name;
-              throw Error(fault);
+              libchar::Problem problem = error.problem();
+              if (problem.where.empty()) problem.where = name;
+              throw Error(problem);
             }
           },
           help)
@@ -307,7 +307,7 @@ int run(CLI::App& app, Session& session) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0)
       return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
-    return fail(error.what(), exit_code(error.fault().kind));
+    return fail(error.what(), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
   } catch (const StdoutClosed&) {

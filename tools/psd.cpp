@@ -107,7 +107,7 @@ void try_channel(Session& session, Result& result, const Channel& channel, const
     for (const std::string& note : result.channels.back().spectrum.notes)
       session.terminal.note(fmt::format("{}: {}", printable(channel.name), note));
   } catch (const Error& error) {
-    if (error.fault().kind != ErrorKind::numeric) throw;
+    if (error.problem().kind != ErrorKind::numeric) throw;
     session.terminal.note(fmt::format("{}: {}", printable(channel.name), error.what()));
   }
 }

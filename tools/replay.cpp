@@ -60,9 +60,9 @@ TimeWindow window_from_words(const std::string& text, const std::string& option)
     if (dots + 2 < text.size() && text.substr(dots + 2) != "end")
       window.to_s = parse_duration_s(text.substr(dots + 2));
   } catch (const Error& error) {
-    Fault fault = error.fault();
-    fault.where = option;
-    throw Error(fault);
+    Problem problem = error.problem();
+    problem.where = option;
+    throw Error(problem);
   }
   if (!(window.from_s < window.to_s))
     refuse(option, "a window goes from a time to a later one", text);

@@ -6,17 +6,17 @@
 
 namespace libchar {
 
-std::string one_line(const Fault& fault) {
+std::string one_line(const Problem& problem) {
   std::string line;
-  if (!fault.where.empty()) line += printable(fault.where) + ": ";
+  if (!problem.where.empty()) line += printable(problem.where) + ": ";
   line += "error";
-  if (!fault.code.empty()) line += " " + fault.code;
-  line += ": " + printable(fault.what);
-  if (!fault.got.empty()) line += "; got \"" + printable(fault.got, 40) + "\"";
-  if (!fault.hint.empty()) line += "; hint: " + printable(fault.hint);
+  if (!problem.code.empty()) line += " " + problem.code;
+  line += ": " + printable(problem.what);
+  if (!problem.got.empty()) line += "; got \"" + printable(problem.got, 40) + "\"";
+  if (!problem.hint.empty()) line += "; hint: " + printable(problem.hint);
   return line;
 }
 
-Error::Error(Fault fault) : fault_(std::move(fault)), message_(one_line(fault_)) {}
+Error::Error(Problem problem) : problem_(std::move(problem)), message_(one_line(problem_)) {}
 
 }  // namespace libchar

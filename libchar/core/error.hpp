@@ -17,7 +17,7 @@ enum class ErrorKind {
 
 /// What happened, in the parts of one sentence. Text fields may hold untrusted bytes of a file: they are escaped by
 /// `one_line`, so a thrower passes them as they are.
-struct Fault {
+struct Problem {
   ErrorKind kind = ErrorKind::input;
   std::string code;  ///< "E0312"; "" when there is none
   std::string
@@ -29,16 +29,16 @@ struct Fault {
 };
 
 /// "WHERE: error CODE: WHAT; got "GOT"; hint: HINT", on one line, control characters escaped.
-std::string one_line(const Fault& fault);
+std::string one_line(const Problem& problem);
 
 class Error : public std::exception {
  public:
-  explicit Error(Fault fault);
+  explicit Error(Problem problem);
   const char* what() const noexcept override { return message_.c_str(); }
-  const Fault& fault() const noexcept { return fault_; }
+  const Problem& problem() const noexcept { return problem_; }
 
  private:
-  Fault fault_;
+  Problem problem_;
   std::string message_;
 };
 

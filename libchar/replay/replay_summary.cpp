@@ -185,7 +185,7 @@ ReplaySummary parse_replay_report(std::string_view text, const std::string& path
     try {
       read(parse_yaml_document(text, path), path);
     } catch (const Error& placed) {
-      if (placed.fault().code == error.fault().code) throw placed;
+      if (placed.problem().code == error.problem().code) throw placed;
     }
     throw;
   }

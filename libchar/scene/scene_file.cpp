@@ -408,9 +408,9 @@ class SceneReader {
     try {
       check(*scene_.simulate);
     } catch (const Error& error) {
-      Fault fault = error.fault();
-      fault.where = top_.where(top_.require("simulate"));
-      throw Error(fault);
+      Problem problem = error.problem();
+      problem.where = top_.where(top_.require("simulate"));
+      throw Error(problem);
     }
   }
 

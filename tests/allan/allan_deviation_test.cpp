@@ -329,7 +329,7 @@ TEST_CASE("short and bad records are refused in a sentence") {
     try {
       allan_deviation(y, dt, options);
     } catch (const Error& e) {
-      return e.fault().kind;
+      return e.problem().kind;
     }
     return ErrorKind::check;
   };

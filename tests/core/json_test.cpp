@@ -16,9 +16,9 @@ std::string refusal(const std::string& text) {
   try {
     parse_json(text, "f.json");
   } catch (const Error& error) {
-    CHECK(error.fault().kind == ErrorKind::input);
+    CHECK(error.problem().kind == ErrorKind::input);
     CHECK(std::string(error.what()).find('\n') == std::string::npos);
-    return error.fault().where + " " + error.what();
+    return error.problem().where + " " + error.what();
   }
   return "accepted";
 }

@@ -23,7 +23,7 @@ ErrorKind kind_of(const Work& work) {
   try {
     work();
   } catch (const Error& error) {
-    return error.fault().kind;
+    return error.problem().kind;
   }
   FAIL("no error");
   return ErrorKind::usage;

@@ -15,7 +15,7 @@ std::string code_of(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
-    return error.fault().code + " " + error.fault().hint;
+    return error.problem().code + " " + error.problem().hint;
   }
   return "";
 }
@@ -113,7 +113,7 @@ TEST_CASE("what cannot run is refused with the same sentence") {
       entry.make(none, Settings(entry.options));
       FAIL("made");
     } catch (const Error& error) {
-      CHECK(error.fault().what == sentence);
+      CHECK(error.problem().what == sentence);
     }
   }
 }

@@ -52,7 +52,7 @@ std::string code_of(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
-    return error.fault().code;
+    return error.problem().code;
   }
   return "";
 }

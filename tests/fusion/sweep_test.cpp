@@ -40,7 +40,7 @@ std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene
     }
     return runner;
   } catch (const Error& error) {
-    CHECK_FALSE(error.fault().what.empty());
+    CHECK_FALSE(error.problem().what.empty());
     return nullptr;
   }
 }

@@ -40,9 +40,9 @@ std::string outcome(const std::string& format, const std::string& file) {
                ? "ok"
                : "warn";
   } catch (const Error& error) {
-    CHECK(error.fault().kind == ErrorKind::input);
+    CHECK(error.problem().kind == ErrorKind::input);
     CHECK(std::string(error.what()).find('\n') == std::string::npos);
-    CHECK_FALSE(error.fault().what.empty());
+    CHECK_FALSE(error.problem().what.empty());
     return error.what();
   }
 }

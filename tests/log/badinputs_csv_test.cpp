@@ -127,8 +127,9 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
         verdict = "error";
         said = error.what();
         CHECK(said.find('\n') == std::string::npos);
-        CHECK((error.fault().kind == ErrorKind::input || error.fault().kind == ErrorKind::numeric));
-        const std::string& where = error.fault().where;
+        CHECK((error.problem().kind == ErrorKind::input ||
+               error.problem().kind == ErrorKind::numeric));
+        const std::string& where = error.problem().where;
         REQUIRE(where.rfind(path, 0) == 0);
         std::string rest = where.substr(std::min(where.size(), path.size() + 1));
         places.push_back(rest.substr(0, rest.find(' ')));

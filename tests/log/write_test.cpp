@@ -195,7 +195,7 @@ TEST_CASE("what cannot be written is refused before anything is") {
       open_log_writer((folder / name).string(), info_of({{"x", ""}}), options);
       return std::string("accepted");
     } catch (const Error& error) {
-      CHECK(error.fault().kind == ErrorKind::usage);
+      CHECK(error.problem().kind == ErrorKind::usage);
       return std::string(error.what());
     }
   };

@@ -325,7 +325,7 @@ TEST_CASE("scene: outputs never overwrite what a scene reads, nor one another") 
     try {
       refuse_scene_outputs(s, outputs);
     } catch (const Error& error) {
-      CHECK(error.fault().kind == ErrorKind::output);
+      CHECK(error.problem().kind == ErrorKind::output);
       return error.what();
     }
     return "";

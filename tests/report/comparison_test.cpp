@@ -78,8 +78,8 @@ std::string refused(const Json& b) {
   try {
     libchar::refuse_unlike(comparison);
   } catch (const libchar::Error& error) {
-    CHECK(error.fault().code == "E0921");
-    CHECK(error.fault().kind == libchar::ErrorKind::input);
+    CHECK(error.problem().code == "E0921");
+    CHECK(error.problem().kind == libchar::ErrorKind::input);
     return error.what();
   }
   return "";
@@ -97,7 +97,7 @@ std::string reading_error(const std::string& text) {
   try {
     libchar::parse_replay_report(text, "r.json");
   } catch (const libchar::Error& error) {
-    CHECK(error.fault().kind == libchar::ErrorKind::input);
+    CHECK(error.problem().kind == libchar::ErrorKind::input);
     return error.what();
   }
   return "";
@@ -114,7 +114,7 @@ std::string check_error(const std::string& text) {
   try {
     libchar::parse_comparison_check(text);
   } catch (const libchar::Error& error) {
-    CHECK(error.fault().kind == libchar::ErrorKind::usage);
+    CHECK(error.problem().kind == libchar::ErrorKind::usage);
     return error.what();
   }
   return "";

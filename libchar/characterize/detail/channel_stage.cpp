@@ -54,8 +54,8 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
   try {
     step();
   } catch (const Error& error) {
-    if (error.fault().kind != ErrorKind::numeric) throw;
-    result.problems.push_back(fmt::format("no {}: {}", what, error.fault().what));
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    result.problems.push_back(fmt::format("no {}: {}", what, error.problem().what));
   }
 }
 

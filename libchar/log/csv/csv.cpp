@@ -64,13 +64,13 @@ class CsvSource final : public RowSource {
 
   bool next(RowBlock& block, Warnings& warnings) override {
     warnings.merge(std::exchange(pending_, {}));
-    if (fault_) throw Error(*fault_);
+    if (problem_) throw Error(*problem_);
     while (take(current_)) {
       account(warnings);
       std::swap(block, current_.rows);
-      if (current_.fault) prepare_fault();
+      if (current_.problem) prepare_problem();
       if (block.rows > 0) return true;
-      if (fault_) throw Error(*fault_);
+      if (problem_) throw Error(*problem_);
     }
     reached_end_ = true;
     return false;
@@ -160,7 +160,7 @@ class CsvSource final : public RowSource {
                                       static_cast<double>(lines));
   }
 
-  // Every byte of the file and every cell of its rows went somewhere; anything else is a fault of
+  // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of
   // this reader.
   void check_account() const {
     const std::uint64_t bytes =
@@ -221,12 +221,12 @@ class CsvSource final : public RowSource {
     total_.add(chunk.account);
   }
 
-  void prepare_fault() {
-    fault_ = current_.fault->fault;
-    fault_->where = at(info_.file,
-                       chunk_line_ + current_.fault->spot.line,
-                       current_.fault->spot.column,
-                       current_offset_ + current_.fault->byte);
+  void prepare_problem() {
+    problem_ = current_.problem->problem;
+    problem_->where = at(info_.file,
+                         chunk_line_ + current_.problem->spot.line,
+                         current_.problem->spot.column,
+                         current_offset_ + current_.problem->byte);
   }
 
   bool take(ParsedChunk& chunk) {
@@ -386,7 +386,7 @@ class CsvSource final : public RowSource {
   Warnings pending_;
   RawChunk raw_;
   ParsedChunk current_;
-  std::optional<Fault> fault_;
+  std::optional<Problem> problem_;
   Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, missing_;
   std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
   std::vector<std::uint32_t> fractional_;

@@ -26,7 +26,7 @@ class RowParser {
   void run() {
     const char* p = begin_;
     const char* try_plain = begin_;  // where the fast way may be tried again
-    while (p < end_ && !out_.fault) {
+    while (p < end_ && !out_.problem) {
       const char* const start = p;
       if (p >= try_plain) {
         p = plain_rows(p);
@@ -64,7 +64,7 @@ class RowParser {
     for (std::size_t i = 0; i < kNanoseconds.size(); ++i)
       if (dialect_.time_unit_ns == kNanoseconds[i]) stamp_digits_ = static_cast<int>(i);
     out_.lines = 0;
-    out_.fault.reset();
+    out_.problem.reset();
     out_.unended.reset();
     out_.blank = out_.comment = out_.repeated = out_.infinite = out_.mixed_end = out_.overflow =
         out_.missing = {};
@@ -283,7 +283,7 @@ class RowParser {
 
   void fail(
       std::string code, std::string what, std::string got, std::string hint, std::size_t column) {
-    out_.fault = RowFault{
+    out_.problem = RowProblem{
         {ErrorKind::input, std::move(code), "", std::move(what), std::move(got), std::move(hint)},
         {line_, column + 1},
         static_cast<std::uint64_t>(line_start_ - begin_) + column};
@@ -381,8 +381,8 @@ class RowParser {
     if (dialect_.trailing_delimiter && extra.last && extra.from == extra.to) return true;
     std::size_t fields = count + 1;
     for (Span s = extra; s.ok && !s.last; ++fields) s = field(line, s.next);
-    out_.fault
-        .reset();  // a quote fault in the fields that are too many says less than their number
+    out_.problem
+        .reset();  // a quote problem in the fields that are too many says less than their number
     fail("E0304",
          fmt::format("{} fields, {} expected", fields, count),
          std::string(line),
@@ -511,7 +511,7 @@ class RowParser {
     out_.account.unread += quick_rows_ * (plan_.target.size() - plan_.channels - stamps);
     const std::uint64_t consumed = static_cast<std::uint64_t>(p - begin_);
     out_.account.bytes = consumed;
-    if (out_.fault)
+    if (out_.problem)
       out_.account.bytes = out_.account.row_bytes + out_.account.blank_bytes +
                            out_.account.comment_bytes + out_.account.header_bytes;
   }

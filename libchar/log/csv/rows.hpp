@@ -35,8 +35,8 @@ struct Tally {
   }
 };
 
-struct RowFault {
-  Fault fault;  ///< without the place
+struct RowProblem {
+  Problem problem;  ///< without the place
   Spot spot;
   std::uint64_t byte = 0;  ///< in the chunk
 };
@@ -67,7 +67,7 @@ struct Plan {
 struct ParsedChunk {
   RowBlock rows;
   std::uint64_t lines = 0;  ///< line ends in the chunk (a last line without one counts)
-  std::optional<RowFault> fault;
+  std::optional<RowProblem> problem;
   std::optional<Spot>
       unended;  ///< end of a last row that has no line end and may have been cut in its last cell
   Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
@@ -80,7 +80,7 @@ struct ParsedChunk {
 };
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).
-/// `text` must be readable for kPadding bytes past its end. After a fault the rows before it are
+/// `text` must be readable for kPadding bytes past its end. After a problem the rows before it are
 /// kept and the rest is not looked at. Blocks of `along` may be hashed on the way.
 void parse_rows(std::string_view text,
                 const Plan& plan,

@@ -29,7 +29,7 @@ AllanCurve curve_of(const AllanPyramid& pyramid, double dt_s) {
   try {
     return pyramid.finish(dt_s);
   } catch (const Error& error) {
-    if (error.fault().kind != ErrorKind::numeric) throw;
+    if (error.problem().kind != ErrorKind::numeric) throw;
     return {};
   }
 }
@@ -58,8 +58,9 @@ void AlgorithmRun::guarded(const Work& work) {
     accounted(work);
     learning_s_ += thread_seconds() - start;
   } catch (const Error& error) {
-    if (error.fault().kind != ErrorKind::numeric && error.fault().kind != ErrorKind::usage) throw;
-    const std::string what = error.fault().what, name(planned_->entry->card->name);
+    if (error.problem().kind != ErrorKind::numeric && error.problem().kind != ErrorKind::usage)
+      throw;
+    const std::string what = error.problem().what, name(planned_->entry->card->name);
     failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
     runner_.reset();
   }

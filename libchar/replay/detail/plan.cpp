@@ -171,10 +171,10 @@ PlannedAlgorithm planned(const SceneAlgorithm& asked, bool repeated, const Scene
     return out;
   } catch (const Error& error) {
     if (asked.line == 0) throw;
-    Fault fault = error.fault();
-    fault.kind = ErrorKind::input;
-    fault.where = fmt::format("{}:{}:{}", scene.file, asked.line, asked.column);
-    throw Error(fault);
+    Problem problem = error.problem();
+    problem.kind = ErrorKind::input;
+    problem.where = fmt::format("{}:{}:{}", scene.file, asked.line, asked.column);
+    throw Error(problem);
   }
 }
 

@@ -71,11 +71,11 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
   try {
     read = read_recording(*reference.recording, reading, progress);
   } catch (const Error& error) {
-    if (error.fault().kind != ErrorKind::usage) throw;
-    Fault fault = error.fault();
-    fault.kind = ErrorKind::input;
-    if (fault.code.empty()) fault.code = "E0900";
-    throw Error(fault);
+    if (error.problem().kind != ErrorKind::usage) throw;
+    Problem problem = error.problem();
+    problem.kind = ErrorKind::input;
+    if (problem.code.empty()) problem.code = "E0900";
+    throw Error(problem);
   }
   track.rate_hz = read.info.time.rate_hz;
   if (!(track.rate_hz > 0))

@@ -132,12 +132,12 @@ void SceneSource::scan(Progress& progress) {
     log = read_log(scene_->recording, reading_, silent, progress);
   } catch (const Error& error) {
     // What a scene asks of a file is the scene's mistake, not one of the command line.
-    if (error.fault().kind != ErrorKind::usage) throw;
-    Fault fault = error.fault();
-    fault.kind = ErrorKind::input;
-    if (fault.code.empty()) fault.code = "E0900";
-    if (fault.where.empty() || fault.where.starts_with("--")) fault.where = scene_->recording;
-    throw Error(fault);
+    if (error.problem().kind != ErrorKind::usage) throw;
+    Problem problem = error.problem();
+    problem.kind = ErrorKind::input;
+    if (problem.code.empty()) problem.code = "E0900";
+    if (problem.where.empty() || problem.where.starts_with("--")) problem.where = scene_->recording;
+    throw Error(problem);
   }
   std::vector<std::string> names;
   for (const Channel& channel : log.channels) names.push_back(channel.name);
