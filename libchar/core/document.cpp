@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libchar/core/error.hpp"
@@ -229,6 +230,11 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
     refuse_text(fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1),
                 "is not valid YAML: " + error.msg);
   }
+}
+
+Document parse_document(std::string_view text, const std::string& file) {
+  return file.ends_with(".json") ? parse_json_document(text, file)
+                                 : parse_yaml_document(text, file);
 }
 
 Json as_json(const Document& node) {

@@ -1,6 +1,7 @@
 #include "libchar/core/json.hpp"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "libchar/core/text.hpp"
@@ -52,6 +53,10 @@ Json json_number(double value) {
 }
 Json json_number(const std::optional<double>& value) {
   return value ? json_number(*value) : Json(nullptr);
+}
+
+std::string json_text(std::string_view text) {
+  return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
 }
 
 Json with_valid_text(Json document) {

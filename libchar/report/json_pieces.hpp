@@ -14,7 +14,5 @@ Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
                            const NoiseFit* fit,
                            IntervalFactors& in95);
-Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
-Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 
 }  // namespace libchar

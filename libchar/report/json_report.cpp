@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/verification_json.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
@@ -46,7 +48,7 @@ Json derived_json(const ChannelResult& channel, double rate_hz) {
 }
 
 Json quality_json(const ChannelResult& channel) {
-  Json out = quality_channel_json(channel.channel, channel.quality);
+  Json out = channel_json(channel.channel, channel.quality);
   out["lines"] = Json::array();
   for (const SpectralLine& line : channel.lines) {
     out["lines"].push_back({{"frequency_hz", line.frequency_hz},
@@ -71,9 +73,8 @@ Json fit_or_reason(const ChannelResult& channel, double rate_hz) {
 }  // namespace
 
 Json json_without_times(const Characterization& result) {
-  Json out = frame("characterization");
-  add_provenance(out, result.command, {result.log});
-  out["config"] = result.settings.is_null() ? Json::object() : result.settings;
+  Json out = document_head("characterization", result.command, {&result.log});
+  out["config"] = json_of(result.settings);
   out["verdict"] = json_text(verdict_of(result));
 
   std::vector<ChannelQuality> qualities;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
@@ -318,7 +319,7 @@ std::string provenance(const ReplayResult& r) {
                                             " more for the scores without a reference"
                                       : "") +
            "</details>\n";
-  return out + settings_details(r.settings) + "</section>\n";
+  return out + settings_details(json_of(r.settings)) + "</section>\n";
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/replay_timeline.hpp"
 #include "libchar/report/escape.hpp"
@@ -300,10 +302,11 @@ Json replay_json_without_times(const ReplayResult& result) {
 }
 
 Json replay_json(const ReplayResult& result) {
-  Json out = {{"format", "replay-report"}, {"version", 1}};
-  add_provenance(out, result.command, result.logs);
+  std::vector<const LogInfo*> logs;
+  for (const LogInfo& log : result.logs) logs.push_back(&log);
+  Json out = document_head("replay-report", result.command, logs);
   for (const Json& warning : warnings_json(result.warnings)) out["warnings"].push_back(warning);
-  out["config"] = result.settings.is_null() ? Json::object() : result.settings;
+  out["config"] = json_of(result.settings);
   out["scene"] = scene_json(result);
   out["verdict"] = json_text(replay_verdict(result, false));
   out["verdict_with_costs"] = json_text(replay_verdict(result, true));

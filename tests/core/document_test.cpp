@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/schema.hpp"

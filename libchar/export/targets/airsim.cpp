@@ -5,6 +5,7 @@
 // as 0.
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "libchar/export/detail/export_figures.hpp"
