@@ -81,7 +81,7 @@ libchar::Json document_head(const Session& session,
                             const std::vector<const libchar::LogInfo*>& inputs);
 
 /// Parses the command line, runs the verb and turns whatever happened into one message and an exit
-/// code (design.md 6.1).
+/// code (docs/errors.md).
 int run(CLI::App& app, Session& session);
 
 }  // namespace sensorchar

@@ -254,7 +254,7 @@ void add_choices(CLI::App& sub, ModelVerb& verb) {
              kSmall);
   add_number(sub,
              "--airsim-tau",
-             options.airsim_tau_s,
+             options.bias_tau_s,
              "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
              kSmall);
   add_number(sub,

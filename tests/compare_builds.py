@@ -1,0 +1,209 @@
+"""Runs every verb of two builds of the program on every fixture and shipped scene and compares what they print, write and return.
+
+usage: compare_builds.py OLD NEW [--quick] [--only WORD] [--listed FILE]
+Runs both programs in folders that look alike, masks what is measured or names the build (run times, memory, the version's commit), and
+prints a line for each run that differs, with the first differing lines. FILE lists differences that are meant, a line each:
+`PATTERN<tab>reason`; PATTERN is a regular expression searched in "RUN: FILE: -old line / +new line". Ends with 1 when a difference is
+not listed. --quick leaves out replays of whole scenes.
+"""
+import argparse
+import difflib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+root = pathlib.Path(__file__).resolve().parent.parent
+arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+arguments.add_argument("old")
+arguments.add_argument("new")
+arguments.add_argument("--quick", action="store_true")
+arguments.add_argument("--only", default="", help="only runs whose name holds this")
+arguments.add_argument("--listed", default=str(root / "tests/listed_differences.txt"))
+options = arguments.parse_args()
+
+MASKS = [
+    (re.compile(r'"(seconds|ns_per_sample|ns_per_sample_ci95|peak_bytes|bytes_per_second|own_bytes|resident_bytes|learning_s|run_s)": *(\[[^\]]*\]|[^,}\n]*)'), r'"\1": MASKED'),
+    (re.compile(r'"measured": *\{[^{}]*\}', re.S), '"measured": MASKED'),
+    (re.compile(r"^[WE]\d{8} [\d:.]+ +\d+ ", re.M), "W "),  # a warning of Ceres: time and thread
+]
+# Replays measure time and memory, and show them in many ways.
+REPLAY_MASKS = [
+    (re.compile(r"\b[\d.]+ (ns|µs|ms|s|B|kB|MB|GB)\b"), r"# \1"),
+    (re.compile(r'data-value="[^"]*">[^<]*'), 'data-value="">#'),  # report.json has the same numbers
+    (re.compile(r"% +[\d.]+ +# (B|kB|MB|GB) *"), "% # # "),
+    (re.compile(r"fronts?: [a-z, ]*"), "fronts: "),
+    (re.compile(r'("pareto_front"|"front[a-z_]*"): *(\{[^{}]*\}|\[[^\[\]]*\]|\w+)'), r"\1: MASKED"),
+]
+
+
+def runs():
+    """name, words, files that must exist beforehand (produced by an earlier run of the same program)."""
+    yield "version", ["--version"]
+    yield "help", ["--help"]
+    verbs = ["inspect", "characterize", "allan", "psd", "fit", "model", "simulate", "replay", "compare", "convert"]
+    for verb in verbs:
+        yield f"help {verb}", [verb, "--help"]
+        yield f"nothing {verb}", [verb]
+        yield f"unknown option {verb}", [verb, "--no-such-option", "x"]
+    yield "unknown verb", ["characterise"]
+    imu = "fixtures/imu_at_rest.csv"
+    yield "allan", ["allan", imu]
+    for kind in ["adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"]:
+        yield f"allan {kind}", ["allan", imu, "-c", "gyro_z", "--type", kind, "--json"]
+    yield "allan dense", ["allan", imu, "-c", "accel_z", "--taus", "dense"]
+    yield "allan bad type", ["allan", imu, "--type", "odev"]
+    for scaling in ["psd", "ps", "lsd", "ls"]:
+        yield f"psd {scaling}", ["psd", imu, "--scaling", scaling]
+    yield "psd two", ["psd", imu, "--sides", "two", "--json"]
+    yield "psd segment", ["psd", imu, "--segment", "4096", "--window", "blackman_harris", "-c", "gyro_z"]
+    yield "fit", ["fit", imu]
+    yield "fit json", ["fit", imu, "--json"]
+    yield "fit terms", ["fit", imu, "--terms", "Q,B,K,R", "-c", "gyro_z"]
+    yield "inspect", ["inspect", imu]
+    yield "inspect json", ["inspect", imu, "--json"]
+    for npy in sorted((root / "fixtures/npy").glob("*.npy")):
+        name = f"fixtures/npy/{npy.name}"
+        yield f"inspect {npy.name}", ["inspect", name]
+        yield f"inspect json {npy.name}", ["inspect", name, "--json", "--rate", "100"]
+        yield f"convert {npy.name}", ["convert", name, "--rate", "100", "-o", f"{npy.stem}.csv"]
+        yield f"convert raw {npy.name}", ["convert", name, "--rate", "100", "-o", f"{npy.stem}.f64"]
+    yield "convert npy", ["convert", imu, "-o", "imu.npy"]
+    yield "convert raw", ["convert", imu, "-o", "imu.f64"]
+    yield "convert csv", ["convert", imu, "-o", "imu.csv"]
+    yield "convert window", ["convert", imu, "--from", "10s", "--to", "20s", "-c", "gyro_z", "-o", "window.csv"]
+    yield "inspect raw", ["inspect", "imu.f64"]
+    yield "characterize", ["characterize", imu, "-o", "report", "--force"]
+    yield "characterize json", ["characterize", imu, "-o", "report2", "--json", "--verify"]
+    yield "characterize options", ["characterize", imu, "-o", "report3", "--segment", "2048", "--window", "flat_top", "--sides", "two",
+                                   "--scaling", "lsd", "--terms", "Q,B", "--no-remedies", "--no-second-opinion", "--taus", "decade"]
+    yield "characterize streamed", ["characterize", imu, "-o", "report4", "--memory", "64k"]
+    yield "characterize again", ["characterize", imu, "-o", "report"]
+    yield "model", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml"]
+    yield "model json", ["model", "report/gyro_z.sensor.yaml", "--json"]
+    yield "model list", ["model", "--list"]
+    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim matlab px4 json".split()
+    for target in targets:
+        yield f"export {target}", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target]
+        yield f"export {target} rms", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--axes", "rms",
+                                       "--inflate", "2", "-o", f"{target}.out"]
+        yield f"export {target} older", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--older"]
+        yield f"export {target} gyro", ["model", "report/gyro_z.sensor.yaml", "--to", target, "--topic", "/imu7"]
+    yield "simulate", ["simulate", "report/gyro_z.sensor.yaml", "--devices", "3", "--duration", "2min", "--truth", "sine,amplitude=5,frequency_hz=0.01",
+                       "--fault", "gyro_z2:bias=0.3@20..60", "-o", "array.csv"]
+    yield "simulate npy", ["simulate", "report/gyro_z.sensor.yaml", "--duration", "10min", "--seed", "7", "-o", "one.npy"]
+    yield "replay simulated", ["replay", "array.scene.yaml", "-o", "array-replay", "--seed", "3", "--quiet"]
+    yield "replay explain simulated", ["replay", "array.scene.yaml", "--explain"]
+    yield "compare", ["compare", "compared", "compared"]
+    yield "replay list", ["replay", "--list"]
+    yield "replay list json", ["replay", "--list", "--json"]
+    scenes = sorted(p.relative_to(root).as_posix() for p in (root / "fixtures/scenes").rglob("*.yaml"))
+    for scene in scenes:
+        yield f"explain {scene}", ["replay", scene, "--explain", "--allow-outside"]
+        yield f"explain json {scene}", ["replay", scene, "--explain", "--json", "--allow-outside"]
+        if not options.quick:
+            yield f"replay {scene}", ["replay", scene, "--allow-outside", "-o", f"replay-{pathlib.Path(scene).stem}", "--quiet",
+                                      "--estimates", f"{pathlib.Path(scene).stem}-estimates.csv"]
+    shared = root.parent / "shared"
+    for folder in ["csv", "npy", "raw", "yaml", "json", "model", "scene"]:
+        for bad in sorted((shared / "oracle/badinputs" / folder).glob("*")):
+            if bad.is_file() and bad.stat().st_size < 1 << 20:
+                yield f"bad inspect {folder}/{bad.name}", ["inspect", f"../shared/oracle/badinputs/{folder}/{bad.name}"]
+                yield f"bad fit {folder}/{bad.name}", ["fit", f"../shared/oracle/badinputs/{folder}/{bad.name}", "--json"]
+    for log in sorted((shared / "data").glob("*.csv")) + sorted((shared / "data").glob("*.npy")):
+        if log.stat().st_size < 60e6:
+            yield f"data inspect {log.name}", ["inspect", f"../shared/data/{log.name}", "--json"]
+            if not options.quick:
+                yield f"data fit {log.name}", ["fit", f"../shared/data/{log.name}", "--rate", "100", "--json"]
+
+
+def masked(data, replay):
+    text = data.decode("utf-8", "surrogateescape")
+    for pattern, to in MASKS + (REPLAY_MASKS if replay else []):
+        text = pattern.sub(to, text)
+    return text
+
+
+class Side:
+    """One program with a folder in which relative paths are the same as on the other side."""
+
+    def __init__(self, program, work):
+        self.program, self.folder = os.path.abspath(program), work / "main"
+        self.folder.mkdir(parents=True)
+        shutil.copytree(root / "fixtures", self.folder / "fixtures")
+        if (root.parent / "shared").is_dir():
+            (work / "shared").symlink_to(root.parent / "shared")
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin/sensorchar").symlink_to(self.program)
+        self.seen = self.stamps()
+
+    def stamps(self):
+        return {p: p.stat().st_mtime_ns for p in self.folder.rglob("*") if p.is_file()}
+
+    def run(self, words):
+        replay = words[0] in ("replay", "compare")
+        ran = subprocess.run(["bin/sensorchar", *words], cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL)
+        found = {"exit code": str(ran.returncode), "stdout": masked(ran.stdout, replay), "stderr": masked(ran.stderr, replay)}
+        now = self.stamps()
+        for path in sorted(now):
+            if self.seen.get(path) != now[path]:
+                found[path.relative_to(self.folder).as_posix()] = masked(path.read_bytes(), replay)
+        self.seen = now
+        return found
+
+
+def differences(a, b):
+    for part in sorted(set(a) | set(b)):
+        if part not in a or part not in b:
+            yield part, "-" if part in a else "+", "file only in one"
+        elif a[part] != b[part]:
+            for line in difflib.unified_diff(a[part].splitlines(), b[part].splitlines(), lineterm="", n=0):
+                if not line.startswith(("---", "+++", "@@")):
+                    yield part, line[0], line[1:]
+
+
+listed = []
+if pathlib.Path(options.listed).exists():
+    for line in pathlib.Path(options.listed).read_text().splitlines():
+        if line and not line.startswith("#"):
+            pattern, _, reason = line.partition("\t")
+            listed.append([re.compile(pattern), reason, 0])
+
+with tempfile.TemporaryDirectory() as folder:
+    work = pathlib.Path(folder)
+    (work / "old").mkdir(), (work / "new").mkdir()
+    old, new = Side(options.old, work / "old"), Side(options.new, work / "new")
+    count = same = 0
+    unlisted = []
+    for name, words in runs():
+        if options.only not in name:
+            continue
+        count += 1
+        if name == "compare":  # of the same two reports
+            for side in (old, new):
+                shutil.copytree(old.folder / "array-replay", side.folder / "compared", dirs_exist_ok=True)
+                side.seen = side.stamps()
+        found = list(differences(old.run(words), new.run(words)))
+        same += not found
+        strange = []
+        for part, sign, text in found:
+            row = f"{name}: {part}: {sign}{text[:300]}"
+            match = next((entry for entry in listed if entry[0].search(row)), None)
+            if match:
+                match[2] += 1
+            else:
+                strange.append(row)
+        if strange:
+            unlisted.append(name)
+            print(f"DIFFERS {name} ({len(strange)} lines)")
+            for row in strange[:6]:
+                print("   ", row[:240])
+            sys.stdout.flush()
+print(f"{count} runs, {same} with the same bytes, {count - same - len(unlisted)} with listed differences only, {len(unlisted)} with others")
+for pattern, reason, hits in listed:
+    if hits:
+        print(f"  listed, {hits} lines: {reason}")
+sys.exit(bool(unlisted))
