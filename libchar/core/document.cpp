@@ -31,8 +31,8 @@ Document scalar(Document::Kind kind, const std::string& text) {
   return node;
 }
 
-// What a plain scalar means: numbers as JSON has them; everything else stays a text.
-Document plain(const std::string& value) {
+// What an unquoted scalar means: numbers as JSON has them; everything else stays a text.
+Document unquoted(const std::string& value) {
   if (value == "true" || value == "false") {
     Document node = scalar(Document::Kind::boolean, value);
     node.boolean = value == "true";
@@ -71,10 +71,10 @@ class Builder : public YAML::EventHandler {
                 const std::string& tag,
                 YAML::anchor_t anchor,
                 const std::string& value) override {
-    const bool quoted = tag == "!";  // "!" marks a quoted text, "?" a plain one
+    const bool quoted = tag == "!";  // "!" marks a quoted text, "?" an unquoted one
     check(mark, quoted ? "" : tag, anchor);
     if (!quoted && value == "<<") refuse(mark, "merge keys are not read", value);
-    put(mark, quoted ? scalar(Document::Kind::text, value) : plain(value));
+    put(mark, quoted ? scalar(Document::Kind::text, value) : unquoted(value));
   }
   void OnSequenceStart(const YAML::Mark& mark,
                        const std::string& tag,

@@ -32,7 +32,7 @@ Json read_off_json(const ChannelResult& channel) {
   return out;
 }
 
-// Numbers that follow from the coefficients and that people ask for.
+// Numbers that follow from the coefficients and that users ask for.
 Json derived_json(const ChannelResult& channel, double rate_hz) {
   Json out = Json::object();
   const Coefficient& white = (*channel.fit)[Term::white];
