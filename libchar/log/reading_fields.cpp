@@ -1,5 +1,7 @@
 #include "libchar/log/reading_fields.hpp"
 
+#include "libchar/log/formats.hpp"
+
 namespace libchar {
 namespace {
 
@@ -7,7 +9,17 @@ constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
 constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"utf-8"}, {"latin1"}};
 constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}};
-constexpr Word kFormats[] = {{"auto"}, {"csv"}, {"npy"}, {"raw"}};
+
+// auto and the names of the table of formats.
+const std::vector<Word>& format_choices() {
+  static const std::vector<std::string> names = format_words();
+  static const std::vector<Word> words = [] {
+    std::vector<Word> out;
+    for (const std::string& name : names) out.push_back({name});
+    return out;
+  }();
+  return words;
+}
 
 }  // namespace
 
@@ -40,7 +52,7 @@ const Fields<ReadOptions>& reading_fields() {
       field<&ReadOptions::skip_rows>(
           "skip_rows", {.meaning = "lines in front of the header (CSV)", .otherwise = "0"}),
       field<&ReadOptions::format>(
-          "format", {.words = kFormats, .meaning = "of the file", .otherwise = "auto"}),
+          "format", {.words = format_choices(), .meaning = "of the file", .otherwise = "auto"}),
       field<&ReadOptions::from_s>("from_s",
                                   {.unit = "s",
                                    .range = kNotNegative,
