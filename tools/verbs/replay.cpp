@@ -22,7 +22,7 @@
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
-#include "libchar/report/replay_words.hpp"
+#include "libchar/report/detail/replay_words.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "numbers.hpp"
 #include "output_files.hpp"
