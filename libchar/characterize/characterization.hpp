@@ -1,5 +1,8 @@
 #pragma once
 // The main job: one pass over a log, curves, fit, and everything a report needs to show.
+//
+//   Characterization imu = characterize("imu.csv", options);     // of a file, whatever its size
+//   Characterization imu = characterize(recording, options);     // of samples in memory
 
 #include <memory>
 #include <optional>
@@ -29,7 +32,7 @@ enum class SampleKind {
 struct Wanted {
   bool quality = true;
   bool allan =
-      true;  ///< needs the mixture of a fit for its intervals: a plain one is made when `fit` is off
+      true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
 };
@@ -75,9 +78,18 @@ struct Characterization {
   double seconds = 0;                ///< measured; kept apart from everything else in the outputs
 };
 
-/// Reads the log once (a second time only when a remedy asks for it) and computes what the report shows.
+/// Reads the log once (a second time only when a remedy asks for it) and computes what the report
+/// shows. Throws Error(input) about the log, Error(usage) about options that do not fit it; what the
+/// numbers of a channel do not allow is a sentence in its `problems`.
 Characterization characterize(const std::string& path,
-                              const CharacterizeOptions& options,
+                              const CharacterizeOptions& options = {},
+                              Progress& progress = no_progress());
+
+/// The same of samples in memory: a recording that was read, or one made by the caller, who names
+/// `info.channels` and `info.time.rate_hz` and leaves the rest as it is. Of `options.reading` only the
+/// threads count. Throws Error(usage) unless each channel has a column, and all are of one length.
+Characterization characterize(const Recording& recording,
+                              const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -93,18 +93,17 @@ std::string goodness_sentence(const Goodness& g) {
          "): look at the residuals before using the intervals.";
 }
 
-std::vector<std::string> findings(const ChannelResult& channel) {
+std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) {
   std::vector<std::string> out;
-  if (!channel.fit) return out;
   for (std::size_t t = 0; t < kTerms; ++t) {
-    std::string sentence = finding(*channel.fit, static_cast<Term>(t), channel.channel.unit);
+    std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
-  if (channel.fit->bandwidth_hz) {
+  if (fit.bandwidth_hz) {
     out.push_back(
         fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "
                     "of the model.",
-                    people(*channel.fit->bandwidth_hz, 3)));
+                    people(*fit.bandwidth_hz, 3)));
   }
   return out;
 }

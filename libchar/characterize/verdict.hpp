@@ -11,11 +11,11 @@ namespace libchar {
 /// One paragraph for the whole recording.
 std::string verdict_of(const Characterization& result);
 
-/// Name of a term for people: "white noise", "bias instability"…
+/// Title of a term: "white noise", "bias instability"…
 std::string term_title(Term term);
 
-/// What was found in one channel, in sentences with numbers.
-std::vector<std::string> findings(const ChannelResult& channel);
+/// What a fit found, in sentences with numbers in `unit`.
+std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 
 /// What asks for a look before the numbers of this channel are used; empty when nothing does.
 std::vector<std::string> cautions(const ChannelResult& channel);

@@ -35,6 +35,7 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
 ChannelResult simulated_channel(const ChannelResult& recorded,
                                 const LogInfo& log,
                                 const CharacterizeOptions& options,
+                                CharacterizeWorkspace& workspace,
                                 const VerifyOptions& how,
                                 std::uint64_t index,
                                 bool kept) {
@@ -46,7 +47,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   CharacterizeOptions same = options;
   same.data = SampleKind::rate;  // phase and frequency have become rates before the fit
   same.wanted.quality = false;
-  ChannelStage stage(same);
+  ChannelStage stage(same, workspace);
   if (!kept) stage.stop_keeping();
   ArraySimulator simulator(simulation);
   for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
@@ -179,9 +180,7 @@ bool verify(Characterization& recorded,
             Progress& progress) {
   const std::uint64_t bytes = recorded.log.samples * sizeof(double);
   const bool kept = bytes * 2 <= options.memory_bytes;
-  AllanCovarianceCache covariances;
-  CharacterizeOptions same = options;
-  same.fit.covariances = &covariances;
+  CharacterizeWorkspace workspace;
   auto& channels = recorded.channels;
   const std::size_t group =
       2;  // as in characterize: memory stays bounded however many channels there are
@@ -193,7 +192,9 @@ bool verify(Characterization& recorded,
       ChannelResult& channel = channels[c];
       if (!channel.fit) return;
       channel.verification = std::make_shared<ChannelVerification>(
-          compared(channel, simulated_channel(channel, recorded.log, same, how, c, kept), how));
+          compared(channel,
+                   simulated_channel(channel, recorded.log, options, workspace, how, c, kept),
+                   how));
     });
   }
   return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {

@@ -288,7 +288,8 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         double rate_hz,
                         std::uint64_t samples,
                         const AllanCurve* allan,
-                        const FitOptions& options) {
+                        const FitOptions& options,
+                        FitWorkspace* workspace) {
   Attempt now = attempt(bins, rate_hz, samples, options);
   if (options.remedies) {
     answer_humps(now);
@@ -297,7 +298,8 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   }
   judge(now.fit);
   if (options.second_opinion && allan != nullptr)
-    now.fit.second_opinion = second_opinion(*allan, now.fit, options.covariances);
+    now.fit.second_opinion =
+        second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr) answer_contradictions(now.fit, *allan);
   return std::move(now.fit);
 }
@@ -306,11 +308,12 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     double rate_hz,
                     std::uint64_t samples,
                     const AllanCurve* allan,
-                    const FitOptions& options) {
+                    const FitOptions& options,
+                    FitWorkspace* workspace) {
   std::uint64_t clipped = 0;
   const std::vector<PowerBin> bins =
       options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
-  NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options);
+  NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options, workspace);
   if (clipped > 0) fit.remedies.insert(fit.remedies.begin(), lines_remedy(clipped));
   return fit;
 }
@@ -318,7 +321,8 @@ NoiseFit fit_binned(const PowerBinner& binner,
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
-                    const FitOptions& options) {
+                    const FitOptions& options,
+                    FitWorkspace* workspace) {
   std::vector<Remedy> remedies;
   std::vector<double> cleaned;
   std::span<const double> data = record;
@@ -339,7 +343,8 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   binner.push(data);
-  NoiseFit fit = fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options);
+  NoiseFit fit =
+      fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options, workspace);
   fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
   return fit;
 }

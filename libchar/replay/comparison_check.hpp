@@ -10,7 +10,7 @@
 namespace libchar {
 
 struct ComparisonCheck {
-  std::string text;    ///< as it was given
+  std::string text;    ///< as it was typed
   std::string label;   ///< of one algorithm; empty: of every one
   std::string metric;  ///< rmse, regret, ns_per_sample or peak_bytes
   double share = 0;  ///< B may be larger than A by this; of regret: by this much, as it is a share

@@ -1,5 +1,5 @@
 // The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
-// teaches in the learning window, one that teaches the bounds on the evaluation, one that runs
+// learns in the learning window, one in which the bounds learn on the evaluation, one that runs
 // everything on it block by block, algorithm after algorithm, so that all see the same machine.
 #include "libchar/replay/replay.hpp"
 
@@ -33,7 +33,7 @@ struct PassProgress final : Progress {
 
 struct SensorMeter {
   ErrorMeter error;
-  double sound_squares = 0, sound_samples = 0;  // of the error, known faults left out
+  double healthy_squares = 0, healthy_samples = 0;  // of the error, known faults left out
   double first = kMissing;
   bool constant = true;
   std::uint64_t missing = 0;
@@ -41,22 +41,31 @@ struct SensorMeter {
 
 class Replay {
  public:
-  Replay(const Scene& scene, const ReplayOptions& options, Progress& progress)
-      : scene_(scene), options_(options), progress_(progress), feed_(scene, progress) {
+  Replay(const Scene& scene,
+         const ReplayOptions& options,
+         Progress& progress,
+         const ReplayWorkspace& workspace)
+      : scene_(scene),
+        options_(options),
+        workspace_(workspace),
+        progress_(progress),
+        instants_(scene, progress) {
     if (scene.reference && scene.reference->estimate_lag) estimate_lag();
     PassProgress at_rest(progress, "measuring the rest");
-    knowledge_ = know_sensors(scene, feed_, at_rest);
+    knowledge_ = know_sensors(scene, instants_, at_rest);
     passes_ += scene.rest ? 1 : 0;
-    feed_.set_offsets(knowledge_.offsets);
-    plan_ = make_plan(scene, options, feed_, knowledge_);
+    instants_.set_offsets(knowledge_.offsets);
+    plan_ = make_plan(scene, options, instants_, knowledge_);
   }
 
-  std::vector<std::string> explain() const { return sentences(plan_, scene_, feed_, knowledge_); }
+  std::vector<std::string> explain() const {
+    return sentences(plan_, scene_, instants_, knowledge_);
+  }
 
   ReplayResult run() {
     prepare();
-    if (plan_.learning_pass) teach();
-    if (plan_.run_learning_pass) teach_on_run();
+    if (plan_.learning_pass) learn_before_run();
+    if (plan_.run_learning_pass) learn_on_run();
     for (AlgorithmRun& run : runs_) run.finish_learning();
     for (AlgorithmRun& run : optimum_) run.finish_learning();
     run_all();
@@ -70,21 +79,22 @@ class Replay {
     PassProgress passing(progress_, "estimating the lag");
     const TimeWindow all;
     lag_s_ = find_lag(scene_,
-                      feed_,
+                      instants_,
                       options_.evaluation ? *options_.evaluation : scene_.evaluation.value_or(all),
                       passing);
-    feed_.set_lag(lag_s_, progress_);
+    instants_.set_lag(lag_s_, progress_);
     ++passes_;
   }
 
   void prepare() {
     frame_.given = &plan_.given;
-    frame_.heap = options_.heap;
-    frame_.rate_hz = feed_.info().rate_hz;
-    frame_.start_s = feed_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
-    frame_.output_scale = feed_.info().output_scale;
+    frame_.heap = workspace_.heap;
+    frame_.rate_hz = instants_.info().rate_hz;
+    frame_.start_s =
+        instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
+    frame_.output_scale = instants_.info().output_scale;
     frame_.tilt = scene_.tilt.has_value();
-    frame_.allan = (options_.allan || options_.no_skip) && feed_.info().has_reference;
+    frame_.allan = (options_.allan || options_.no_skip) && instants_.info().has_reference;
     frame_.tracks = true;
     runs_.reserve(plan_.algorithms.size());
     for (const PlannedAlgorithm& algorithm : plan_.algorithms)
@@ -107,10 +117,10 @@ class Replay {
     sensors_.resize(scene_.sensors.size());
   }
 
-  void teach() {
+  void learn_before_run() {
     PassProgress passing(progress_, "learning");
     ++passes_;
-    feed_.pass(
+    instants_.pass(
         plan_.learn_from,
         plan_.learn_to,
         kLearningBlock,
@@ -121,65 +131,65 @@ class Replay {
         passing);
   }
 
-  void teach_on_run() {
+  void learn_on_run() {
     PassProgress passing(progress_, "teaching the bounds");
     ++passes_;
-    feed_.pass(
+    instants_.pass(
         plan_.run_from,
         plan_.run_to,
         kLearningBlock,
         [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
           for (AlgorithmRun& run : runs_)
             if (run.planned().learns_run()) run.learn(samples, truth);
-          const Eigen::MatrixXd& sound = without_faults(first, samples);
-          for (AlgorithmRun& run : optimum_) run.learn(sound, truth);
+          const Eigen::MatrixXd& healthy = without_faults(first, samples);
+          for (AlgorithmRun& run : optimum_) run.learn(healthy, truth);
         },
         passing);
   }
 
   // The optimum knows which samples are those of a failed sensor, and leaves them out.
   const Eigen::MatrixXd& without_faults(std::int64_t first, const Eigen::MatrixXd& samples) {
-    const auto& faults = feed_.source().known_faults();
+    const auto& faults = instants_.source().known_faults();
     if (faults.empty() || scene_.tilt) return samples;
-    sound_ = samples;
+    healthy_ = samples;
     for (const SensorFault& fault : faults) {
-      const std::int64_t from = std::max(feed_.instant_at(fault.from_s), first);
+      const std::int64_t from = std::max(instants_.instant_at(fault.from_s), first);
       const std::int64_t to =
-          std::min<std::int64_t>(feed_.instant_at(fault.to_s), first + samples.cols());
+          std::min<std::int64_t>(instants_.instant_at(fault.to_s), first + samples.cols());
       if (from < to)
-        sound_.row(static_cast<Eigen::Index>(fault.sensor))
+        healthy_.row(static_cast<Eigen::Index>(fault.sensor))
             .segment(from - first, to - from)
             .setConstant(kMissing);
     }
-    return sound_;
+    return healthy_;
   }
 
   void run_all() {
     PassProgress passing(progress_, "replaying");
     ++passes_;
-    if (options_.estimates != nullptr) begin_estimates();
+    if (workspace_.estimates != nullptr) begin_estimates();
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
-    feed_.pass(
+    instants_.pass(
         plan_.run_from,
         plan_.run_to,
         plan_.block,
         [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
           for (AlgorithmRun& run : runs_) run.run(samples);
-          const Eigen::MatrixXd& sound = without_faults(first, samples);
-          for (AlgorithmRun& run : optimum_) run.run(sound);
+          const Eigen::MatrixXd& healthy = without_faults(first, samples);
+          for (AlgorithmRun& run : optimum_) run.run(healthy);
           for (AlgorithmRun& run : runs_) run.score(first - plan_.run_from, truth);
           for (AlgorithmRun& run : optimum_) run.score(first - plan_.run_from, truth);
           for (const auto& blind : blind_)
             if (blind) blind->run(samples);
-          judge_sensors(samples, sound, truth);
-          if (options_.estimates != nullptr) give_estimates(truth);
+          judge_sensors(samples, healthy, truth);
+          if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
         passing);
   }
 
   void judge_sensors(const Eigen::MatrixXd& samples,
-                     const Eigen::MatrixXd& sound,
+                     const Eigen::MatrixXd& healthy,
                      const Eigen::MatrixXd& truth) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
     if (truth.rows() > 0) truths_ += truth.row(0).array().isFinite().count();
@@ -200,9 +210,9 @@ class Replay {
         if (errors) {
           const double e = y - expected_(row, k);
           error[static_cast<std::size_t>(k)] = std::isfinite(e) ? e : kMissing;
-          if (std::isfinite(e) && std::isfinite(sound(row, k))) {
-            meter.sound_squares += e * e;
-            meter.sound_samples += 1;
+          if (std::isfinite(e) && std::isfinite(healthy(row, k))) {
+            meter.healthy_squares += e * e;
+            meter.healthy_samples += 1;
           }
         }
       }
@@ -214,11 +224,11 @@ class Replay {
     std::vector<std::string> labels;
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked) labels.push_back(run.planned().label);
-    options_.estimates->begin(labels,
-                              inputs(),
-                              frame_.rate_hz,
-                              frame_.start_s,
-                              static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
+    workspace_.estimates->begin(labels,
+                                inputs(),
+                                frame_.rate_hz,
+                                frame_.start_s,
+                                static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
   }
 
   void give_estimates(const Eigen::MatrixXd& truth) {
@@ -229,7 +239,7 @@ class Replay {
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked)
         for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
-    options_.estimates->block(columns);
+    workspace_.estimates->block(columns);
   }
 
   // After everything else: what the algorithms hold then is of no interest.
@@ -249,18 +259,32 @@ class Replay {
 
   std::vector<InputResult> inputs() const {
     std::vector<InputResult> out;
-    for (std::size_t j = 0; j < feed_.info().input_names.size(); ++j)
-      out.push_back({feed_.info().input_names[j], feed_.info().input_units[j], kMissing});
+    for (std::size_t j = 0; j < instants_.info().input_names.size(); ++j)
+      out.push_back({instants_.info().input_names[j], instants_.info().input_units[j], kMissing});
     return out;
   }
 
+  /// A result, and the error by which it is compared with others; null: by none.
+  struct Scored {
+    AlgorithmResult result;
+    const ErrorMeter* meter = nullptr;
+  };
   ReplayResult collect();
+  void add_facts(ReplayResult& out) const;
+  void add_sensors(ReplayResult& out, const ScoreOptions& scoring) const;
+  Scored scored(const AlgorithmRun& run,
+                const BlindRun* blind,
+                const ReplayResult& so_far,
+                const ScoreOptions& scoring) const;
+  std::vector<const ErrorMeter*> add_algorithms(ReplayResult& out,
+                                                const ScoreOptions& scoring) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
   const Scene& scene_;
   const ReplayOptions& options_;
+  const ReplayWorkspace workspace_;
   Progress& progress_;
-  Feed feed_;
+  Instants instants_;
   SensorKnowledge knowledge_;
   ReplayPlan plan_;
   RunFrame frame_, optimum_frame_;
@@ -269,7 +293,7 @@ class Replay {
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
   std::vector<Eigen::MatrixXd> kept_;
-  Eigen::MatrixXd expected_, sound_;
+  Eigen::MatrixXd expected_, healthy_;
   Eigen::Index truths_ = 0;  // instants of the run with a truth
   double lag_s_ = 0;
   std::uint64_t passes_ = 0;
@@ -278,7 +302,7 @@ class Replay {
 SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) const {
   SensorResult out;
   out.name = scene_.sensors[i].name;
-  out.unit = feed_.info().units[i];
+  out.unit = instants_.info().units[i];
   out.error = score(sensors_[i].error, frame_.rate_hz, scoring);
   if (knowledge_.noise_variances[i] > 0) out.noise_variance = knowledge_.noise_variances[i];
   out.noise_source = knowledge_.noise_sources[i];
@@ -290,17 +314,9 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   return out;
 }
 
-ReplayResult Replay::collect() {
-  const ScoreOptions scoring{40, 1000, options_.seed};
-  if (feed_.info().has_reference && truths_ == 0)
-    throw Error({ErrorKind::input,
-                 "E0902",
-                 scene_.file,
-                 "the reference has no value within the evaluation",
-                 "",
-                 "its stamps, its lag or its gaps put it elsewhere"});
-  const FeedInfo& info = feed_.info();
-  ReplayResult out;
+// What the scene is, as far as the reports tell it.
+void Replay::add_facts(ReplayResult& out) const {
+  const InstantsInfo& info = instants_.info();
   out.scene = scene_;
   out.logs = info.logs;
   out.plan = explain();
@@ -318,49 +334,83 @@ ReplayResult Replay::collect() {
   out.lag_estimated = scene_.reference && scene_.reference->estimate_lag;
   out.has_reference = info.has_reference;
   out.reference_use = info.reference_use;
-  out.faults = feed_.source().known_faults();
+  out.faults = instants_.source().known_faults();
   out.warnings = scene_.warnings;
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
+}
+
+void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     out.sensors.push_back(sensor_result(i, scoring));
   for (const SensorResult& sensor : out.sensors)
     if (sensor.constant)
       out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
-  std::vector<const ErrorMeter*> meters;
-  auto run = runs_.begin();
-  for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
-    const bool ran = algorithm.runs();
-    const AlgorithmRun* mine = ran ? &*run : nullptr;
-    const BlindRun* blind =
-        ran ? blind_[static_cast<std::size_t>(run - runs_.begin())].get() : nullptr;
-    if (ran) ++run;
-    if (mine != nullptr) {
-      out.work.learnt += mine->learnt();
-      out.work.steps += mine->steps();
-    }
-    if (blind != nullptr) out.work.blind_steps += blind->steps();
-    if (!algorithm.asked) continue;
-    AlgorithmResult result =
-        mine != nullptr ? mine->result(scoring, out.window_s) : not_run(algorithm, algorithm.why);
-    meters.push_back(nullptr);
-    if (result.ran && !result.inputs.empty()) meters.back() = &mine->meters()[0];
-    if (result.ran && blind != nullptr && !info.has_reference) {
-      result.blind = blind->result(info.rate_hz, scoring);
-      result.rmse = result.blind->leave_one_out_rms;
-      result.rmse_ci95 = result.blind->leave_one_out_ci95;
-      meters.back() = &blind->meter();
-    }
-    if (!options_.allan)
-      for (InputScore& input : result.inputs) input.allan = {};
-    if (mine != nullptr) judge_tracking(result, *mine, optimum_, out, plan_.given);
-    answer_faults(result, out);
-    out.algorithms.push_back(std::move(result));
+}
+
+// One that ran, and by which of its errors it is compared with others; null: by none.
+Replay::Scored Replay::scored(const AlgorithmRun& run,
+                              const BlindRun* blind,
+                              const ReplayResult& so_far,
+                              const ScoreOptions& scoring) const {
+  Scored out{run.result(scoring, so_far.window_s), nullptr};
+  AlgorithmResult& result = out.result;
+  if (result.ran && !result.inputs.empty()) out.meter = &run.meters()[0];
+  if (result.ran && blind != nullptr && !so_far.has_reference) {
+    result.blind = blind->result(so_far.rate_hz, scoring);
+    result.rmse = result.blind->leave_one_out_rms;
+    result.rmse_ci95 = result.blind->leave_one_out_ci95;
+    out.meter = &blind->meter();
   }
-  std::vector<double> sound_rms;
+  if (!options_.allan)
+    for (InputScore& input : result.inputs) input.allan = {};
+  judge_tracking(result, run, optimum_, so_far, plan_.given);
+  return out;
+}
+
+// All that were asked for. Returns by which error each is compared.
+std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
+                                                      const ScoreOptions& scoring) const {
+  std::vector<const ErrorMeter*> meters;
+  std::size_t next = 0;
+  for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
+    Scored one;
+    if (algorithm.runs()) {
+      const AlgorithmRun& run = runs_[next];
+      const BlindRun* blind = blind_[next++].get();
+      out.work.learnt += run.learnt();
+      out.work.steps += run.steps();
+      if (blind != nullptr) out.work.blind_steps += blind->steps();
+      if (!algorithm.asked) continue;
+      one = scored(run, blind, out, scoring);
+    } else {
+      if (!algorithm.asked) continue;
+      one.result = not_run(algorithm, algorithm.why);
+    }
+    meters.push_back(one.meter);
+    answer_faults(one.result, out);
+    out.algorithms.push_back(std::move(one.result));
+  }
+  return meters;
+}
+
+ReplayResult Replay::collect() {
+  const ScoreOptions scoring{40, 1000, options_.seed};
+  if (instants_.info().has_reference && truths_ == 0)
+    throw Error({ErrorKind::input,
+                 "E0902",
+                 scene_.file,
+                 "the reference has no value within the evaluation",
+                 "",
+                 "its stamps, its lag or its gaps put it elsewhere"});
+  ReplayResult out;
+  add_facts(out);
+  add_sensors(out, scoring);
+  const std::vector<const ErrorMeter*> meters = add_algorithms(out, scoring);
+  std::vector<double> healthy_rms;
   for (const SensorMeter& meter : sensors_)
-    sound_rms.push_back(std::sqrt(meter.sound_squares / meter.sound_samples));
-  judge_optimum(out, optimum_, sound_rms, plan_.given);
+    healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
+  judge_optimum(out, optimum_, healthy_rms, plan_.given);
   judge_best(out, meters, scoring);
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
@@ -375,12 +425,15 @@ ReplayResult Replay::collect() {
 std::vector<std::string> explain_replay(const Scene& scene,
                                         const ReplayOptions& options,
                                         Progress& progress) {
-  return Replay(scene, options, progress).explain();
+  return Replay(scene, options, progress, {}).explain();
 }
 
-ReplayResult replay(const Scene& scene, const ReplayOptions& options, Progress& progress) {
+ReplayResult replay(const Scene& scene,
+                    const ReplayOptions& options,
+                    Progress& progress,
+                    const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
-  ReplayResult out = Replay(scene, options, progress).run();
+  ReplayResult out = Replay(scene, options, progress, workspace).run();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

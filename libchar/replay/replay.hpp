@@ -1,5 +1,5 @@
 #pragma once
-// Every fusion algorithm that a scene can feed, on one recording.
+// Every fusion algorithm that a scene can run, on one recording.
 
 #include <functional>
 #include <memory>
@@ -32,11 +32,15 @@ struct ReplayOptions {
   std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
   double window_s = 0;                             ///< of the window RMS; 0: a fiftieth of the run
   bool allan = true;                               ///< Allan deviation of each error
-  bool no_skip = false;       ///< do all work, whether an output needs it or not: same numbers
-  std::size_t block = 0;      ///< instants at once; 0: by length. Results do not depend on it
-  std::uint64_t seed = 1;     ///< of the bootstrap
-  HeapMeter* heap = nullptr;  ///< who can say how much memory an algorithm holds
-  EstimateSink* estimates = nullptr;
+  bool no_skip = false;    ///< do all work, whether an output needs it or not: same numbers
+  std::size_t block = 0;   ///< instants at once; 0: by length. Results do not depend on it
+  std::uint64_t seed = 1;  ///< of the bootstrap
+};
+
+/// What a replay works with besides its options; none of it changes what is found.
+struct ReplayWorkspace {
+  HeapMeter* heap = nullptr;  ///< who can say how much memory an algorithm holds; none: nobody
+  EstimateSink* estimates = nullptr;  ///< who wants them; none: they are not kept
 };
 
 /// What would be done, in sentences; reads the recording once to know its length and rate.
@@ -48,6 +52,7 @@ std::vector<std::string> explain_replay(const Scene& scene,
 /// can run.
 ReplayResult replay(const Scene& scene,
                     const ReplayOptions& options = {},
-                    Progress& progress = no_progress());
+                    Progress& progress = no_progress(),
+                    const ReplayWorkspace& workspace = {});
 
 }  // namespace libchar

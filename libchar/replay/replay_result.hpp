@@ -52,7 +52,7 @@ struct BlindScore {
   double leave_one_out_rms = 0;  ///< RMS over all sensors of (fused from the others) - (the sensor)
   std::vector<double> leave_one_out;  ///< the same for each sensor; NaN: could not run
   double split_rms =
-      0;  ///< RMS of half the difference of two halves of the array; NaN: could not run
+      0;  ///< RMS of half the difference of two parts of the array; NaN: could not run
   Interval leave_one_out_ci95;
 };
 
@@ -76,7 +76,7 @@ struct AlgorithmResult {
   double availability = 0;
 
   double ns_per_sample = 0;  ///< median over interleaved blocks; NaN: too short to measure
-  double learning_s = 0;     ///< making and teaching it, CPU of one core
+  double learning_s = 0;     ///< making it and its learning, CPU of one core
   std::optional<std::uint64_t>
       peak_bytes;  ///< of heap, over learning and run; none: nobody measured
 
@@ -98,7 +98,7 @@ struct AlgorithmResult {
 struct SensorResult {
   std::string name, unit;
   ErrorScore error;                      ///< of y - h x; NaN without a reference
-  std::optional<double> noise_variance;  ///< what algorithms were given
+  std::optional<double> noise_variance;  ///< what algorithms were told
   std::string noise_source;              ///< "model", "rest", "scene", ""
   double offset = 0;                     ///< subtracted (mean over the rest)
   double missing = 0;                    ///< share of the instants of the run

@@ -96,8 +96,10 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   return out;
 }
 
-// The best that needs no teaching, when the best of all does.
-std::string untaught_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
+// The best that needs no reference, when the best of all learns from one.
+std::string without_reference_sentence(const ReplayResult& r,
+                                       const AlgorithmResult& best,
+                                       bool costs) {
   if (!learns(best)) return "";
   for (const AlgorithmResult* a : ranked(r))
     if (!a->bound && !learns(*a) && std::isfinite(a->rmse))
@@ -159,7 +161,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
-  add(untaught_sentence(r, best, costs));
+  add(without_reference_sentence(r, best, costs));
   add(equals_sentence(r, best, costs));
   if (r.has_reference)
     add(bounds_sentence(r));

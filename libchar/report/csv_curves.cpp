@@ -4,11 +4,9 @@
 
 #include <cmath>
 
-#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
 namespace {
@@ -22,74 +20,69 @@ std::string cell(const std::optional<double>& value) {
 }
 
 void add_allan(std::string& out,
-               const ChannelResult& c,
+               const ChannelView& view,
                const std::string& name,
                const std::string& unit) {
-  for (const AllanPoint& p : c.allan.points) {
+  const ChannelResult& c = *view.result;
+  for (std::size_t i = 0; i < c.allan.points.size(); ++i) {
+    const AllanPoint& p = c.allan.points[i];
     const bool known = p.edf > 0;
     const auto bound = [&](double value) { return known ? cell(value) : std::string(); };
-    out += fmt::format(
-        "{},{},{},s,{},{},{},{},{},{},{},{},{}\n",
-        name_of(c.allan.type),
-        name,
-        unit,
-        cell(p.tau_s),
-        cell(p.deviation),
-        bound(p.ci68.low),
-        bound(p.ci68.high),
-        bound(p.ci95.low),
-        bound(p.ci95.high),
-        bound(p.edf),
-        p.terms,
-        c.fit ? cell(model_deviation(*c.fit, c.allan.type, static_cast<double>(p.m), c.allan.dt_s))
-              : "");
+    out += fmt::format("{},{},{},s,{},{},{},{},{},{},{},{},{}\n",
+                       name_of(c.allan.type),
+                       name,
+                       unit,
+                       cell(p.tau_s),
+                       cell(p.deviation),
+                       bound(p.ci68.low),
+                       bound(p.ci68.high),
+                       bound(p.ci95.low),
+                       bound(p.ci95.high),
+                       bound(p.edf),
+                       p.terms,
+                       view.allan_model ? cell(view.allan_model->values[i]) : "");
   }
 }
 
-struct Factors {
-  IntervalFactors in68{0.6827}, in95{0.95};
-};
-
-void add_spectrum(std::string& out,
-                  const ChannelResult& c,
-                  const std::string& name,
-                  Factors& factors) {
+void add_spectrum(std::string& out, const ChannelView& view, const std::string& name) {
+  const ChannelResult& c = *view.result;
   const Spectrum& s = c.spectrum;
+  const auto low = [](const std::optional<Interval>& i) { return i ? cell(i->low) : ""; };
+  const auto high = [](const std::optional<Interval>& i) { return i ? cell(i->high) : ""; };
   const std::string curve = fmt::format("{}_{}_sided", key_of(s.scaling), key_of(s.sides));
   const std::string unit = csv_cell(spectrum_unit(s.scaling, c.channel.unit));
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const double dof = i < s.dof.size() ? s.dof[i] : 0;
-    std::pair<double, double> in68{NAN, NAN}, in95{NAN, NAN};
-    if (dof > 0) {
-      in68 = factors.in68.interval(s, i);
-      in95 = factors.in95.interval(s, i);
-    }
     out += fmt::format("{},{},{},Hz,{},{},{},{},{},{},{},,{}\n",
                        curve,
                        name,
                        unit,
                        cell(s.frequency_hz[i]),
                        cell(s.value[i]),
-                       cell(in68.first),
-                       cell(in68.second),
-                       cell(in95.first),
-                       cell(in95.second),
+                       low(view.spectrum_ci68[i]),
+                       high(view.spectrum_ci68[i]),
+                       low(view.spectrum_ci95[i]),
+                       high(view.spectrum_ci95[i]),
                        dof > 0 ? cell(dof) : "",
-                       c.fit ? cell(model_spectrum(*c.fit, s, s.frequency_hz[i])) : "");
+                       view.spectrum_model ? cell(view.spectrum_model->values[i]) : "");
   }
 }
 
 }  // namespace
 
-std::string csv_curves(const Characterization& result) {
+std::string csv_curves(const CharacterizationView& view) {
   std::string out = "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model\n";
-  Factors factors;
-  for (const ChannelResult& c : result.channels) {
-    const std::string name = csv_cell(c.channel.name), unit = csv_cell(c.channel.unit);
-    add_allan(out, c, name, unit);
-    add_spectrum(out, c, name, factors);
+  for (const ChannelView& channel : view.channels) {
+    const Channel& of = channel.result->channel;
+    const std::string name = csv_cell(of.name), unit = csv_cell(of.unit);
+    add_allan(out, channel, name, unit);
+    add_spectrum(out, channel, name);
   }
   return out;
+}
+
+std::string csv_curves(const Characterization& result) {
+  return csv_curves(characterization_view(result));
 }
 
 }  // namespace libchar

@@ -9,8 +9,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/model_curve.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
@@ -25,10 +23,9 @@
 namespace libchar {
 namespace {
 
-std::string facts(const Characterization& result) {
+std::string facts(const CharacterizationView& view) {
+  const Characterization& result = *view.result;
   const LogInfo& log = result.log;
-  const double duration_s =
-      log.time.rate_hz > 0 ? static_cast<double>(log.samples) / log.time.rate_hz : 0;
   std::string out = "<p class=\"facts\">";
   out += fmt::format("<b>{}</b> {} · <b>{}</b> samples a channel",
                      result.channels.size(),
@@ -38,7 +35,7 @@ std::string facts(const Characterization& result) {
     out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>",
                        significant(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
-                       html_text(people_seconds(duration_s)));
+                       html_text(people_seconds(view.duration_s)));
   }
   if (log.time.gaps > 0) {
     out += fmt::format(" · <b>{}</b> gaps, <b>{}</b> samples missing",
@@ -51,17 +48,18 @@ std::string facts(const Characterization& result) {
 }
 
 // The coefficient in the first of the field's units, or in its own.
-std::string overview_cell(const ChannelResult& c, Term term) {
+std::string overview_cell(const ChannelView& view, Term term) {
+  const ChannelResult& c = *view.result;
   if (!c.fit) return "<td>–</td>";
   const Coefficient& k = (*c.fit)[term];
   if (!k.value && !k.upper95) return "<td>–</td>";
   const auto key = kTermNames[static_cast<std::size_t>(term)].key;
-  const auto habits = habitual_units(key, c.channel.unit);
+  const auto habits = habitual_units(key, view.unit);
   // The field has no shorter way to say it than the coefficient itself when its first habit is only
   // a factor of ours.
   const bool known = habits.size() > 1;
   const double factor = known ? habits[0].factor : 1;
-  const std::string unit = known ? habits[0].symbol : term_unit(key, c.channel.unit);
+  const std::string unit = known ? habits[0].symbol : term_unit(key, view.unit);
   const std::string mark = k.status == Status::undetermined ? "<span class=\"dim\"> ?</span>" : "";
   const std::string whole = people_coefficient(k, factor);
   const std::string interval =
@@ -74,16 +72,16 @@ std::string overview_cell(const ChannelResult& c, Term term) {
                      interval);
 }
 
-std::string overview_row(const ChannelResult& c, std::size_t index, double rate_hz) {
-  const auto look = cautions(c);
-  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+std::string overview_row(const ChannelView& view, std::size_t index, double rate_hz) {
+  const ChannelResult& c = *view.result;
+  const std::string unit = view.unit.empty() ? "U" : view.unit;
   std::string out = fmt::format(
       "<tr><th scope=\"row\"><a href=\"#channel-{}\">{}</a> <span class=\"dim\">{}</span></th>",
       index,
       html_text(c.channel.name),
       html_text(unit));
-  for (const Term term : {Term::white, Term::flicker, Term::walk}) out += overview_cell(c, term);
-  const AllanPoint* lowest = allan_minimum(c.allan);
+  for (const Term term : {Term::white, Term::flicker, Term::walk}) out += overview_cell(view, term);
+  const AllanPoint* lowest = view.allan_minimum;
   out += lowest == nullptr ? "<td>–</td>"
                            : fmt::format("<td class=\"n\">{} <span class=\"dim\">at {}</span></td>",
                                          html_text(people(lowest->deviation, 3)),
@@ -95,18 +93,17 @@ std::string overview_row(const ChannelResult& c, std::size_t index, double rate_
   out += c.fit ? "<td class=\"n\">" + html_text(people_probability(c.fit->goodness.p)) + "</td>"
                : "<td>no fit</td>";
   out +=
-      look.empty()
+      view.cautions.empty()
           ? "<td><span class=\"chip detected\">clear</span></td>"
           : fmt::format("<td><a class=\"chip unsure\" href=\"#channel-{}\">{} to look at</a></td>",
                         index,
-                        look.size());
+                        view.cautions.size());
   return out + "</tr>\n";
 }
 
-std::string overview(const Characterization& result) {
-  std::string out = "<section id=\"overview\">\n<p class=\"verdict\">" +
-                    html_text(verdict_of(result)) + "</p>\n" + facts(result) +
-                    "<div class=\"wide\"><table class=\"overview\">\n" +
+std::string overview(const CharacterizationView& view) {
+  std::string out = "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(view.verdict) +
+                    "</p>\n" + facts(view) + "<div class=\"wide\"><table class=\"overview\">\n" +
                     table_head({"Channel",
                                 "White noise Q",
                                 "Bias instability B",
@@ -115,8 +112,8 @@ std::string overview(const Characterization& result) {
                                 "Sample sd Q·√f",
                                 "Fit",
                                 "Cautions"});
-  for (std::size_t i = 0; i < result.channels.size(); ++i)
-    out += overview_row(result.channels[i], i, result.log.time.rate_hz);
+  for (std::size_t i = 0; i < view.channels.size(); ++i)
+    out += overview_row(view.channels[i], i, view.result->log.time.rate_hz);
   return out +
          "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
          "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or "
@@ -169,35 +166,27 @@ std::string provenance(const Characterization& result) {
   return out + "</section>\n";
 }
 
-// In tables and on axes a unit stands in its usual spelling ("m/s²" for "m/s^2"); the data keep
-// what the log says.
-ChannelResult in_usual_spelling(ChannelResult channel) {
-  const auto unit = find_unit(channel.channel.unit);
-  if (unit && unit->symbol != "1") channel.channel.unit = unit->symbol;
-  return channel;
-}
+}  // namespace
 
-std::string page_of(const Characterization& result, const std::string& data) {
-  std::string body = overview(result);
-  for (std::size_t i = 0; i < result.channels.size(); ++i)
-    body += channel_section(result.channels[i], result.log, i);
+std::string html_report(const CharacterizationView& view, const Json& without_times) {
+  const Characterization& result = *view.result;
+  std::string body = overview(view);
+  for (std::size_t i = 0; i < view.channels.size(); ++i)
+    body += channel_section(view.channels[i], result.log, i);
   body += provenance(result);
   return html_page(
       {"Sensor noise", result.log.file, std::string(page_js()), std::string(page_css())},
       body,
-      data);
-}
-
-}  // namespace
-
-std::string html_report(const Characterization& result) {
-  return html_report(result, json_without_times(result));
+      json_in_script(without_times));
 }
 
 std::string html_report(const Characterization& result, const Json& without_times) {
-  Characterization shown = result;
-  for (ChannelResult& channel : shown.channels) channel = in_usual_spelling(std::move(channel));
-  return page_of(shown, json_in_script(without_times));
+  return html_report(characterization_view(result), without_times);
+}
+
+std::string html_report(const Characterization& result) {
+  const CharacterizationView view = characterization_view(result);
+  return html_report(view, json_without_times(view));
 }
 
 }  // namespace libchar

@@ -1,18 +1,19 @@
 #pragma once
 // One channel's share of each shared document (outputs_json.cpp), for those who assemble them.
 
-#include "libchar/characterize/characterization.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 
 namespace libchar {
 
-/// With a fit, also "model": what it predicts at each point.
-Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit);
-Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit);
-/// With `in95` shared by the channels.
+/// With a model, also what it predicts at each point.
+Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const ModelCurve* model);
+/// `ci95`: one a bin.
 Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
-                           const NoiseFit* fit,
-                           IntervalFactors& in95);
+                           const ModelCurve* model,
+                           const std::vector<std::optional<Interval>>& ci95);
+Json spectrum_channel_json(const Channel& channel,
+                           const Spectrum& spectrum,
+                           const ModelCurve* model = nullptr);
 
 }  // namespace libchar

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/model_curve.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -21,9 +19,9 @@ Json frame(std::string_view format) {
   return {{"format", format}, {"version", 1}};
 }
 
-Json read_off_json(const ChannelResult& channel) {
+Json read_off_json(const std::vector<ReadOff>& points) {
   Json out = Json::array();
-  for (const ReadOff& p : read_off_points(*channel.fit, channel.allan)) {
+  for (const ReadOff& p : points) {
     out.push_back({{"term", kTermNames[static_cast<std::size_t>(p.term)].key},
                    {"tau_s", p.tau_s},
                    {"deviation", p.deviation},
@@ -32,18 +30,17 @@ Json read_off_json(const ChannelResult& channel) {
   return out;
 }
 
-// Numbers that follow from the coefficients and that users ask for.
-Json derived_json(const ChannelResult& channel, double rate_hz) {
+// Numbers that follow from the coefficients and that one asks for.
+Json derived_json(const ChannelView& view) {
   Json out = Json::object();
-  const Coefficient& white = (*channel.fit)[Term::white];
-  if (white.value) {
-    out["per_sample_sd"] = *white.value * std::sqrt(rate_hz);
-    out["noise_density_one_sided"] = *white.value * std::sqrt(2.0);
+  if (view.per_sample_sd) {
+    out["per_sample_sd"] = *view.per_sample_sd;
+    out["noise_density_one_sided"] = *view.noise_density_one_sided;
   }
-  if (const AllanPoint* lowest = allan_minimum(channel.allan)) {
+  if (const AllanPoint* lowest = view.allan_minimum) {
     out["allan_minimum"] = {{"deviation", lowest->deviation}, {"tau_s", lowest->tau_s}};
   }
-  out["read_off_points"] = read_off_json(channel);
+  out["read_off_points"] = read_off_json(view.read_off);
   return out;
 }
 
@@ -62,20 +59,22 @@ Json quality_json(const ChannelResult& channel) {
 }
 
 // A channel that could not be fitted keeps its place: null, with the reason in "problems".
-Json fit_or_reason(const ChannelResult& channel, double rate_hz) {
+Json fit_or_reason(const ChannelView& view) {
+  const ChannelResult& channel = *view.result;
   const std::string name = json_text(channel.channel.name), unit = json_text(channel.channel.unit);
   if (!channel.fit) return no_fit_json(name, unit);
   Json out = noise_fit_json(name, unit, *channel.fit, true);
-  out["derived"] = derived_json(channel, rate_hz);
+  out["derived"] = derived_json(view);
   return out;
 }
 
 }  // namespace
 
-Json json_without_times(const Characterization& result) {
+Json json_without_times(const CharacterizationView& view) {
+  const Characterization& result = *view.result;
   Json out = document_head("characterization", result.command, {&result.log});
   out["config"] = json_of(result.settings);
-  out["verdict"] = json_text(verdict_of(result));
+  out["verdict"] = json_text(view.verdict);
 
   std::vector<ChannelQuality> qualities;
   LogInfo log = result.log;
@@ -93,12 +92,13 @@ Json json_without_times(const Characterization& result) {
   spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
   spectrum["scaling"] = key_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
   for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
-  IntervalFactors in95(0.95);
-  for (const ChannelResult& c : result.channels) {
-    const NoiseFit* model = c.fit ? &*c.fit : nullptr;
-    allan["channels"].push_back(allan_channel_json(c.channel, c.allan, model));
-    spectrum["channels"].push_back(spectrum_channel_json(c.channel, c.spectrum, model, in95));
-    fit["channels"].push_back(fit_or_reason(c, result.log.time.rate_hz));
+  for (const ChannelView& v : view.channels) {
+    const ChannelResult& c = *v.result;
+    allan["channels"].push_back(
+        allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
+    spectrum["channels"].push_back(spectrum_channel_json(
+        c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
+    fit["channels"].push_back(fit_or_reason(v));
     quality["channels"].push_back(quality_json(c));
   }
   out["allan"] = std::move(allan);
@@ -114,6 +114,10 @@ Json json_without_times(const Characterization& result) {
                                                                : Json(nullptr));
   }
   return out;
+}
+
+Json json_without_times(const Characterization& result) {
+  return json_without_times(characterization_view(result));
 }
 
 Json json_report(const Characterization& result) {

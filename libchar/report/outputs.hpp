@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 
 namespace libchar {
 
@@ -11,14 +11,17 @@ namespace libchar {
 std::string html_report(const Characterization& result);
 /// The same where its document is there already.
 std::string html_report(const Characterization& result, const Json& without_times);
+std::string html_report(const CharacterizationView& view, const Json& without_times);
 
 /// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (docs/json.md).
 Json json_report(const Characterization& result);
 /// The document without "measured": all that a page shows, and the same bytes for the same characterization.
 Json json_without_times(const Characterization& result);
+Json json_without_times(const CharacterizationView& view);
 void add_times(Json& document, const Characterization& result);
 
 /// Allan and spectrum curves of all channels in one table: curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model.
+std::string csv_curves(const CharacterizationView& view);
 std::string csv_curves(const Characterization& result);
 
 /// The pieces of JSON that the verbs share (keys: docs/json.md).

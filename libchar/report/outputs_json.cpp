@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
@@ -38,17 +37,22 @@ Json asymptotes_json(const std::vector<Asymptote>& lines) {
   return out;
 }
 
+void add_model(Json& out, const ModelCurve& model) {
+  out["model"] = Json::array();
+  for (const auto& value : model.values) out["model"].push_back(json_number(value));
+  out["asymptotes"] = asymptotes_json(model.asymptotes);
+}
+
 Json frame(std::string_view format) {
   return {{"format", format}, {"version", 1}};
 }
 
 }  // namespace
 
-Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const NoiseFit* fit) {
+Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const ModelCurve* model) {
   Json out = named(channel);
   for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "ci68", "reliable"})
     out[key] = Json::array();
-  Json model = Json::array();
   for (const AllanPoint& p : curve.points) {
     const bool known = p.edf > 0;
     out["tau_s"].push_back(p.tau_s);
@@ -59,14 +63,8 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const N
     out["m"].push_back(p.m);
     out["ci68"].push_back(known ? interval(p.ci68) : Json(nullptr));
     out["reliable"].push_back(p.reliable);
-    if (fit != nullptr)
-      model.push_back(
-          json_number(model_deviation(*fit, curve.type, static_cast<double>(p.m), curve.dt_s)));
   }
-  if (fit != nullptr && !curve.points.empty()) {
-    out["model"] = model;
-    out["asymptotes"] = asymptotes_json(allan_asymptotes(*fit, curve));
-  }
+  if (model != nullptr && !curve.points.empty()) add_model(out, *model);
   out["dt_s"] = curve.dt_s;
   out["samples"] = curve.samples;
   out["missing"] = curve.missing;
@@ -85,36 +83,26 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
   return out;
 }
 
-Json spectrum_channel_json(const Channel& channel, const Spectrum& spectrum, const NoiseFit* fit) {
+Json spectrum_channel_json(const Channel& channel,
+                           const Spectrum& spectrum,
+                           const ModelCurve* model) {
   IntervalFactors in95(0.95);
-  return spectrum_channel_json(channel, spectrum, fit, in95);
+  return spectrum_channel_json(channel, spectrum, model, spectrum_intervals(spectrum, in95));
 }
 
 Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
-                           const NoiseFit* fit,
-                           IntervalFactors& in95) {
+                           const ModelCurve* model,
+                           const std::vector<std::optional<Interval>>& ci95) {
   Json out = named(channel);
   for (const char* key : {"frequency_hz", "value", "dof", "ci95"}) out[key] = Json::array();
-  Json model = Json::array();
   for (std::size_t i = 0; i < spectrum.frequency_hz.size(); ++i) {
-    const double dof = i < spectrum.dof.size() ? spectrum.dof[i] : 0;
     out["frequency_hz"].push_back(spectrum.frequency_hz[i]);
     out["value"].push_back(json_number(spectrum.value[i]));
-    out["dof"].push_back(json_number(dof));
-    if (dof > 0) {
-      const auto [low, high] = in95.interval(spectrum, i);
-      out["ci95"].push_back(interval({low, high}));
-    } else {
-      out["ci95"].push_back(nullptr);
-    }
-    if (fit != nullptr)
-      model.push_back(json_number(model_spectrum(*fit, spectrum, spectrum.frequency_hz[i])));
+    out["dof"].push_back(json_number(i < spectrum.dof.size() ? spectrum.dof[i] : 0));
+    out["ci95"].push_back(ci95[i] ? interval(*ci95[i]) : Json(nullptr));
   }
-  if (fit != nullptr && !spectrum.frequency_hz.empty()) {
-    out["model"] = model;
-    out["asymptotes"] = asymptotes_json(spectrum_asymptotes(*fit, spectrum));
-  }
+  if (model != nullptr && !spectrum.frequency_hz.empty()) add_model(out, *model);
   out["value_unit"] = json_text(spectrum_unit(spectrum.scaling, channel.unit));
   out["window"] = name_of(spectrum.window);
   out["rate_hz"] = spectrum.rate_hz;

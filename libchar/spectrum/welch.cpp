@@ -25,7 +25,7 @@ namespace libchar {
 using namespace welch_detail;
 
 /// Halves of one length and a sum to go with each.
-struct SpectrumMemory::State {
+struct WelchWorkspace::State {
   struct Piece {
     HalfSegments halves;
     HalfSegments::SumsPointer sums;
@@ -51,8 +51,8 @@ struct SpectrumMemory::State {
   }
 };
 
-SpectrumMemory::SpectrumMemory() : state_(std::make_unique<State>()) {}
-SpectrumMemory::~SpectrumMemory() = default;
+WelchWorkspace::WelchWorkspace() : state_(std::make_unique<State>()) {}
+WelchWorkspace::~WelchWorkspace() = default;
 
 namespace {
 
@@ -138,14 +138,14 @@ struct Group {
 // What one thread works with: halves, each transformed once, where the options allow it; else whole
 // segments.
 struct Worker {
-  SpectrumMemory::State& memory;
-  std::optional<SpectrumMemory::State::Piece> halves;
+  WelchWorkspace::State& memory;
+  std::optional<WelchWorkspace::State::Piece> halves;
   std::optional<Periodogram> periodogram;
   /// No window: by halves.
   Worker(const WelchOptions& options,
          const Layout& layout,
          const std::vector<double>& window,
-         SpectrumMemory& kept)
+         WelchWorkspace& kept)
       : memory(kept.state()) {
     if (window.empty())
       halves = memory.take(layout.segment);
@@ -203,7 +203,10 @@ std::uint64_t threads_of(const WelchOptions& options) {
 
 }  // namespace
 
-Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options) {
+Spectrum welch(std::span<const double> record,
+               double rate_hz,
+               const WelchOptions& options,
+               WelchWorkspace* workspace) {
   check_options(options);
   check_rate(rate_hz);
   std::vector<std::string> notes;
@@ -215,8 +218,8 @@ Spectrum welch(std::span<const double> record, double rate_hz, const WelchOption
                                          : window_values(options.window, layout.segment);
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   Average average(options, layout);
-  SpectrumMemory own;
-  SpectrumMemory& memory = options.memory != nullptr ? *options.memory : own;
+  WelchWorkspace own;
+  WelchWorkspace& memory = workspace != nullptr ? *workspace : own;
 
   const int threads = static_cast<int>(std::min(groups, threads_of(options)));
   if (threads <= 1) {

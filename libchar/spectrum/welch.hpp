@@ -13,10 +13,10 @@ enum class Detrend { none, constant, linear };
 
 /// What welch() works in, kept from one record to the next: for long segments it is as large as a
 /// record, and new memory costs as much as a transform. Any number of threads may share it.
-class SpectrumMemory {
+class WelchWorkspace {
  public:
-  SpectrumMemory();
-  ~SpectrumMemory();
+  WelchWorkspace();
+  ~WelchWorkspace();
   struct State;
   State& state() { return *state_; }
 
@@ -26,19 +26,21 @@ class SpectrumMemory {
 
 struct WelchOptions {
   Window window = Window::hann;
-  std::uint64_t segment =
-      0;                 ///< samples per segment; 0 = a quarter of the record as in [RV app. A]
+  /// samples per segment; 0 = a quarter of the record as in [RV app. A]
+  std::uint64_t segment = 0;
   double overlap = 0.5;  ///< fraction of a segment, 0 <= overlap < 1
   Detrend detrend = Detrend::constant;
   Sides sides = Sides::one;
   Scaling scaling = Scaling::psd;
   int threads = 0;
-  SpectrumMemory* memory = nullptr;  ///< none: memory of its own
 };
 
 /// Welch's averaged modified periodogram. NaN = missing: segments that touch one are dropped; when
 /// fewer than one whole segment is left the segment is shortened and a note says so. Throws
-/// Error(numeric) when no segment of >= 8 samples is possible.
-Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {});
+/// Error(numeric) when no segment of >= 8 samples is possible. `workspace` none: memory of its own.
+Spectrum welch(std::span<const double> record,
+               double rate_hz,
+               const WelchOptions& options = {},
+               WelchWorkspace* workspace = nullptr);
 
 }  // namespace libchar

@@ -1,4 +1,4 @@
-// Every shipped scene, cut short, through every algorithm it can feed: what must not change the
+// Every shipped scene, cut short, through every algorithm it can run: what must not change the
 // numbers does not.
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/replay/detail/feed.hpp"
+#include "libchar/replay/detail/instants.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 
@@ -34,8 +34,8 @@ TEST_CASE("replay: the RMSE of the mean is that of a loop over the samples") {
   const Scene scene = bench.read(array_scene(5000, "algorithms: [mean, inverse-variance]\n"));
   double squares = 0;
   std::int64_t count = 0;
-  const Feed feed(scene, no_progress());
-  feed.pass(
+  const Instants instants(scene, no_progress());
+  instants.pass(
       0,
       5000,
       100,

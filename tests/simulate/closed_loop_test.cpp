@@ -63,9 +63,7 @@ bool level_covers(const NoiseFit& fit, const Truth& truth) {
 
 Coverage coverage_of(const Truth& truth) {
   Coverage count;
-  AllanCovarianceCache covariances;
   FitOptions options;
-  options.covariances = &covariances;
   options.second_opinion = false;
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     const NoiseFit fit = fit_record(record(truth, seed), truth.rate_hz, nullptr, options);

@@ -287,7 +287,8 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
   options.seed = verb.seed;
-  options.heap = heap_meter();
+  ReplayWorkspace workspace;
+  workspace.heap = heap_meter();
   if (verb.explain) {
     const auto plan = explain_replay(scene, options, session.terminal);
     session.terminal.clear();
@@ -310,10 +311,10 @@ void run_replay(Session& session, const ReplayVerb& verb) {
     format_to_write(path, {});
     check_outputs({path}, folder, inputs, verb.force);
     estimates.emplace(path, verb.force);
-    options.estimates = &*estimates;
+    workspace.estimates = &*estimates;
   }
   check_outputs(files, folder, inputs, verb.force);
-  ReplayResult result = replay(scene, options, session.terminal);
+  ReplayResult result = replay(scene, options, session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
   result.settings = settings_of(verb, result);

@@ -19,7 +19,7 @@ constexpr std::size_t kPlottedBins =
 constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
-Mixture plain_white(const AllanCurve& curve) {
+Mixture white_alone(const AllanCurve& curve) {
   Mixture theta{};
   if (!curve.points.empty())
     theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
@@ -47,6 +47,11 @@ struct HalvesToBins final : HalfListener {
   }
   PowerBinner& bins;
 };
+
+void add_spectrum(ChannelResult& result, const Spectrum& spectrum) {
+  result.lines = find_lines(spectrum);
+  result.spectrum = log_binned(spectrum, kPlottedBins);
+}
 
 // A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
 template <class Step>
@@ -97,7 +102,6 @@ void ChannelStage::stream(std::span<const double> samples) {
     kept_.insert(kept_.end(), samples.begin(), samples.end());
     return;
   }
-  const bool fit = options_->wanted.fit || options_->wanted.allan;
   if (options_->wanted.allan) streams_->allan.push(samples);
   if (streams_->shared_blocks) {
     HalvesToBins listener(streams_->bins);
@@ -105,7 +109,7 @@ void ChannelStage::stream(std::span<const double> samples) {
     return;
   }
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
-  if (fit) streams_->bins.push(samples);
+  if (wants_fit()) streams_->bins.push(samples);
 }
 
 void ChannelStage::reserve(std::size_t samples) {
@@ -131,9 +135,7 @@ void ChannelStage::stop_keeping() {
   streams_->spectrum.emplace(
       with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
   const std::uint64_t half = streams_->spectrum->half();
-  streams_->shared_blocks = options_->wanted.spectrum &&
-                            (options_->wanted.fit || options_->wanted.allan) &&
-                            serves_as_block(half);
+  streams_->shared_blocks = options_->wanted.spectrum && wants_fit() && serves_as_block(half);
   if (streams_->shared_blocks) streams_->bins = PowerBinner(half);
   const std::vector<double> kept = std::move(kept_);
   kept_ = {};
@@ -142,8 +144,7 @@ void ChannelStage::stop_keeping() {
 }
 
 bool ChannelStage::needs_second_pass() const {
-  if (keeping_ || !options_->fit.remedies || !(options_->wanted.fit || options_->wanted.allan))
-    return false;
+  if (keeping_ || !options_->fit.remedies || !wants_fit()) return false;
   const ChannelQuality quality = quality_.finish();
   return quality.difference_kurtosis > spike_alarm(quality.samples);
 }
@@ -154,68 +155,76 @@ void ChannelStage::begin_second_pass() {
   streams_->cleaner.emplace();
 }
 
-void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+bool ChannelStage::wants_fit() const {
+  return options_->wanted.fit || options_->wanted.allan;
+}
+
+// Octaves of the overlapping deviation: what the streaming form gives.
+bool ChannelStage::wants_octaves() const {
+  return options_->allan.type == DeviationType::oadev && options_->allan.grid == TauGrid::octave;
+}
+
+AllanCurve ChannelStage::allan_of_kept(double rate_hz) const {
   const bool exact = kept_.size() <= options_->exact_samples;
-  AllanOptions allan = options_->allan;
-  allan.data = DataKind::rate;  // `as_rate` has differenced phase data
-  const bool octaves = allan.type == DeviationType::oadev && allan.grid == TauGrid::octave;
-  if (options_->wanted.allan || options_->wanted.fit)
-    attempt(result, "Allan deviation", [&] {
-      if (exact || options_->full_overlap || !octaves) {
-        result.allan = allan_deviation(kept_, 1 / rate_hz, allan);
-      } else {
-        AllanPyramid pyramid;
-        pyramid.push(kept_);
-        result.allan = pyramid.finish(1 / rate_hz);
-      }
-    });
+  if (exact || options_->full_overlap || !wants_octaves()) {
+    AllanOptions allan = options_->allan;
+    allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+    return allan_deviation(kept_, 1 / rate_hz, allan);
+  }
+  AllanPyramid pyramid;
+  pyramid.push(kept_);
+  return pyramid.finish(1 / rate_hz);
+}
+
+NoiseFit ChannelStage::fit_of_kept(const AllanCurve& allan, double rate_hz) const {
+  const bool opinion = wants_octaves() && !allan.points.empty();
+  return fit_record(kept_, rate_hz, opinion ? &allan : nullptr, options_->fit, &workspace_->fit);
+}
+
+NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
+  const ChannelQuality quality = quality_.finish();
+  PowerBinner& bins = streams_->bins;
+  if (streams_->cleaner) bins.push(streams_->cleaner->finish());
+  if (streams_->shared_blocks) {
+    bins.push(streams_->spectrum->rest());
+    bins.set_taken_power(streams_->spectrum->block_power());
+  }
+  NoiseFit fit = fit_binned(bins,
+                            rate_hz,
+                            quality.samples,
+                            allan.points.empty() ? nullptr : &allan,
+                            options_->fit,
+                            &workspace_->fit);
+  if (streams_->cleaner && streams_->cleaner->count() > 0)
+    fit.remedies.insert(
+        fit.remedies.begin(),
+        spikes_remedy(
+            quality.difference_kurtosis, spike_alarm(quality.samples), streams_->cleaner->count()));
+  return fit;
+}
+
+void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+  if (wants_fit())
+    attempt(result, "Allan deviation", [&] { result.allan = allan_of_kept(rate_hz); });
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
-      const Spectrum spectrum = welch(kept_, rate_hz, options_->spectrum);
-      result.lines = find_lines(spectrum);
-      result.spectrum = log_binned(spectrum, kPlottedBins);
+      add_spectrum(result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch));
     });
-  if (options_->wanted.fit || options_->wanted.allan)
-    attempt(result, "noise fit", [&] {
-      result.fit = fit_record(kept_,
-                              rate_hz,
-                              octaves && !result.allan.points.empty() ? &result.allan : nullptr,
-                              options_->fit);
-    });
+  if (wants_fit())
+    attempt(result, "noise fit", [&] { result.fit = fit_of_kept(result.allan, rate_hz); });
 }
 
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
-  if (options_->wanted.allan || options_->wanted.fit)
+  if (wants_fit())
     attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
   if (streams_->shared_blocks) {
     HalvesToBins listener(streams_->bins);
     streams_->spectrum->end(&listener);
   }
   if (options_->wanted.spectrum)
-    attempt(result, "spectrum", [&] {
-      const Spectrum spectrum = streams_->spectrum->finish(rate_hz);
-      result.lines = find_lines(spectrum);
-      result.spectrum = log_binned(spectrum, kPlottedBins);
-    });
-  if (options_->wanted.fit || options_->wanted.allan)
-    attempt(result, "noise fit", [&] {
-      const ChannelQuality quality = quality_.finish();
-      if (streams_->cleaner) streams_->bins.push(streams_->cleaner->finish());
-      if (streams_->shared_blocks) {
-        streams_->bins.push(streams_->spectrum->rest());
-        streams_->bins.set_taken_power(streams_->spectrum->block_power());
-      }
-      result.fit = fit_binned(streams_->bins,
-                              rate_hz,
-                              quality.samples,
-                              result.allan.points.empty() ? nullptr : &result.allan,
-                              options_->fit);
-      if (streams_->cleaner && streams_->cleaner->count() > 0)
-        result.fit->remedies.insert(result.fit->remedies.begin(),
-                                    spikes_remedy(quality.difference_kurtosis,
-                                                  spike_alarm(quality.samples),
-                                                  streams_->cleaner->count()));
-    });
+    attempt(result, "spectrum", [&] { add_spectrum(result, streams_->spectrum->finish(rate_hz)); });
+  if (wants_fit())
+    attempt(result, "noise fit", [&] { result.fit = fit_of_streams(result.allan, rate_hz); });
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
@@ -239,7 +248,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   if (options_->data == SampleKind::phase)
     for (double& y : kept_) y *= rate_hz;
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
-  add_intervals(result.allan, result.fit ? result.fit->theta : plain_white(result.allan));
+  add_intervals(result.allan, result.fit ? result.fit->theta : white_alone(result.allan));
   kept_ = {};
   return result;
 }

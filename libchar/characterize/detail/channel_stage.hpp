@@ -25,9 +25,17 @@ struct ChannelStreams {
   std::optional<SpikeCleaner> cleaner;  // in the second pass
 };
 
+/// What the channels of one log share, from any number of threads.
+struct CharacterizeWorkspace {
+  FitWorkspace fit;
+  WelchWorkspace welch;
+};
+
 class ChannelStage {
  public:
-  explicit ChannelStage(const CharacterizeOptions& options) : options_(&options) {}
+  /// Both must live as long.
+  ChannelStage(const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
+      : options_(&options), workspace_(&workspace) {}
 
   /// Takes samples as the log has them.
   void push(std::span<const double> samples);
@@ -49,10 +57,16 @@ class ChannelStage {
   std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
+  bool wants_fit() const;
+  bool wants_octaves() const;
+  AllanCurve allan_of_kept(double rate_hz) const;
+  NoiseFit fit_of_kept(const AllanCurve& allan, double rate_hz) const;
+  NoiseFit fit_of_streams(const AllanCurve& allan, double rate_hz);
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 
   const CharacterizeOptions* options_;
+  CharacterizeWorkspace* workspace_;
   QualityMeter quality_;
   bool keeping_ = true;
   std::vector<double> kept_;

@@ -49,7 +49,7 @@ AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why)
   return out;
 }
 
-// What teaching or making an algorithm refuses is a result of the replay, not its end.
+// What an algorithm refuses when it is made or learns is a result of the replay, not its end.
 template <class Work>
 void AlgorithmRun::guarded(const Work& work) {
   if (!failure_.empty()) return;

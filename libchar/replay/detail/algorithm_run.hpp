@@ -1,5 +1,5 @@
 #pragma once
-// One algorithm on its way through a replay: taught, run block by block, timed and scored.
+// One algorithm on its way through a replay: it learns, runs block by block, is timed and scored.
 
 #include <memory>
 #include <string>
@@ -29,7 +29,7 @@ class AlgorithmRun {
  public:
   AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& frame);
   const PlannedAlgorithm& planned() const { return *planned_; }
-  /// Empty: it is running. Else why it cannot (what teaching it said).
+  /// Empty: it is running. Else why it cannot (what it said while learning).
   const std::string& failure() const { return failure_; }
   bool alive() const { return runner_ != nullptr; }
 

@@ -21,11 +21,14 @@ struct Pair {
   std::vector<double> sensor, reference;
 };
 
-Pair series(
-    const Scene& scene, const Feed& feed, std::int64_t from, std::int64_t to, Progress& progress) {
+Pair series(const Scene& scene,
+            const Instants& instants,
+            std::int64_t from,
+            std::int64_t to,
+            Progress& progress) {
   Pair out;
   double before = kMissing;
-  feed.pass(
+  instants.pass(
       from,
       to,
       kBlock,
@@ -48,20 +51,20 @@ Pair series(
 }  // namespace
 
 double find_lag(const Scene& scene,
-                const Feed& feed,
+                const Instants& instants,
                 const TimeWindow& window,
                 Progress& progress) {
-  if (feed.info().averaged > 1)
+  if (instants.info().averaged > 1)
     throw Error({ErrorKind::input,
                  "E0906",
                  scene.file,
                  "reference.lag_s: a reference slower than the sensors does not show their lag",
                  "estimate",
                  "give lag_s as a number of seconds"});
-  const std::int64_t from = feed.instant_at(window.from_s);
-  const std::int64_t to = std::min(feed.instant_at(window.to_s), from + kMostInstants);
-  const Pair pair = series(scene, feed, from, to, progress);
-  const double rate_hz = feed.info().rate_hz;
+  const std::int64_t from = instants.instant_at(window.from_s);
+  const std::int64_t to = std::min(instants.instant_at(window.to_s), from + kMostInstants);
+  const Pair pair = series(scene, instants, from, to, progress);
+  const double rate_hz = instants.info().rate_hz;
   const double most_s = std::min(kMostLag_s, static_cast<double>(to - from) / rate_hz / 4);
   LagEstimate found = estimate_lag(pair.sensor, pair.reference, rate_hz, most_s);
   // A difference of two samples stands in the middle between them, the rate at its own instant.

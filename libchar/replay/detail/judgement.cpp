@@ -16,7 +16,7 @@ constexpr double kLeastShare = 0.9;
 Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Given& given) {
   Eigen::MatrixXd scaled = given.h();
   for (std::size_t i = 0; i < rms.size(); ++i) {
-    // A sensor that was never sound tells nothing.
+    // A sensor that was never healthy tells nothing.
     const double information = rms[i] > 0 ? 1 / rms[i] : 0;
     scaled.row(static_cast<Eigen::Index>(i)) *= information;
   }
@@ -41,7 +41,7 @@ double regret_of(const AlgorithmResult& algorithm) {
 
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
-                   const std::vector<double>& sound_rms,
+                   const std::vector<double>& healthy_rms,
                    const fusion::Given& given) {
   if (!result.has_reference) return;
   ScoreOptions quick;
@@ -52,7 +52,7 @@ void judge_optimum(ReplayResult& result,
         result.inputs[0].optimum_rmse = std::fmin(
             result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
   } else {
-    const Eigen::VectorXd best = gauss_markov(sound_rms, given);
+    const Eigen::VectorXd best = gauss_markov(healthy_rms, given);
     for (std::size_t j = 0; j < result.inputs.size(); ++j)
       result.inputs[j].optimum_rmse = best[static_cast<Eigen::Index>(j)];
   }

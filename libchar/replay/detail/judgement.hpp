@@ -1,6 +1,6 @@
 #pragma once
 // What follows from the scores of all algorithms of one replay together.
-//   regret          RMSE / RMSE of the best fixed weights taught on the run, known faults left
+//   regret          RMSE / RMSE of the best fixed weights learnt on the run, known faults left
 //                   out, - 1
 //   as good as best the 95 % interval of RMSE / RMSE of the best method holds 1
 //   weight distance root mean square over time of |w - w of the best fixed weights|
@@ -14,10 +14,10 @@ namespace libchar {
 
 /// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one
 /// input, or rows of H that differ: from the sensors' own errors without known
-/// faults (`sound_rms`), (H' R^-1 H)^-1.
+/// faults (`healthy_rms`), (H' R^-1 H)^-1.
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
-                   const std::vector<double>& sound_rms,
+                   const std::vector<double>& healthy_rms,
                    const fusion::Given& given);
 
 /// Distances over time; needs `sensors` of the result.

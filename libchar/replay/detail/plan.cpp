@@ -48,39 +48,41 @@ Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
 
 // Up to where no sensor is known to fail; 0 when nobody knows.
 std::int64_t fault_free(const Scene& scene,
-                        const Feed& feed,
+                        const Instants& instants,
                         std::int64_t run_from,
                         std::int64_t run_to) {
   if (scene.fault_free_s)
     return std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(*scene.fault_free_s * feed.info().rate_hz), 0, run_to - run_from);
-  const auto& faults = feed.source().known_faults();
+        static_cast<std::int64_t>(*scene.fault_free_s * instants.info().rate_hz),
+        0,
+        run_to - run_from);
+  const auto& faults = instants.source().known_faults();
   if (faults.empty() && !scene.simulate && !scene.simulated) return 0;
   std::int64_t first = run_to;
   for (const SensorFault& fault : faults)
-    if (feed.instant_at(fault.to_s) > run_from)
-      first = std::min(first, feed.instant_at(fault.from_s));
+    if (instants.instant_at(fault.to_s) > run_from)
+      first = std::min(first, instants.instant_at(fault.from_s));
   return std::max<std::int64_t>(0, first - run_from);
 }
 
-std::vector<std::int64_t> section_starts(const Feed& feed,
+std::vector<std::int64_t> section_starts(const Instants& instants,
                                          std::int64_t run_from,
                                          std::int64_t run_to) {
   std::set<std::int64_t> starts;
-  for (const SensorFault& fault : feed.source().known_faults())
+  for (const SensorFault& fault : instants.source().known_faults())
     for (const double t : {fault.from_s, fault.to_s}) {
-      const std::int64_t instant = feed.instant_at(t);
+      const std::int64_t instant = instants.instant_at(t);
       if (instant > run_from && instant < run_to) starts.insert(instant - run_from);
     }
   return {starts.begin(), starts.end()};
 }
 
 fusion::Given make_given(const Scene& scene,
-                         const Feed& feed,
+                         const Instants& instants,
                          const SensorKnowledge& knowledge,
                          const ReplayPlan& plan) {
   fusion::Given given;
-  const FeedInfo& info = feed.info();
+  const InstantsInfo& info = instants.info();
   given.channels = static_cast<Eigen::Index>(scene.sensors.size());
   given.observation_matrix = observation_matrix(scene, info.input_names.size());
   const auto& levels = knowledge.noise_variances;
@@ -89,8 +91,8 @@ fusion::Given make_given(const Scene& scene,
   given.rate_hz = info.rate_hz;
   given.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
   given.reference_throughout = info.has_reference;
-  given.fault_free_samples = fault_free(scene, feed, plan.run_from, plan.run_to);
-  given.section_starts = section_starts(feed, plan.run_from, plan.run_to);
+  given.fault_free_samples = fault_free(scene, instants, plan.run_from, plan.run_to);
+  given.section_starts = section_starts(instants, plan.run_from, plan.run_to);
   if (scene.tilt)
     given.tilt = fusion::TiltChannels{static_cast<Eigen::Index>(scene.tilt->gyroscope),
                                       static_cast<Eigen::Index>(scene.tilt->accelerometer_x),
@@ -101,12 +103,12 @@ fusion::Given make_given(const Scene& scene,
 // Seconds from the recording's first sample to instants.
 void place_windows(const Scene& scene,
                    const ReplayOptions& options,
-                   const Feed& feed,
+                   const Instants& instants,
                    ReplayPlan& plan) {
   const auto learning = options.learning ? options.learning : scene.learning;
   const auto evaluation = options.evaluation ? options.evaluation : scene.evaluation;
-  const double end_s =
-      feed.info().start_s + static_cast<double>(feed.info().instants) / feed.info().rate_hz;
+  const double end_s = instants.info().start_s +
+                       static_cast<double>(instants.info().count) / instants.info().rate_hz;
   const auto check = [&](const TimeWindow& window, const char* key) {
     if (window.from_s >= end_s)
       refuse(scene,
@@ -115,7 +117,7 @@ void place_windows(const Scene& scene,
                          key,
                          significant(end_s, 6)),
              significant(window.from_s, 6));
-    if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / feed.info().rate_hz)
+    if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / instants.info().rate_hz)
       plan.warnings.add("window_beyond_end",
                         "a window reaches beyond the end of the recording and ends with it",
                         fmt::format("{} to {} s, the end is at {} s",
@@ -126,20 +128,20 @@ void place_windows(const Scene& scene,
   if (learning) {
     check(*learning, "learning");
     plan.learning = {learning->from_s, std::min(learning->to_s, end_s)};
-    plan.learn_from = feed.instant_at(learning->from_s);
-    plan.learn_to = feed.instant_at(learning->to_s);
+    plan.learn_from = instants.instant_at(learning->from_s);
+    plan.learn_to = instants.instant_at(learning->to_s);
   }
   plan.evaluation = evaluation.value_or(TimeWindow{learning ? learning->to_s : 0, end_s});
   // What was learnt from the whole recording can only be tried on the same.
-  if (!evaluation && learning && feed.instant_at(learning->to_s) >= feed.info().instants)
+  if (!evaluation && learning && instants.instant_at(learning->to_s) >= instants.info().count)
     plan.evaluation = {0, end_s};
   check(plan.evaluation, "evaluation");
   plan.evaluation.to_s = std::min(plan.evaluation.to_s, end_s);
-  plan.run_from = feed.instant_at(plan.evaluation.from_s);
-  plan.run_to = feed.instant_at(plan.evaluation.to_s);
+  plan.run_from = instants.instant_at(plan.evaluation.from_s);
+  plan.run_to = instants.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
     refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
-  for (const SensorFault& fault : feed.source().known_faults())
+  for (const SensorFault& fault : instants.source().known_faults())
     if (fault.from_s >= end_s)
       plan.warnings.add(
           "fault_after_end",
@@ -200,8 +202,8 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   return out;
 }
 
-// The smallest error that fixed weights can have, taught on the run itself: with and without
-// calibration, of the sensors that are sound at each instant. For a tilt: the best filter,
+// The smallest error that fixed weights can have, learnt on the run itself: with and without
+// calibration, of the sensors that are healthy at each instant. For a tilt: the best filter,
 // as it stands or tuned on the run, and either sensor alone.
 std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
   std::vector<PlannedAlgorithm> out;
@@ -233,10 +235,10 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
 
 ReplayPlan make_plan(const Scene& scene,
                      const ReplayOptions& options,
-                     const Feed& feed,
+                     const Instants& instants,
                      const SensorKnowledge& knowledge) {
   ReplayPlan plan;
-  place_windows(scene, options, feed, plan);
+  place_windows(scene, options, instants, plan);
   if (scene.reference && !scene.reference->recording && !scene.simulate)
     for (const SceneSensor& sensor : scene.sensors) {
       const auto& channels = scene.reference->channels;
@@ -245,11 +247,11 @@ ReplayPlan make_plan(const Scene& scene,
                           "a sensor is part of the reference: its error is hidden in every score",
                           sensor.name);
     }
-  plan.given = make_given(scene, feed, knowledge, plan);
+  plan.given = make_given(scene, instants, knowledge, plan);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
     algorithm.why = fusion::why_not(*algorithm.entry->card, plan.given);
-  if (feed.info().has_reference) plan.optimum = optimum(plan.given);
+  if (instants.info().has_reference) plan.optimum = optimum(plan.given);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {
       return a.runs() && wanted(a);
@@ -259,7 +261,7 @@ ReplayPlan make_plan(const Scene& scene,
                        (options.no_skip && plan.learn_to > plan.learn_from);
   plan.run_learning_pass =
       !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
-  plan.without_reference = (!feed.info().has_reference || options.no_skip) && !scene.tilt;
+  plan.without_reference = (!instants.info().has_reference || options.no_skip) && !scene.tilt;
   if (!any([](const auto&) { return true; }))
     throw Error(
         {ErrorKind::numeric,

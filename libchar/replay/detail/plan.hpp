@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/detail/feed.hpp"
+#include "libchar/replay/detail/instants.hpp"
 #include "libchar/replay/replay.hpp"
 
 namespace libchar {
@@ -30,7 +30,7 @@ struct SensorKnowledge {
 };
 
 /// Measures the rest when the scene has one, and asks scene and models for noise levels.
-SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& progress);
+SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress);
 
 struct ReplayPlan {
   fusion::Given given;
@@ -50,13 +50,13 @@ struct ReplayPlan {
 /// the recording, an empty run.
 ReplayPlan make_plan(const Scene& scene,
                      const ReplayOptions& options,
-                     const Feed& feed,
+                     const Instants& instants,
                      const SensorKnowledge& knowledge);
 
-/// The plan for people, a sentence a line.
+/// The plan in words, a sentence a line.
 std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Scene& scene,
-                                   const Feed& feed,
+                                   const Instants& instants,
                                    const SensorKnowledge& knowledge);
 
 /// The same array with some of its channels only.

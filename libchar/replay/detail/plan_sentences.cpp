@@ -20,8 +20,8 @@ std::string names_of(const std::vector<PlannedAlgorithm>& algorithms, auto&& wan
   return out;
 }
 
-std::string reading(const Scene& scene, const Feed& feed) {
-  const SourceInfo& source = feed.source().info();
+std::string reading(const Scene& scene, const Instants& instants) {
+  const SourceInfo& source = instants.source().info();
   if (scene.simulate)
     return fmt::format("simulates {} sensors, {} samples at {} Hz, seed {}, anew for each pass",
                        scene.sensors.size(),
@@ -36,13 +36,13 @@ std::string reading(const Scene& scene, const Feed& feed) {
                      significant(source.rate_hz, 6));
 }
 
-std::string reference(const Scene& scene, const Feed& feed) {
+std::string reference(const Scene& scene, const Instants& instants) {
   if (!scene.reference)
     return "no reference: no algorithm learns, scores are leave-one-out and split-array";
   std::string names;
   for (const std::string& name : scene.reference->channels)
     names += (names.empty() ? "" : ", ") + name;
-  return fmt::format("reference {}: {}", names, feed.info().reference_use);
+  return fmt::format("reference {}: {}", names, instants.info().reference_use);
 }
 
 std::string learning(const ReplayPlan& plan) {
@@ -80,9 +80,9 @@ std::string optimum(const ReplayPlan& plan) {
 
 std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Scene& scene,
-                                   const Feed& feed,
+                                   const Instants& instants,
                                    const SensorKnowledge& knowledge) {
-  std::vector<std::string> out = {reading(scene, feed), reference(scene, feed)};
+  std::vector<std::string> out = {reading(scene, instants), reference(scene, instants)};
   if (!scene.tilt) out.push_back(levels(scene, knowledge));
   if (scene.rest)
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
@@ -91,13 +91,13 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
   if (scene.reference) out.push_back(learning(plan));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
                             plan.run_to - plan.run_from,
-                            significant(feed.info().rate_hz, 6),
+                            significant(instants.info().rate_hz, 6),
                             seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
   if (plan.given.fault_free_samples > 0)
     out.push_back(fmt::format(
         "no sensor fails in the first {} of it",
-        seconds(static_cast<double>(plan.given.fault_free_samples) / feed.info().rate_hz)));
+        seconds(static_cast<double>(plan.given.fault_free_samples) / instants.info().rate_hz)));
   if (const std::string text = optimum(plan); !text.empty()) out.push_back(text);
   out.push_back("runs " + names_of(plan.algorithms, [](const auto&) { return true; }));
   for (const PlannedAlgorithm& a : plan.algorithms)

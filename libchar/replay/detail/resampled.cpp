@@ -66,6 +66,71 @@ std::vector<std::size_t> rows_in_order(const std::vector<double>& stamps,
   return rows;
 }
 
+[[noreturn]] void refuse(const std::string& path,
+                         const std::string& what,
+                         const std::string& hint) {
+  throw Error({ErrorKind::input, "E0907", path, what, "", hint});
+}
+
+// Options of a second reading, which has the stamps as a channel like the others.
+ReadOptions with_stamps_as_channel(ReadOptions reading) {
+  reading.time_column = "none";
+  reading.rate_hz = 1;
+  reading.hash = false;
+  reading.units.clear();
+  reading.channels.clear();
+  return reading;
+}
+
+std::vector<double> seconds_since_first(const std::vector<double>& raw, const std::string& unit) {
+  std::vector<double> out;
+  const double factor = seconds(unit);
+  for (const double t : raw) out.push_back((t - raw[0]) * factor);
+  return out;
+}
+
+/// One channel that is interpolated.
+struct Column {
+  const std::vector<double>* values;
+  double period = 0;  ///< of an angle; 0: none
+};
+
+std::vector<Column> columns_of(const Recording& rows,
+                               const std::vector<std::string>& wanted,
+                               std::size_t first_angle) {
+  std::vector<Column> out;
+  for (const std::string& name : wanted) {
+    const std::size_t c = column_of(rows.info, name);
+    const bool angle = out.size() >= first_angle;
+    out.push_back({&rows.samples[c], angle ? full_turn(rows.info.channels[c].unit) : 0});
+  }
+  return out;
+}
+
+// Values at i / rate of columns whose rows `used` stand at times `t`; missing within a gap.
+std::vector<std::vector<double>> at_rate(const std::vector<Column>& columns,
+                                         const std::vector<std::size_t>& used,
+                                         const std::vector<double>& t,
+                                         double rate_hz) {
+  const double longest = kLongestStep * median_step(t);
+  const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
+  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(instants, kMissing));
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < instants; ++i) {
+    const double now = static_cast<double>(i) / rate_hz;
+    while (k + 2 < t.size() && t[k + 1] <= now) ++k;
+    const double step = t[k + 1] - t[k];
+    if (step > longest && now > t[k]) continue;
+    const double share = (now - t[k]) / step;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const auto& y = *columns[c].values;
+      const double a = y[used[k]], b = y[used[k + 1]];
+      out[c][i] = share == 0 ? a : between(a, b, share, columns[c].period);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 ResampledLog read_resampled(const std::string& path,
@@ -75,74 +140,32 @@ ResampledLog read_resampled(const std::string& path,
                             std::size_t first_angle,
                             Progress& progress) {
   if (!reading.names.empty())
-    throw Error({ErrorKind::input,
-                 "E0907",
-                 path,
-                 "recording: names and resample_hz do not go together",
-                 "",
-                 "say channel: beside each sensor"});
-  ReadOptions first = reading;
-  first.from_s.reset();
-  first.to_s.reset();
+    refuse(path,
+           "recording: names and resample_hz do not go together",
+           "say channel: beside each sensor");
+  ReadOptions whole = reading;
+  whole.from_s.reset();
+  whole.to_s.reset();
   Nothing nothing;
-  const LogInfo stamped = read_log(path, first, nothing, progress);
-  if (stamped.time.column.empty())
-    throw Error({ErrorKind::input,
-                 "E0907",
-                 path,
-                 "recording.resample_hz: this log has no time stamps to go by",
-                 "",
-                 "leave resample_hz out"});
-  // Read once more with the stamps as a channel like the others.
-  ReadOptions plain = first;
-  plain.time_column = "none";
-  plain.rate_hz = 1;
-  plain.hash = false;
-  plain.units.clear();
-  plain.channels.clear();
-  const Recording rows = read_recording(path, plain, progress);
   ResampledLog out;
-  out.log = stamped;
-  const std::vector<double>& raw = rows.samples[column_of(rows.info, stamped.time.column)];
-  std::vector<double> stamps;
-  const double unit = seconds(stamped.time.unit);
-  for (const double t : raw) stamps.push_back((t - raw[0]) * unit);
+  out.log = read_log(path, whole, nothing, progress);
+  const TimeBase time = out.log.time;
+  if (time.column.empty())
+    refuse(path,
+           "recording.resample_hz: this log has no time stamps to go by",
+           "leave resample_hz out");
+  const Recording rows = read_recording(path, with_stamps_as_channel(whole), progress);
   out.log.warnings = rows.info.warnings;
+  const std::vector<double> stamps =
+      seconds_since_first(rows.samples[column_of(rows.info, time.column)], time.unit);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
-    throw Error({ErrorKind::input,
-                 "E0907",
-                 path,
-                 "recording.resample_hz: fewer than two rows with rising stamps",
-                 "",
-                 ""});
+    refuse(path, "recording.resample_hz: fewer than two rows with rising stamps", "");
   std::vector<double> t;
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);
-  const double longest = kLongestStep * median_step(t);
-  const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
-  std::vector<std::size_t> columns;
-  std::vector<double> periods;
-  for (const std::string& name : wanted) {
-    columns.push_back(column_of(rows.info, name));
-    periods.push_back(
-        columns.size() > first_angle ? full_turn(rows.info.channels[columns.back()].unit) : 0);
-  }
-  out.samples.assign(wanted.size(), std::vector<double>(instants, kMissing));
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < instants; ++i) {
-    const double now = static_cast<double>(i) / rate_hz;
-    while (k + 2 < t.size() && t[k + 1] <= now) ++k;
-    const double step = t[k + 1] - t[k];
-    if (step > longest && now > t[k]) continue;
-    const double share = (now - t[k]) / step;
-    for (std::size_t c = 0; c < wanted.size(); ++c) {
-      const auto& y = rows.samples[columns[c]];
-      const double a = y[used[k]], b = y[used[k + 1]];
-      out.samples[c][i] = share == 0 ? a : between(a, b, share, periods[c]);
-    }
-  }
+  out.samples = at_rate(columns_of(rows, wanted, first_angle), used, t, rate_hz);
   out.log.time.rate_hz = rate_hz;
-  out.log.samples = instants;
+  out.log.samples = static_cast<std::uint64_t>(std::floor(t.back() * rate_hz)) + 1;
   return out;
 }
 

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kRestBlock = 4096;
 
-RestMeter at_rest(const Scene& scene, const Feed& feed, Progress& progress) {
+RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progress) {
   RestMeter meter(scene.sensors.size());
-  const std::int64_t from = feed.instant_at(scene.rest->from_s),
-                     to = feed.instant_at(scene.rest->to_s);
+  const std::int64_t from = instants.instant_at(scene.rest->from_s),
+                     to = instants.instant_at(scene.rest->to_s);
   if (to - from < 2)
     throw Error({ErrorKind::input,
                  "E0903",
@@ -23,7 +23,7 @@ RestMeter at_rest(const Scene& scene, const Feed& feed, Progress& progress) {
                  "rest: the window holds fewer than two instants of the recording",
                  "",
                  ""});
-  feed.pass(
+  instants.pass(
       from,
       to,
       kRestBlock,
@@ -36,14 +36,14 @@ RestMeter at_rest(const Scene& scene, const Feed& feed, Progress& progress) {
 
 }  // namespace
 
-SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& progress) {
+SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress) {
   SensorKnowledge out;
   const std::size_t n = scene.sensors.size();
   out.offsets.assign(n, 0);
   out.noise_variances.assign(n, kMissing);
   out.noise_sources.assign(n, "");
   if (scene.rest) {
-    const RestMeter rest = at_rest(scene, feed, progress);
+    const RestMeter rest = at_rest(scene, instants, progress);
     out.offsets = rest.means();
     out.noise_variances = rest.noise_variances();
     out.noise_sources.assign(n, "rest");
@@ -51,10 +51,11 @@ SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& pro
     if (scene.tilt)
       out.offsets[scene.tilt->accelerometer_x] = out.offsets[scene.tilt->accelerometer_z] = 0;
   }
-  const FeedInfo& info = feed.info();
+  const InstantsInfo& info = instants.info();
   for (std::size_t i = 0; i < n; ++i) {
     const SceneSensor& sensor = scene.sensors[i];
-    const double to_fused = feed.factor(i) * feed.factor(i) / static_cast<double>(info.averaged);
+    const double to_fused =
+        instants.factor(i) * instants.factor(i) / static_cast<double>(info.averaged);
     if (sensor.noise) {
       out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
       out.noise_sources[i] = "the scene";
@@ -64,7 +65,7 @@ SensorKnowledge know_sensors(const Scene& scene, const Feed& feed, Progress& pro
                                          : scene.simulated ? scene.simulated->oversampling
                                                            : 1;
       const double variance =
-          sample_noise_variance(*sensor.model, feed.source().info().rate_hz, oversampling);
+          sample_noise_variance(*sensor.model, instants.source().info().rate_hz, oversampling);
       if (variance > 0) {
         out.noise_variances[i] = variance * scale * to_fused;
         out.noise_sources[i] = "the models";

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/characterize/model_curve.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/export/consumers.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/escape.hpp"
 
@@ -72,8 +70,9 @@ std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::strin
       c.seconds_for_10_percent ? html_text(people_seconds(*c.seconds_for_10_percent)) : "–");
 }
 
-std::string derived_rows(const ChannelResult& c, double rate_hz) {
-  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+std::string derived_rows(const ChannelView& view, double rate_hz) {
+  const ChannelResult& c = *view.result;
+  const std::string unit = view.unit.empty() ? "U" : view.unit;
   std::string out;
   const Coefficient& white = (*c.fit)[Term::white];
   const auto row = [&](const std::string& name, const std::string& value, const std::string& what) {
@@ -94,7 +93,7 @@ std::string derived_rows(const ChannelResult& c, double rate_hz) {
                     people(c.quality.standard_deviation, 4),
                     unit));
   }
-  if (const AllanPoint* lowest = allan_minimum(c.allan)) {
+  if (const AllanPoint* lowest = view.allan_minimum) {
     row("Minimum of the Allan curve",
         people(lowest->deviation, 4),
         fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
@@ -112,7 +111,8 @@ std::string derived_rows(const ChannelResult& c, double rate_hz) {
   return out;
 }
 
-std::string numbers_table(const ChannelResult& c, double rate_hz) {
+std::string numbers_table(const ChannelView& view, double rate_hz) {
+  const ChannelResult& c = *view.result;
   std::string out =
       "<h3>Noise coefficients</h3>\n<div class=\"wide\"><table class=\"numbers\">\n<thead><tr><th "
       "scope=\"col\">Term</th><th scope=\"col\">Value</th>"
@@ -123,38 +123,34 @@ std::string numbers_table(const ChannelResult& c, double rate_hz) {
       "<th scope=\"col\" title=\"record length at which the bound is 10 %\">Record for 10 "
       "%</th></tr></thead>\n<tbody>\n";
   for (std::size_t t = 0; t < kTerms; ++t) {
-    if (c.fit->term[t].status != Status::not_fitted)
-      out += coefficient_row(*c.fit, t, c.channel.unit);
+    if (c.fit->term[t].status != Status::not_fitted) out += coefficient_row(*c.fit, t, view.unit);
   }
-  out += derived_rows(c, rate_hz) + "</tbody></table></div>\n";
+  out += derived_rows(view, rate_hz) + "</tbody></table></div>\n";
   return out +
          "<p class=\"note\">Q and K are roots of two-sided densities; a data sheet's noise density "
          "is one-sided, √2·Q. "
          "<i>Best possible</i> is the Cramér–Rao bound for this record length.</p>\n";
 }
 
-std::string second_opinion_table(const NoiseFit& fit, const std::string& unit) {
+std::string second_opinion_table(const ChannelView& view) {
+  const NoiseFit& fit = *view.result->fit;
   const SecondOpinion& opinion = *fit.second_opinion;
   std::string out = "<div class=\"wide\"><table>\n" +
                     table_head({"Term", "Spectral fit", "Allan fit", "± sd", "Unit", "Apart by"});
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    if (!opinion.value[t]) continue;
-    const Coefficient& c = fit.term[t];
-    const double sd = c.value ? std::hypot(opinion.sd[t], *c.value * c.relative_sd) : 0;
-    out += table_row(
-        {term_title(static_cast<Term>(t)),
-         people_value(c),
-         people(*opinion.value[t]),
-         people(opinion.sd[t], 2),
-         term_unit(kTermNames[t].key, unit),
-         c.value && sd > 0 ? people((*opinion.value[t] - *c.value) / sd, 2) + " sd" : "–"});
-  }
+  for (const OtherOpinion& other : view.other_opinions)
+    out += table_row({term_title(other.term),
+                      people_value(fit[other.term]),
+                      people(other.value),
+                      people(other.sd, 2),
+                      term_unit(kTermNames[static_cast<std::size_t>(other.term)].key, view.unit),
+                      other.apart ? people(*other.apart, 2) + " sd" : "–"});
   out += "</tbody></table></div>\n";
   // The badge above says that much already.
   return opinion.sentence == "agrees" ? out : out + "<p>" + html_text(opinion.sentence) + "</p>\n";
 }
 
-std::string trust(const ChannelResult& c, std::size_t index) {
+std::string trust(const ChannelView& view, std::size_t index) {
+  const ChannelResult& c = *view.result;
   const NoiseFit& fit = *c.fit;
   std::string out = "<div class=\"halves\">\n<div>\n";
   if (!fit.residuals.empty()) {
@@ -169,8 +165,7 @@ std::string trust(const ChannelResult& c, std::size_t index) {
                      "the grey band; triangles on the edge lie beyond it."},
                     c.channel.name);
   }
-  out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" +
-         html_text(goodness_sentence(fit.goodness)) + "</p>\n";
+  out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" + html_text(view.goodness) + "</p>\n";
   out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " +
          std::to_string(fit.iterations) +
          (fit.converged ? " iterations, converged.</p>\n"
@@ -187,13 +182,13 @@ std::string trust(const ChannelResult& c, std::size_t index) {
     out += std::string("<h4>Second opinion: fit of the Allan curve ") +
            (fit.second_opinion->agrees ? "<span class=\"chip detected\">agrees</span>"
                                        : "<span class=\"chip alarm\">disagrees</span>") +
-           "</h4>\n" + second_opinion_table(fit, c.channel.unit);
+           "</h4>\n" + second_opinion_table(view);
   }
   return out + "</div>\n</div>\n";
 }
 
-std::string verification_section(const ChannelResult& c) {
-  const ChannelVerification& v = *c.verification;
+std::string verification_section(const ChannelView& view) {
+  const ChannelVerification& v = *view.result->verification;
   std::string out = std::string("<h3>Simulated from the model ") +
                     (v.agrees ? "<span class=\"chip detected\">agrees</span>"
                               : "<span class=\"chip alarm\">disagrees</span>") +
@@ -204,28 +199,29 @@ std::string verification_section(const ChannelResult& c) {
     out += table_row({term_title(t.term),
                       people_value(t.model),
                       people_coefficient(t.simulated),
-                      term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, c.channel.unit),
+                      term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, view.unit),
                       t.agrees ? "agrees" : "disagrees"});
   }
   return out + "</tbody></table></div>\n";
 }
 
-std::string lines_table(const ChannelResult& c) {
+std::string lines_table(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
   if (c.lines.empty()) return "";
   std::string out = "<h4>Spectral lines</h4>\n<table>\n" +
                     table_head({"Frequency", "Amplitude (peak)", "Above the floor", "Width"});
   for (const SpectralLine& line : c.lines) {
     out += table_row({people(line.frequency_hz, 5) + " Hz",
-                      people(line.amplitude, 3) + " " + c.channel.unit,
+                      people(line.amplitude, 3) + " " + view.unit,
                       "×" + people(line.excess, 3),
                       people(line.width_hz, 2) + " Hz"});
   }
   return out + "</tbody></table>\n";
 }
 
-std::string quality(const ChannelResult& c) {
-  const ChannelQuality& q = c.quality;
-  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+std::string quality(const ChannelView& view) {
+  const ChannelQuality& q = view.result->quality;
+  const std::string unit = view.unit.empty() ? "U" : view.unit;
   const double all = static_cast<double>(q.samples + q.missing);
   std::string out = "<h3>Data quality</h3>\n<table class=\"facts\"><tbody>\n";
   out += table_row({"Samples", people_count(q.samples)});
@@ -257,18 +253,16 @@ std::string quality(const ChannelResult& c) {
   if (q.float32 && !constant)
     out += table_row(
         {"Number format", "32-bit floats, in steps of " + people(q.float32_step, 2) + " " + unit});
-  out += "</tbody></table>\n" + lines_table(c);
+  out += "</tbody></table>\n" + lines_table(view);
   return out + bullet_list(q.suggestions, "plain");
 }
 
-std::string consumers(const ChannelResult& c, double rate_hz) {
-  const auto rows = c.fit && rate_hz > 0 ? consumer_numbers(c.fit->term, c.channel.unit, rate_hz)
-                                         : std::vector<ConsumerNumber>{};
-  if (rows.empty()) return "";
+std::string consumers(const ChannelView& view, double rate_hz) {
+  if (view.consumers.empty()) return "";
   std::string out = "<h3>Which number goes where</h3>\n<div class=\"wide\"><table>\n" +
                     table_head({"For", "Name there", "Formula", "Value", "Unit"});
   const std::string* before = nullptr;
-  for (const ConsumerNumber& row : rows) {
+  for (const ConsumerNumber& row : view.consumers) {
     const bool repeated = before != nullptr && *before == row.consumer;
     out += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"u\">{}</td><td class=\"n\">{}</td><td "
@@ -285,10 +279,11 @@ std::string consumers(const ChannelResult& c, double rate_hz) {
          " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.</p>\n";
 }
 
-std::string curve_points(const ChannelResult& c) {
+std::string curve_points(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
   const auto& points = c.allan.points;
   if (points.empty()) return "";
-  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  const std::string unit = view.unit.empty() ? "U" : view.unit;
   const std::size_t stride = (points.size() + kMostRows - 1) / kMostRows;
   std::string out = fmt::format(
                         "<details><summary>Points of the {} curve ({})</summary>\n<div "
@@ -348,22 +343,22 @@ std::string bullet_list(const std::vector<std::string>& items, std::string_view 
   return out + "</ul>\n";
 }
 
-std::string channel_section(const ChannelResult& c, const LogInfo& log, std::size_t index) {
+std::string channel_section(const ChannelView& view, const LogInfo& log, std::size_t index) {
+  const ChannelResult& c = *view.result;
   const double rate_hz = log.time.rate_hz;
-  std::string out = fmt::format(
-      "<section class=\"channel\" id=\"channel-{}\">\n<h2>{}{}</h2>\n",
-      index,
-      html_text(c.channel.name),
-      c.channel.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
-                             : " <span class=\"unit\">" + html_text(c.channel.unit) + "</span>");
-  out += bullet_list(findings(c), "findings") + bullet_list(cautions(c), "cautions") +
-         curve_plots(c, index);
-  if (c.fit) out += numbers_table(c, rate_hz) + trust(c, index);
-  if (c.verification) out += verification_section(c);
-  const std::string where = consumers(c, rate_hz);
-  out += "<div class=\"halves\">\n<div>\n" + quality(c) + "</div>\n<div>\n" + where +
-         "</div>\n</div>\n";
-  return out + curve_points(c) + "</section>\n";
+  std::string out =
+      fmt::format("<section class=\"channel\" id=\"channel-{}\">\n<h2>{}{}</h2>\n",
+                  index,
+                  html_text(c.channel.name),
+                  view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
+                                    : " <span class=\"unit\">" + html_text(view.unit) + "</span>");
+  out += bullet_list(view.findings, "findings") + bullet_list(view.cautions, "cautions") +
+         curve_plots(view, index);
+  if (c.fit) out += numbers_table(view, rate_hz) + trust(view, index);
+  if (c.verification) out += verification_section(view);
+  out += "<div class=\"halves\">\n<div>\n" + quality(view) + "</div>\n<div>\n" +
+         consumers(view, rate_hz) + "</div>\n</div>\n";
+  return out + curve_points(view) + "</section>\n";
 }
 
 }  // namespace libchar

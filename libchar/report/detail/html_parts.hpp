@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 
 namespace libchar {
 
 /// The section of one channel: plots, numbers, trust, data quality, units for consumers, points of
 /// the curve.
-std::string channel_section(const ChannelResult& channel, const LogInfo& log, std::size_t index);
+std::string channel_section(const ChannelView& channel, const LogInfo& log, std::size_t index);
 
 struct PlotText {
   std::string title, axis, unit, caption;  ///< `axis`: short, the title says it in full
@@ -25,7 +25,7 @@ std::string plot_figure(const char* kind,
                         const std::string& channel);
 
 /// The Allan and spectrum figures of a channel, as far as there is something to draw.
-std::string curve_plots(const ChannelResult& channel, std::size_t index);
+std::string curve_plots(const ChannelView& channel, std::size_t index);
 
 /// A table row of cells, each escaped as text; the first is a row header.
 std::string table_row(const std::vector<std::string>& cells);

@@ -108,39 +108,28 @@ std::string plot_figure(const char* kind,
       html_text(text.caption));
 }
 
-std::string curve_plots(const ChannelResult& c, std::size_t index) {
+std::string curve_plots(const ChannelView& view, std::size_t index) {
+  const ChannelResult& c = *view.result;
   const std::string& name = c.channel.name;
   std::string out = "<div class=\"plots\">\n";
-  // A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
-  const auto& points = c.allan.points;
-  if (std::any_of(
-          points.begin(), points.end(), [](const AllanPoint& p) { return p.deviation > 0; })) {
-    const std::string title = deviation_title(c.allan.type);
-    out += plot_figure(
-        "allan",
-        index,
-        {title,
-         std::string(name_of(c.allan.type)),
-         c.channel.unit.empty() ? "U" : c.channel.unit,
-         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer "
-         "than 5 degrees of freedom make them "
-         "unreliable. Line: fitted model. Dashed: its terms; marked: where each "
-         "coefficient is read off."},
-        name);
-  }
-  const Spectrum& s = c.spectrum;
-  bool any = false;
-  for (std::size_t i = 0; i < s.value.size(); ++i)
-    any = any || (s.frequency_hz[i] > 0 && s.value[i] > 0);
-  if (any) {
+  if (view.draws_allan)
+    out += plot_figure("allan",
+                       index,
+                       {deviation_title(c.allan.type),
+                        std::string(name_of(c.allan.type)),
+                        view.unit.empty() ? "U" : view.unit,
+                        "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "
+                        "fewer than 5 degrees of freedom make them unreliable. Line: fitted model. "
+                        "Dashed: its terms; marked: where each coefficient is read off."},
+                       name);
+  if (view.draws_spectrum)
     out += plot_figure("spectrum",
                        index,
-                       {spectrum_title(s),
-                        spectrum_axis(s),
-                        spectrum_unit(s.scaling, c.channel.unit),
-                        spectrum_caption(s)},
+                       {spectrum_title(c.spectrum),
+                        spectrum_axis(c.spectrum),
+                        spectrum_unit(c.spectrum.scaling, view.unit),
+                        spectrum_caption(c.spectrum)},
                        name);
-  }
   return out + "</div>\n";
 }
 

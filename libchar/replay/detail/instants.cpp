@@ -4,7 +4,7 @@
 //   own log, less than half as fast      one instant an interval [t_j, t_j + T) of the reference:
 //                                        the sensors' mean over it (at least half of its samples
 //                                        present) against its value
-#include "libchar/replay/detail/feed.hpp"
+#include "libchar/replay/detail/instants.hpp"
 
 #include <fmt/format.h>
 
@@ -29,19 +29,22 @@ double to_si(const std::string& unit, Quantity quantity) {
 }  // namespace
 
 // Fills blocks of equal size whatever the source delivers.
-class Feed::Columns {
+class Instants::Columns {
  public:
-  Columns(
-      const Feed& feed, std::int64_t from, std::int64_t to, std::size_t size, const FeedBlock& out)
-      : feed_(feed),
+  Columns(const Instants& instants,
+          std::int64_t from,
+          std::int64_t to,
+          std::size_t size,
+          const InstantsBlock& out)
+      : instants_(instants),
         from_(from),
         to_(to),
         out_(out),
-        samples_(feed.sensors_, size),
-        truth_(feed.info_.has_reference ? feed.inputs_ : 0, size) {
-    if (feed.info_.averaged > 1) {
-      sums_.assign(feed.sensors_, 0);
-      counts_.assign(feed.sensors_, 0);
+        samples_(instants.sensors_, size),
+        truth_(instants.info_.has_reference ? instants.inputs_ : 0, size) {
+    if (instants.info_.averaged > 1) {
+      sums_.assign(instants.sensors_, 0);
+      counts_.assign(instants.sensors_, 0);
     }
   }
 
@@ -49,30 +52,30 @@ class Feed::Columns {
     const std::size_t rows = columns[0].size();
     for (std::size_t k = 0; k < rows; ++k) {
       const auto sample = static_cast<std::int64_t>(first + k);
-      if (feed_.info_.averaged > 1)
+      if (instants_.info_.averaged > 1)
         average(sample, columns, k);
       else if (sample >= from_ && sample < to_)
         put(sample, columns, k);
     }
   }
   void finish() {
-    if (feed_.info_.averaged > 1) close_interval();
+    if (instants_.info_.averaged > 1) close_interval();
     flush();
   }
 
  private:
   double value(std::size_t sensor, double y) const {
-    return (y * feed_.factors_[sensor]) - feed_.offsets_[sensor];
+    return (y * instants_.factors_[sensor]) - instants_.offsets_[sensor];
   }
 
   void put(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
-    for (std::size_t i = 0; i < feed_.sensors_; ++i)
+    for (std::size_t i = 0; i < instants_.sensors_; ++i)
       samples_(static_cast<Eigen::Index>(i), filled_) = value(i, columns[i][k]);
     if (truth_.rows() > 0) {
-      if (feed_.track_)
-        truth_from_track(static_cast<double>(sample) / feed_.source_.info().rate_hz);
+      if (instants_.track_)
+        truth_from_track(static_cast<double>(sample) / instants_.source_.info().rate_hz);
       else
-        truth_of([&](std::size_t c) { return columns[feed_.sensors_ + c][k]; });
+        truth_of([&](std::size_t c) { return columns[instants_.sensors_ + c][k]; });
     }
     next();
   }
@@ -81,15 +84,15 @@ class Feed::Columns {
   void average(std::int64_t sample,
                std::span<const std::span<const double>> columns,
                std::size_t k) {
-    const double t = static_cast<double>(sample) / feed_.source_.info().rate_hz;
+    const double t = static_cast<double>(sample) / instants_.source_.info().rate_hz;
     const auto instant = static_cast<std::int64_t>(
-        std::floor((t - feed_.info_.start_s) * feed_.info_.rate_hz + kOnGrid));
+        std::floor((t - instants_.info_.start_s) * instants_.info_.rate_hz + kOnGrid));
     if (instant != interval_) {
       close_interval();
       interval_ = instant;
     }
     ++seen_;
-    for (std::size_t i = 0; i < feed_.sensors_; ++i)
+    for (std::size_t i = 0; i < instants_.sensors_; ++i)
       if (const double y = columns[i][k]; std::isfinite(y)) {
         sums_[i] += value(i, y);
         ++counts_[i];
@@ -98,17 +101,18 @@ class Feed::Columns {
 
   void close_interval() {
     if (seen_ > 0 && interval_ >= from_ && interval_ < to_) {
-      for (std::size_t i = 0; i < feed_.sensors_; ++i)
+      for (std::size_t i = 0; i < instants_.sensors_; ++i)
         samples_(static_cast<Eigen::Index>(i), filled_) =
-            2 * counts_[i] >= feed_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i])
-                                                   : kMissing;
+            2 * counts_[i] >= instants_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i])
+                                                       : kMissing;
       // The middle of the interval is unambiguous whatever its ends round to.
-      const double middle =
-          feed_.info_.start_s + (static_cast<double>(interval_) + 0.5) / feed_.info_.rate_hz;
-      const double place = (middle - feed_.lag_s_ - feed_.track_->start_s) * feed_.track_->rate_hz;
+      const double middle = instants_.info_.start_s +
+                            (static_cast<double>(interval_) + 0.5) / instants_.info_.rate_hz;
+      const double place =
+          (middle - instants_.lag_s_ - instants_.track_->start_s) * instants_.track_->rate_hz;
       const auto j = static_cast<std::size_t>(std::max(0.0, std::floor(place)));
       truth_of([&](std::size_t c) {
-        const auto& track = feed_.track_->values[c];
+        const auto& track = instants_.track_->values[c];
         return j < track.size() ? track[j] : kMissing;
       });
       next();
@@ -119,20 +123,20 @@ class Feed::Columns {
   }
 
   void truth_from_track(double t) {
-    truth_of([&](std::size_t c) { return feed_.track_->at(c, t - feed_.lag_s_); });
+    truth_of([&](std::size_t c) { return instants_.track_->at(c, t - instants_.lag_s_); });
   }
 
   template <class Reference>
   void truth_of(const Reference& reference) {
     if (truth_.rows() == 0) return;
-    if (feed_.scene_->reference->mean) {
+    if (instants_.scene_->reference->mean) {
       double sum = 0;
-      const std::size_t n = feed_.scene_->reference->channels.size();
+      const std::size_t n = instants_.scene_->reference->channels.size();
       for (std::size_t c = 0; c < n; ++c) sum += reference(c);
-      truth_(0, filled_) = feed_.truth_factor_ * sum / static_cast<double>(n);
+      truth_(0, filled_) = instants_.truth_factor_ * sum / static_cast<double>(n);
     } else {
-      for (std::size_t c = 0; c < feed_.inputs_; ++c)
-        truth_(static_cast<Eigen::Index>(c), filled_) = feed_.truth_factor_ * reference(c);
+      for (std::size_t c = 0; c < instants_.inputs_; ++c)
+        truth_(static_cast<Eigen::Index>(c), filled_) = instants_.truth_factor_ * reference(c);
     }
   }
 
@@ -151,9 +155,9 @@ class Feed::Columns {
     filled_ = 0;
   }
 
-  const Feed& feed_;
+  const Instants& instants_;
   std::int64_t from_, to_, done_ = 0, interval_ = -1;
-  const FeedBlock& out_;
+  const InstantsBlock& out_;
   Eigen::MatrixXd samples_, truth_;
   Eigen::Index filled_ = 0;
   std::vector<double> sums_;
@@ -161,7 +165,7 @@ class Feed::Columns {
   std::size_t seen_ = 0;
 };
 
-Feed::Feed(const Scene& scene, Progress& progress)
+Instants::Instants(const Scene& scene, Progress& progress)
     : scene_(&scene),
       source_(scene, progress),
       offsets_(scene.sensors.size(), 0.0),
@@ -169,7 +173,7 @@ Feed::Feed(const Scene& scene, Progress& progress)
       sensors_(scene.sensors.size()) {
   const SourceInfo& source = source_.info();
   info_.rate_hz = source.rate_hz;
-  info_.instants = static_cast<std::int64_t>(source.samples);
+  info_.count = static_cast<std::int64_t>(source.samples);
   info_.units = source.units;
   info_.logs = source.logs;
   info_.has_reference = scene.reference.has_value();
@@ -202,20 +206,20 @@ Feed::Feed(const Scene& scene, Progress& progress)
 }
 
 // One instant for each interval of the reference that lies within the recording.
-void Feed::fit_slow_reference() {
+void Instants::fit_slow_reference() {
   const double interval_s = 1 / track_->rate_hz;
-  const double length_s = static_cast<double>(info_.instants) / info_.rate_hz;
+  const double length_s = static_cast<double>(info_.count) / info_.rate_hz;
   info_.averaged = static_cast<std::size_t>(std::llround(info_.rate_hz * interval_s));
   const double lag = scene_->reference->lag_s;
   const double first = std::ceil(-(track_->start_s + lag) * track_->rate_hz - kOnGrid);
   info_.start_s = track_->start_s + lag + std::max(0.0, first) * interval_s;
   const double last = std::min(static_cast<double>(track_->values[0].size()) - std::max(0.0, first),
                                std::floor((length_s - info_.start_s) * track_->rate_hz + kOnGrid));
-  info_.instants = static_cast<std::int64_t>(std::max(0.0, last));
+  info_.count = static_cast<std::int64_t>(std::max(0.0, last));
   info_.rate_hz = track_->rate_hz;
   info_.reference_use =
       fmt::format("the sensors' means over its intervals of {} s", significant(interval_s, 6));
-  if (info_.instants == 0)
+  if (info_.count == 0)
     throw Error({ErrorKind::input,
                  "E0902",
                  scene_->file,
@@ -225,7 +229,7 @@ void Feed::fit_slow_reference() {
 }
 
 // Filters work in radians; scores speak the reference's unit.
-void Feed::convert_tilt() {
+void Instants::convert_tilt() {
   const std::size_t gyroscope = scene_->tilt->gyroscope;
   factors_[gyroscope] = to_si(info_.units[gyroscope], Quantity::angular_rate);
   info_.units[gyroscope] = "rad/s";
@@ -235,22 +239,22 @@ void Feed::convert_tilt() {
   if (!info_.has_reference) info_.input_names[0] = "tilt";
 }
 
-void Feed::set_lag(double lag_s, Progress& progress) {
+void Instants::set_lag(double lag_s, Progress& progress) {
   lag_s_ = lag_s;
   if (lag_s != 0 && !track_) track_ = read_reference(*scene_, source_, progress);
 }
 
-std::int64_t Feed::instant_at(double time_s) const {
+std::int64_t Instants::instant_at(double time_s) const {
   const double place = (time_s - info_.start_s) * info_.rate_hz;
-  if (!(place < static_cast<double>(info_.instants))) return info_.instants;
+  if (!(place < static_cast<double>(info_.count))) return info_.count;
   return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(place - kOnGrid)));
 }
 
-void Feed::pass(std::int64_t from,
-                std::int64_t to,
-                std::size_t size,
-                const FeedBlock& block,
-                Progress& progress) const {
+void Instants::pass(std::int64_t from,
+                    std::int64_t to,
+                    std::size_t size,
+                    const InstantsBlock& block,
+                    Progress& progress) const {
   Columns columns(*this, from, to, std::max<std::size_t>(size, 1), block);
   const double end_s = info_.start_s + static_cast<double>(to) / info_.rate_hz;
   const auto until = std::min<std::uint64_t>(

@@ -1,4 +1,4 @@
-#include "libchar/replay/detail/feed.hpp"
+#include "libchar/replay/detail/instants.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,15 +13,15 @@ namespace {
 
 const std::string kHead = "format: scene\nversion: 1\n";
 
-struct Fed {
+struct Columns {
   Eigen::MatrixXd samples, truth;
   std::vector<Eigen::Index> sizes;
 };
 
-Fed all_of(const Feed& feed, std::int64_t from, std::int64_t to, std::size_t size) {
-  Fed out;
-  out.samples.resize(static_cast<Eigen::Index>(feed.info().units.size()), 0);
-  feed.pass(
+Columns all_of(const Instants& instants, std::int64_t from, std::int64_t to, std::size_t size) {
+  Columns out;
+  out.samples.resize(static_cast<Eigen::Index>(instants.info().units.size()), 0);
+  instants.pass(
       from,
       to,
       size,
@@ -48,75 +48,75 @@ std::string numbered(std::size_t rows, double rate_hz) {
 
 }  // namespace
 
-TEST_CASE("feed: columns of the recording in blocks of the size that was asked for") {
+TEST_CASE("instants: columns of the recording in blocks of the size that was asked for") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(1000, 10));
   const Scene scene = bench.read(kHead +
                                  "recording: log.csv\nsensors: [{name: a, scale: -0.5}, b]\n"
                                  "reference: x\n");
-  Feed feed(scene, no_progress());
-  CHECK(feed.info().rate_hz == Approx(10).epsilon(1e-9));
-  CHECK(feed.info().instants == 1000);
-  CHECK(feed.info().units == std::vector<std::string>{"deg/s", "deg/s"});
-  const Fed whole = all_of(feed, 0, 1000, 4096);
+  Instants instants(scene, no_progress());
+  CHECK(instants.info().rate_hz == Approx(10).epsilon(1e-9));
+  CHECK(instants.info().count == 1000);
+  CHECK(instants.info().units == std::vector<std::string>{"deg/s", "deg/s"});
+  const Columns whole = all_of(instants, 0, 1000, 4096);
   REQUIRE(whole.samples.cols() == 1000);
   CHECK(whole.samples(0, 7) == -3.5);
   CHECK(whole.samples(1, 7) == 14);
   CHECK(whole.truth(0, 7) == 107);
   for (const std::size_t size : {1, 7, 100, 333}) {
-    const Fed part = all_of(feed, 13, 777, size);
+    const Columns part = all_of(instants, 13, 777, size);
     CHECK(part.samples == whole.samples.middleCols(13, 764));
     CHECK(part.truth == whole.truth.middleCols(13, 764));
     for (std::size_t b = 0; b + 1 < part.sizes.size(); ++b)
       CHECK(part.sizes[b] == static_cast<Eigen::Index>(size));
   }
-  feed.set_offsets({1, 2});
-  CHECK(all_of(feed, 7, 8, 1).samples(1, 0) == 12);
+  instants.set_offsets({1, 2});
+  CHECK(all_of(instants, 7, 8, 1).samples(1, 0) == 12);
 }
 
-TEST_CASE("feed: times in seconds are instants at or after them") {
+TEST_CASE("instants: times in seconds are instants at or after them") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(1000, 10));
   const Scene scene = bench.read(kHead + "recording: log.csv\nsensors: [a, b]\n");
-  const Feed feed(scene, no_progress());
-  CHECK(feed.instant_at(0) == 0);
-  CHECK(feed.instant_at(0.3) == 3);
-  CHECK(feed.instant_at(0.31) == 4);
-  CHECK(feed.instant_at(1e9) == 1000);
-  CHECK(feed.instant_at(std::numeric_limits<double>::infinity()) == 1000);
+  const Instants instants(scene, no_progress());
+  CHECK(instants.instant_at(0) == 0);
+  CHECK(instants.instant_at(0.3) == 3);
+  CHECK(instants.instant_at(0.31) == 4);
+  CHECK(instants.instant_at(1e9) == 1000);
+  CHECK(instants.instant_at(std::numeric_limits<double>::infinity()) == 1000);
 }
 
-TEST_CASE("feed: faults of the scene are injected, whatever window is read") {
+TEST_CASE("instants: faults of the scene are injected, whatever window is read") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(1000, 10));
   const Scene scene = bench.read(
       kHead +
       "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, to_s: "
       "30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
-  const Feed feed(scene, no_progress());
-  const Fed fed = all_of(feed, 250, 600, 64);
-  CHECK(fed.samples(1, 0) == 2 * 199);
-  CHECK(fed.samples(1, 49) == 2 * 199);
-  CHECK(fed.samples(1, 50) == 600);
-  CHECK(fed.samples(0, 249) == 499);
-  CHECK(fed.samples(0, 250) == 1500);
+  const Instants instants(scene, no_progress());
+  const Columns columns = all_of(instants, 250, 600, 64);
+  CHECK(columns.samples(1, 0) == 2 * 199);
+  CHECK(columns.samples(1, 49) == 2 * 199);
+  CHECK(columns.samples(1, 50) == 600);
+  CHECK(columns.samples(0, 249) == 499);
+  CHECK(columns.samples(0, 250) == 1500);
 }
 
-TEST_CASE("feed: a simulation is the same in every pass") {
+TEST_CASE("instants: a simulation is the same in every pass") {
   const test::SceneBench bench;
   const Scene scene = bench.read(
       kHead +
       "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, {kind: "
       "sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: gyro.sensor.yaml, h: [1, 0]}, "
       "{name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
-  const Feed feed(scene, no_progress());
-  const Fed first = all_of(feed, 0, 5000, 1000), second = all_of(feed, 0, 5000, 777);
+  const Instants instants(scene, no_progress());
+  const Columns first = all_of(instants, 0, 5000, 1000), second = all_of(instants, 0, 5000, 777);
   CHECK(first.samples == second.samples);
   CHECK(first.truth.rows() == 1);
   CHECK(first.truth == first.samples.row(1));
 }
 
-TEST_CASE("feed: a slow reference is compared with means over its intervals") {
+TEST_CASE("instants: a slow reference is compared with means over its intervals") {
   const test::SceneBench bench;
   // Samples at 1 Hz from stamp 5; a reference every 10 s from stamp 0.
   std::string log = "t[s],a,b\n", station = "t[s],x\n";
@@ -132,36 +132,36 @@ TEST_CASE("feed: a slow reference is compared with means over its intervals") {
   const Scene scene = bench.read(
       kHead +
       "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: station.csv}\n");
-  const Feed feed(scene, no_progress());
-  CHECK(feed.info().averaged == 10);
-  CHECK(feed.info().rate_hz == Approx(0.1));
-  CHECK(feed.info().start_s == Approx(5));  // stamp 10, the first whole interval
-  CHECK(feed.info().instants == 9);         // 10…20, …, 90…100
-  const Fed fed = all_of(feed, 0, 9, 4);
-  REQUIRE(fed.samples.cols() == 9);
-  CHECK(fed.samples(0, 0) == 14.5);
-  CHECK(fed.samples(0, 8) == 94.5);
-  CHECK(fed.truth(0, 0) == 7);
-  CHECK(std::isnan(fed.truth(0, 1)));
-  CHECK(fed.truth(0, 8) == 63);
-  CHECK(std::isnan(fed.samples(1, 3)));  // six of ten are missing
-  CHECK(fed.samples(1, 4) == 1);
-  const Fed later = all_of(feed, 3, 6, 1);
-  CHECK(later.samples(0, 0) == fed.samples(0, 3));
+  const Instants instants(scene, no_progress());
+  CHECK(instants.info().averaged == 10);
+  CHECK(instants.info().rate_hz == Approx(0.1));
+  CHECK(instants.info().start_s == Approx(5));  // stamp 10, the first whole interval
+  CHECK(instants.info().count == 9);            // 10…20, …, 90…100
+  const Columns columns = all_of(instants, 0, 9, 4);
+  REQUIRE(columns.samples.cols() == 9);
+  CHECK(columns.samples(0, 0) == 14.5);
+  CHECK(columns.samples(0, 8) == 94.5);
+  CHECK(columns.truth(0, 0) == 7);
+  CHECK(std::isnan(columns.truth(0, 1)));
+  CHECK(columns.truth(0, 8) == 63);
+  CHECK(std::isnan(columns.samples(1, 3)));  // six of ten are missing
+  CHECK(columns.samples(1, 4) == 1);
+  const Columns later = all_of(instants, 3, 6, 1);
+  CHECK(later.samples(0, 0) == columns.samples(0, 3));
   CHECK(later.samples.cols() == 3);
 }
 
-TEST_CASE("feed: reference and recording without a common time are refused") {
+TEST_CASE("instants: reference and recording without a common time are refused") {
   const test::SceneBench bench;
   bench.put("log.csv", "t[s],a\n0,1\n1,1\n2,1\n3,2\n");
   bench.put("station.csv", "t[s],x\n1000,1\n1010,2\n1020,2\n");
   const Scene scene = bench.read(
       kHead +
       "recording: log.csv\nsensors: [a]\nreference: {channels: [x], recording: station.csv}\n");
-  CHECK_THROWS_WITH(Feed(scene, no_progress()), Catch::Contains("E0902"));
+  CHECK_THROWS_WITH(Instants(scene, no_progress()), Catch::Contains("E0902"));
 }
 
-TEST_CASE("feed: a faster reference, and a lag, are interpolated") {
+TEST_CASE("instants: a faster reference, and a lag, are interpolated") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(100, 10));
   std::string fast = "t[s],x\n";
@@ -171,32 +171,32 @@ TEST_CASE("feed: a faster reference, and a lag, are interpolated") {
   const Scene scene = bench.read(
       kHead +
       "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: fast.csv}\n");
-  Feed feed(scene, no_progress());
-  const Fed fed = all_of(feed, 0, 100, 100);
+  Instants instants(scene, no_progress());
+  const Columns columns = all_of(instants, 0, 100, 100);
   for (Eigen::Index k = 0; k < 100; ++k)
-    CHECK(fed.truth(0, k) == Approx(0.1 * static_cast<double>(k)).margin(1e-12));
-  feed.set_lag(0.25, no_progress());
-  const Fed late = all_of(feed, 0, 100, 100);
+    CHECK(columns.truth(0, k) == Approx(0.1 * static_cast<double>(k)).margin(1e-12));
+  instants.set_lag(0.25, no_progress());
+  const Columns late = all_of(instants, 0, 100, 100);
   CHECK(std::isnan(late.truth(0, 2)));  // before the reference begins
   CHECK(late.truth(0, 10) == Approx(0.75));
   const Scene own = bench.read(
       kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], lag_s: 0.05}\n");
-  CHECK(all_of(Feed(own, no_progress()), 0, 100, 100).truth(0, 10) == Approx(109.5));
+  CHECK(all_of(Instants(own, no_progress()), 0, 100, 100).truth(0, 10) == Approx(109.5));
 }
 
-TEST_CASE("feed: a tilt is in radians inside, its scores in the unit of the reference") {
+TEST_CASE("instants: a tilt is in radians inside, its scores in the unit of the reference") {
   const test::SceneBench bench;
   bench.put("log.csv", "t[s],w[deg/s],x[g],z[g],angle[deg]\n0,180,0,1,90\n1,0,1,1,45\n2,0,1,0,0\n");
   const Scene scene = bench.read(kHead +
                                  "recording: log.csv\nsensors: [w, x, z]\nreference: angle\n"
                                  "tilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n");
-  const Feed feed(scene, no_progress());
-  const Fed fed = all_of(feed, 0, 3, 3);
-  CHECK(fed.samples(0, 0) == Approx(std::acos(-1.0)));
-  CHECK(fed.samples(1, 1) == 1);
-  CHECK(fed.truth(0, 0) == Approx(std::acos(-1.0) / 2));
-  CHECK(fed.truth(0, 0) * feed.info().output_scale == Approx(90));
-  CHECK(feed.info().input_units[0] == "deg");
+  const Instants instants(scene, no_progress());
+  const Columns columns = all_of(instants, 0, 3, 3);
+  CHECK(columns.samples(0, 0) == Approx(std::acos(-1.0)));
+  CHECK(columns.samples(1, 1) == 1);
+  CHECK(columns.truth(0, 0) == Approx(std::acos(-1.0) / 2));
+  CHECK(columns.truth(0, 0) * instants.info().output_scale == Approx(90));
+  CHECK(instants.info().input_units[0] == "deg");
 }
 
 TEST_CASE("rest: offsets and noise, drift hardly in it") {
@@ -241,7 +241,7 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
                     Catch::Contains("E0907"));
 }
 
-TEST_CASE("feed: a reference angle is interpolated the short way round") {
+TEST_CASE("instants: a reference angle is interpolated the short way round") {
   const test::SceneBench bench;
   std::string log = "t[s],w[deg/s],x[g],z[g],angle[deg]\n";
   for (int k = 0; k < 10; ++k)
@@ -251,12 +251,12 @@ TEST_CASE("feed: a reference angle is interpolated the short way round") {
       "sensors: [w, x, z]\ntilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n";
   const auto truth = [&](const std::string& text) {
     const Scene read = bench.read(text);
-    const Feed feed(read, no_progress());
+    const Instants instants(read, no_progress());
     const double turn = 2 * std::acos(-1.0);
-    const Fed fed = all_of(feed, 1, 9, 4);
-    REQUIRE(fed.truth.size() == 8);
+    const Columns columns = all_of(instants, 1, 9, 4);
+    REQUIRE(columns.truth.size() == 8);
     for (Eigen::Index k = 0; k < 8; ++k) {
-      const double degrees = fed.truth(0, k) * 360 / turn;
+      const double degrees = columns.truth(0, k) * 360 / turn;
       CHECK(std::abs(degrees) >= 175);
       CHECK(std::abs(degrees) <= 190);
     }

@@ -16,13 +16,13 @@
 
 namespace libchar {
 
-struct FeedInfo {
-  double rate_hz = 0;         ///< of the instants
-  std::int64_t instants = 0;  ///< in the whole recording
-  double start_s = 0;         ///< of instant 0, seconds from the recording's first sample
-  std::size_t averaged = 1;   ///< samples in an instant (a slow reference)
+struct InstantsInfo {
+  double rate_hz = 0;        ///< of the instants
+  std::int64_t count = 0;    ///< in the whole recording
+  double start_s = 0;        ///< of instant 0, seconds from the recording's first sample
+  std::size_t averaged = 1;  ///< samples in an instant (a slow reference)
   bool has_reference = false;
-  std::string reference_use;       ///< how truth and samples are matched, for people
+  std::string reference_use;       ///< how truth and samples are matched, a phrase
   std::vector<std::string> units;  ///< of the sensors, as fused
   std::vector<std::string> input_names, input_units;  ///< of the true inputs, as scored
   std::vector<LogInfo> logs;
@@ -31,21 +31,21 @@ struct FeedInfo {
 };
 
 /// `first` instant of the block, n x m samples, r x m truth (no rows without a reference).
-using FeedBlock = std::function<void(
+using InstantsBlock = std::function<void(
     std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth)>;
 
-class Feed {
+class Instants {
  public:
   /// Throws Error(input) when the scene does not fit its files.
-  Feed(const Scene& scene, Progress& progress);
-  const FeedInfo& info() const { return info_; }
+  Instants(const Scene& scene, Progress& progress);
+  const InstantsInfo& info() const { return info_; }
   const SceneSource& source() const { return source_; }
 
   /// Instants [from, to) in blocks of `size` columns, the last one shorter.
   void pass(std::int64_t from,
             std::int64_t to,
             std::size_t size,
-            const FeedBlock& block,
+            const InstantsBlock& block,
             Progress& progress) const;
   /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
   double factor(std::size_t sensor) const { return factors_[sensor]; }
@@ -65,7 +65,7 @@ class Feed {
   const Scene* scene_;
   SceneSource source_;
   std::optional<ReferenceTrack> track_;
-  FeedInfo info_;
+  InstantsInfo info_;
   std::vector<double> offsets_, factors_;  // a sensor each
   double truth_factor_ = 1, lag_s_ = 0;
   std::size_t sensors_, inputs_;

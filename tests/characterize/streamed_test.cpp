@@ -8,6 +8,7 @@
 #include <random>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/core/error.hpp"
 
 using namespace libchar;
 
@@ -66,6 +67,40 @@ void same_bits(const Characterization& a, const Characterization& b) {
 }
 
 }  // namespace
+
+TEST_CASE("a recording in memory gives the same bits as its file, kept or streamed") {
+  const auto path = log_of(true);
+  const Recording recording = read_recording(path.string());
+  for (const std::uint64_t memory : {std::uint64_t{1} << 30U, std::uint64_t{1} << 18U}) {
+    CharacterizeOptions options;
+    options.spectrum.segment = 8192;
+    options.memory_bytes = memory;
+    const Characterization file = characterize(path.string(), options);
+    const Characterization again = characterize(recording, options);
+    same_bits(file, again);
+    CHECK(again.log.samples == file.log.samples);
+    CHECK(again.channels[1].channel.name == file.channels[1].channel.name);
+  }
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("a recording made by the caller needs names, a rate, and columns of one length") {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal(0, 0.1);
+  Recording made;
+  made.info.channels = {{"gyr_x", "rad/s", false}};
+  made.info.time.rate_hz = 100;
+  made.samples.resize(1);
+  for (int i = 0; i < 20000; ++i) made.samples[0].push_back(normal(generator));
+  const Characterization result = characterize(made);
+  REQUIRE(result.channels.size() == 1);
+  REQUIRE(result.channels[0].fit);
+  CHECK(*(*result.channels[0].fit)[Term::white].value == Approx(0.01).epsilon(0.05));
+  made.info.channels.push_back({"gyr_y", "rad/s", false});
+  CHECK_THROWS_AS(characterize(made), Error);
+  made.samples.push_back({1, 2, 3});
+  CHECK_THROWS_AS(characterize(made), Error);
+}
 
 TEST_CASE("a streamed log gives the same bits whatever the blocks and threads, with gaps too") {
   for (const bool gap : {false, true}) {

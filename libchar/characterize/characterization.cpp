@@ -1,0 +1,99 @@
+// The main job as a table of contents: read once → per channel keep or stream → curves → fit →
+// intervals.
+#include "libchar/characterize/characterization.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+
+#include "libchar/characterize/detail/channel_stages.hpp"
+#include "libchar/core/error.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kBlockOfMemory = std::uint64_t{1} << 16U;  // rows
+
+/// Where the samples come from.
+struct Source {
+  std::function<LogInfo(BlockSink& sink)> read;
+  std::function<void(BlockSink& sink)> read_again;  ///< none: what was read is gone
+};
+
+Characterization characterize_source(const Source& source,
+                                     const CharacterizeOptions& options,
+                                     Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  CharacterizeWorkspace workspace;
+  Characterization result;
+  ChannelStages stages(options, workspace);
+  result.log = source.read(stages);
+  const std::vector<std::size_t> again = stages.need_second_pass();
+  if (!again.empty() && source.read_again) {
+    SecondPass second(stages, again, options.reading.threads);
+    source.read_again(second);
+  }
+  result.channels = stages.finish(result.log, progress);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+void check_columns(const Recording& recording) {
+  const auto refuse = [](const std::string& what) {
+    throw Error({ErrorKind::usage, "", "", what, "", ""});
+  };
+  if (recording.info.channels.size() != recording.samples.size())
+    refuse(fmt::format("a recording has {} columns of samples for {} channels",
+                       recording.samples.size(),
+                       recording.info.channels.size()));
+  for (const auto& column : recording.samples)
+    if (column.size() != recording.samples[0].size())
+      refuse("the columns of a recording have different lengths");
+}
+
+LogInfo push_recording(const Recording& recording, BlockSink& sink, Progress& progress) {
+  LogInfo log = recording.info;
+  log.samples = recording.samples.empty() ? 0 : recording.samples[0].size();
+  log.read_ahead = false;
+  sink.begin(log);
+  SampleBlock block;
+  for (; block.first < log.samples; block.first += block.rows) {
+    progress.update(static_cast<double>(block.first) / static_cast<double>(log.samples), "reading");
+    block.rows = std::min(kBlockOfMemory, log.samples - block.first);
+    block.channels.clear();
+    for (const auto& column : recording.samples)
+      block.channels.push_back(column.data() + block.first);
+    sink.block(block);
+  }
+  return log;
+}
+
+}  // namespace
+
+Characterization characterize(const std::string& path,
+                              const CharacterizeOptions& options,
+                              Progress& progress) {
+  Source source;
+  source.read = [&](BlockSink& sink) { return read_log(path, options.reading, sink, progress); };
+  if (!read_once(path))
+    source.read_again = [&](BlockSink& sink) {
+      ReadOptions reading = options.reading;
+      reading.hash = false;
+      read_log(path, reading, sink, progress);
+    };
+  return characterize_source(source, options, progress);
+}
+
+Characterization characterize(const Recording& recording,
+                              const CharacterizeOptions& options,
+                              Progress& progress) {
+  check_columns(recording);
+  Source source;
+  source.read = [&](BlockSink& sink) { return push_recording(recording, sink, progress); };
+  source.read_again = [&](BlockSink& sink) { push_recording(recording, sink, progress); };
+  return characterize_source(source, options, progress);
+}
+
+}  // namespace libchar

@@ -1,0 +1,120 @@
+#include "libchar/characterize/characterization_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+std::string usual_spelling(const std::string& unit) {
+  const auto known = find_unit(unit);
+  return known && known->symbol != "1" ? std::string(known->symbol) : unit;
+}
+
+ModelCurve allan_model(const NoiseFit& fit, const AllanCurve& curve) {
+  ModelCurve out;
+  for (const AllanPoint& p : curve.points)
+    out.values.push_back(model_deviation(fit, curve.type, static_cast<double>(p.m), curve.dt_s));
+  out.asymptotes = allan_asymptotes(fit, curve);
+  return out;
+}
+
+ModelCurve spectrum_model(const NoiseFit& fit, const Spectrum& spectrum) {
+  ModelCurve out;
+  for (const double f : spectrum.frequency_hz)
+    out.values.push_back(model_spectrum(fit, spectrum, f));
+  out.asymptotes = spectrum_asymptotes(fit, spectrum);
+  return out;
+}
+
+std::vector<OtherOpinion> other_opinions(const NoiseFit& fit) {
+  std::vector<OtherOpinion> out;
+  if (!fit.second_opinion) return out;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    const auto& value = fit.second_opinion->value[t];
+    if (!value) continue;
+    const Coefficient& first = fit.term[t];
+    OtherOpinion other{static_cast<Term>(t), *value, fit.second_opinion->sd[t], {}};
+    const double sd = first.value ? std::hypot(other.sd, *first.value * first.relative_sd) : 0;
+    if (first.value && sd > 0) other.apart = (*value - *first.value) / sd;
+    out.push_back(other);
+  }
+  return out;
+}
+
+// A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
+bool stands_on_log_axes(const AllanCurve& curve) {
+  return std::any_of(curve.points.begin(), curve.points.end(), [](const AllanPoint& p) {
+    return p.deviation > 0;
+  });
+}
+
+bool stands_on_log_axes(const Spectrum& s) {
+  for (std::size_t i = 0; i < s.value.size(); ++i)
+    if (s.frequency_hz[i] > 0 && s.value[i] > 0) return true;
+  return false;
+}
+
+void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
+  const NoiseFit& fit = *channel.fit;
+  view.findings = findings(fit, view.unit);
+  view.goodness = goodness_sentence(fit.goodness);
+  if (const Coefficient& white = fit[Term::white]; white.value) {
+    view.per_sample_sd = *white.value * std::sqrt(rate_hz);
+    view.noise_density_one_sided = *white.value * std::sqrt(2.0);
+  }
+  view.read_off = read_off_points(fit, channel.allan);
+  view.allan_model = allan_model(fit, channel.allan);
+  view.spectrum_model = spectrum_model(fit, channel.spectrum);
+  view.other_opinions = other_opinions(fit);
+  if (rate_hz > 0) view.consumers = consumer_numbers(fit.term, view.unit, rate_hz);
+}
+
+/// Shared by the channels: they have most degrees of freedom in common.
+struct Factors {
+  IntervalFactors in68{0.6827}, in95{0.95};
+};
+
+ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& factors) {
+  ChannelView out;
+  out.result = &channel;
+  out.unit = usual_spelling(channel.channel.unit);
+  out.cautions = cautions(channel);
+  out.allan_minimum = allan_minimum(channel.allan);
+  out.draws_allan = stands_on_log_axes(channel.allan);
+  out.draws_spectrum = stands_on_log_axes(channel.spectrum);
+  out.spectrum_ci68 = spectrum_intervals(channel.spectrum, factors.in68);
+  out.spectrum_ci95 = spectrum_intervals(channel.spectrum, factors.in95);
+  if (channel.fit) add_fit(out, channel, rate_hz);
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        IntervalFactors& factors) {
+  std::vector<std::optional<Interval>> out(spectrum.frequency_hz.size());
+  for (std::size_t i = 0; i < std::min(out.size(), spectrum.dof.size()); ++i) {
+    if (!(spectrum.dof[i] > 0)) continue;
+    const auto [low, high] = factors.interval(spectrum, i);
+    out[i] = Interval{low, high};
+  }
+  return out;
+}
+
+CharacterizationView characterization_view(const Characterization& result) {
+  CharacterizationView out;
+  out.result = &result;
+  out.verdict = verdict_of(result);
+  const double rate_hz = result.log.time.rate_hz;
+  if (rate_hz > 0) out.duration_s = static_cast<double>(result.log.samples) / rate_hz;
+  Factors factors;
+  for (const ChannelResult& channel : result.channels)
+    out.channels.push_back(channel_view(channel, rate_hz, factors));
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,62 @@
+#pragma once
+// A characterization as its report shows it, computed once: verdict, what was found, what asks for a
+// look, the curves of the fitted model, where its coefficients are read off, which number goes where.
+// HTML, JSON and CSV only print it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/export/consumers.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
+
+namespace libchar {
+
+/// What the fit predicts for a measured curve.
+struct ModelCurve {
+  std::vector<std::optional<double>> values;  ///< one a point of the curve; none: not known there
+  std::vector<Asymptote> asymptotes;          ///< of its terms
+};
+
+/// A coefficient as the fit of the Allan curve sees it.
+struct OtherOpinion {
+  Term term = Term::white;
+  double value = 0, sd = 0;
+  std::optional<double> apart;  ///< from the first fit, in combined standard deviations
+};
+
+struct ChannelView {
+  const ChannelResult* result = nullptr;
+  std::string unit;                   ///< in its usual spelling, "m/s²"; "" when nobody said one
+  std::vector<std::string> findings;  ///< sentences with numbers
+  std::vector<std::string> cautions;  ///< what asks for a look before the numbers are used
+  std::string goodness;               ///< how well the model explains the channel; "" without a fit
+  const AllanPoint* allan_minimum = nullptr;  ///< lowest reliable point; null: none
+  std::optional<double> per_sample_sd;        ///< Q·√f: what white noise alone gives in a sample
+  std::optional<double> noise_density_one_sided;          ///< √2·Q, as data sheets say it
+  std::vector<ReadOff> read_off;                          ///< points of the Allan curve
+  std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
+  std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
+  std::vector<OtherOpinion> other_opinions;
+  std::vector<ConsumerNumber> consumers;                ///< which number goes where
+  bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
+};
+
+/// Points into the result that it is a view of, which must live as long.
+struct CharacterizationView {
+  const Characterization* result = nullptr;
+  std::string verdict;    ///< a paragraph
+  double duration_s = 0;  ///< of the recording; 0: not known
+  std::vector<ChannelView> channels;
+};
+
+/// Chi-square interval of each bin of a spectrum; none where its degrees of freedom are not known.
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        IntervalFactors& factors);
+
+CharacterizationView characterization_view(const Characterization& result);
+CharacterizationView characterization_view(Characterization&&) = delete;
+
+}  // namespace libchar

@@ -1,0 +1,101 @@
+#include "libchar/characterize/detail/channel_stages.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace libchar {
+namespace {
+
+// Where a segment was asked for nothing needs the whole record; short logs are still kept, because exact
+// forms cost nothing there.
+constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
+
+constexpr std::size_t kFittedAtOnce = 2;
+
+std::uint64_t budget_of(const CharacterizeOptions& options) {
+  const bool whole_record_needed = options.wanted.spectrum && options.spectrum.segment == 0;
+  return whole_record_needed || options.full_overlap
+             ? options.memory_bytes
+             : std::min(options.memory_bytes, kSmallLogBytes);
+}
+
+}  // namespace
+
+ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
+    : options_(options), workspace_(workspace), budget_(budget_of(options)) {}
+
+void ChannelStages::begin(const LogInfo& so_far) {
+  const std::size_t channels = so_far.channels.size();
+  for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_, workspace_);
+  arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
+  if (surely_too_long(so_far)) {
+    for (ChannelStage& stage : stages_) stage.stop_keeping();
+    return;
+  }
+  // No value takes less than a byte of the file, and no more than the budget is kept.
+  const std::uint64_t most =
+      std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
+  for (ChannelStage& stage : stages_) stage.reserve(most);
+}
+
+void ChannelStages::block(const SampleBlock& samples) {
+  kept_bytes_ += samples.rows * samples.channels.size() * sizeof(double);
+  const bool too_much = kept_bytes_ > budget_;
+  arena_.execute([&] {
+    tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
+      if (too_much) stages_[c].stop_keeping();
+      stages_[c].push({samples.channels[c], samples.rows});
+    });
+  });
+}
+
+std::vector<std::size_t> ChannelStages::need_second_pass() const {
+  std::vector<std::size_t> out;
+  for (std::size_t c = 0; c < stages_.size(); ++c)
+    if (stages_[c].needs_second_pass()) out.push_back(c);
+  return out;
+}
+
+std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& progress) {
+  std::vector<ChannelResult> results(stages_.size());
+  for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
+    progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");
+    const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
+    tbb::parallel_for(first, last, [&](std::size_t c) {
+      results[c] = stages_[c].finish(log.channels[c], log.time.rate_hz);
+    });
+  }
+  return results;
+}
+
+// Samples that will not be kept in the end need not be kept in the beginning. What is expected may
+// be wrong by a factor; a log that would just fit must not be streamed for that.
+bool ChannelStages::surely_too_long(const LogInfo& so_far) const {
+  constexpr double kDoubt = 4;
+  const bool window = options_.reading.from_s || options_.reading.to_s;
+  const double bytes = static_cast<double>(so_far.rows) *
+                       static_cast<double>(so_far.channels.size()) * sizeof(double);
+  return !window && options_.data != SampleKind::phase &&
+         bytes > kDoubt * static_cast<double>(budget_);
+}
+
+SecondPass::SecondPass(ChannelStages& first, std::vector<std::size_t> channels, int threads)
+    : stages_(first.stages()), channels_(std::move(channels)), threads_(threads) {
+  for (const std::size_t c : channels_) stages_[c].begin_second_pass();
+}
+
+void SecondPass::begin(const LogInfo& so_far) {
+  arena_.initialize(threads_beside_reading(so_far, threads_));
+}
+
+void SecondPass::block(const SampleBlock& samples) {
+  arena_.execute([&] {
+    tbb::parallel_for(std::size_t{0}, channels_.size(), [&](std::size_t k) {
+      const std::size_t c = channels_[k];
+      stages_[c].push({samples.channels[c], samples.rows});
+    });
+  });
+}
+
+}  // namespace libchar

@@ -1,0 +1,54 @@
+#pragma once
+// All channels of a log on their way through: read once, kept or streamed, and fitted.
+
+#include <tbb/task_arena.h>
+
+#include <vector>
+
+#include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/core/progress.hpp"
+#include "libchar/log/read.hpp"
+
+namespace libchar {
+
+/// The first pass. Channels go side by side, each through a stage of its own.
+class ChannelStages final : public BlockSink {
+ public:
+  /// Both must live as long.
+  ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace);
+
+  void begin(const LogInfo& so_far) override;
+  void block(const SampleBlock& samples) override;
+
+  /// After the last block: the channels that ask for a second pass, in order.
+  std::vector<std::size_t> need_second_pass() const;
+  std::vector<ChannelStage>& stages() { return stages_; }
+
+  /// Curves and fits, two channels at a time: memory stays bounded however many there are.
+  std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress);
+
+ private:
+  bool surely_too_long(const LogInfo& so_far) const;
+
+  const CharacterizeOptions& options_;
+  CharacterizeWorkspace& workspace_;
+  std::uint64_t budget_ = 0, kept_bytes_ = 0;
+  tbb::task_arena arena_;
+  std::vector<ChannelStage> stages_;
+};
+
+/// The second pass, through the channels that asked for it and no others.
+class SecondPass final : public BlockSink {
+ public:
+  SecondPass(ChannelStages& first, std::vector<std::size_t> channels, int threads);
+  void begin(const LogInfo& so_far) override;
+  void block(const SampleBlock& samples) override;
+
+ private:
+  std::vector<ChannelStage>& stages_;
+  std::vector<std::size_t> channels_;
+  int threads_ = 0;
+  tbb::task_arena arena_;
+};
+
+}  // namespace libchar
