@@ -74,77 +74,71 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
 
 }  // namespace
 
-void add_data_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb,
-             "--data",
-             a.data,
-             {"rate", "phase", "frequency"},
-             "what the samples are: the quantity itself, its integral, or a frequency in Hz "
-             "(default: rate)");
-  add_number(verb,
-             "--nominal-frequency",
-             a.nominal_frequency,
-             "with --data frequency: the frequency that counts as zero deviation, Hz (default: "
-             "values are fractional)",
-             0);
-  add_bytes(verb,
-            "--memory",
-            a.options.memory_bytes,
-            "samples kept in memory at most; a longer log streams through fixed-size stages "
-            "(default: 1GiB)");
+void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_choice("--data",
+                  a.data,
+                  {"rate", "phase", "frequency"},
+                  "what the samples are: the quantity itself, its integral, or a frequency in Hz "
+                  "(default: rate)");
+  verb.add_number(
+      "--nominal-frequency",
+      a.nominal_frequency,
+      "with --data frequency: the frequency that counts as zero deviation, Hz (default: "
+      "values are fractional)",
+      0);
+  verb.add_bytes("--memory",
+                 a.options.memory_bytes,
+                 "samples kept in memory at most; a longer log streams through fixed-size stages "
+                 "(default: 1GiB)");
 }
 
-void add_allan_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb,
-             "--type",
-             a.type,
-             {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
-             "deviation (default: oadev, overlapping Allan)");
-  verb.add_option(
+void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_choice("--type",
+                  a.type,
+                  {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
+                  "deviation (default: oadev, overlapping Allan)");
+  verb.add_text(
       "--taus",
       a.taus,
       "averaging times: octave, decade, dense, or a list such as 0.1s,1s,1min (default: octave)");
-  add_duration(verb, "--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
-  add_duration(verb, "--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
+  verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
+  verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
   verb.add_flag("--full-overlap",
                 a.options.full_overlap,
                 "use every term however long the record is (default: every (m/4)th term beyond 4 "
                 "million samples)");
 }
 
-void add_spectrum_options(CLI::App& verb, AnalysisOptions& a) {
-  add_choice(verb, "--sides", a.sides, {"one", "two"}, "one- or two-sided spectrum (default: one)");
-  add_choice(verb,
-             "--scaling",
-             a.scaling,
-             {"psd", "ps", "lsd", "ls"},
-             "density U²/Hz, power U², and their roots (default: psd)");
-  verb.add_option(
+void add_spectrum_options(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_choice("--sides", a.sides, {"one", "two"}, "one- or two-sided spectrum (default: one)");
+  verb.add_choice("--scaling",
+                  a.scaling,
+                  {"psd", "ps", "lsd", "ls"},
+                  "density U²/Hz, power U², and their roots (default: psd)");
+  verb.add_text(
       "--segment", a.segment, "samples per segment (default: N/4, a quarter of the record)");
-  add_number(
-      verb, "--overlap", a.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
-  add_choice(verb,
-             "--window",
-             a.window,
-             {"hann", "rectangular", "blackman_harris", "flat_top"},
-             "window (default: hann)");
-  add_choice(verb,
-             "--detrend",
-             a.detrend,
-             {"none", "constant", "linear"},
-             "what is removed from each segment (default: constant)");
+  verb.add_number(
+      "--overlap", a.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  verb.add_choice("--window",
+                  a.window,
+                  {"hann", "rectangular", "blackman_harris", "flat_top"},
+                  "window (default: hann)");
+  verb.add_choice("--detrend",
+                  a.detrend,
+                  {"none", "constant", "linear"},
+                  "what is removed from each segment (default: constant)");
 }
 
-void add_fit_options(CLI::App& verb, AnalysisOptions& a) {
-  verb.add_option("--terms",
-                  a.terms,
-                  "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and "
-                  "R join when an alarm asks)");
-  add_number(verb,
-             "--threshold",
-             a.threshold,
-             "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)",
-             0);
+void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_text("--terms",
+                a.terms,
+                "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and "
+                "R join when an alarm asks)");
+  verb.add_number(
+      "--threshold",
+      a.threshold,
+      "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)",
+      0);
   verb.add_flag("--no-remedies",
                 a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");

@@ -1,10 +1,9 @@
 #pragma once
 // The flags of the analysis verbs: the same words mean the same thing in allan, psd, fit and characterize.
 
-#include <CLI/CLI.hpp>
-
-#include "command.hpp"
+#include "command_line.hpp"
 #include "libchar/characterize/characterization.hpp"
+#include "session.hpp"
 
 namespace sensorchar {
 
@@ -18,16 +17,16 @@ struct AnalysisOptions {
   bool no_remedies = false, no_second_opinion = false;
 };
 
-void add_data_options(CLI::App& verb,
+void add_data_options(VerbOptions& verb,
                       AnalysisOptions& analysis);  ///< --data, --nominal-frequency, --memory
 void add_allan_options(
-    CLI::App& verb,
+    VerbOptions& verb,
     AnalysisOptions& analysis);  ///< --type, --taus, --tau-min, --tau-max, --full-overlap
 void add_spectrum_options(
-    CLI::App& verb,
+    VerbOptions& verb,
     AnalysisOptions& analysis);  ///< --sides, --scaling, --segment, --overlap, --window, --detrend
 void add_fit_options(
-    CLI::App& verb,
+    VerbOptions& verb,
     AnalysisOptions& analysis);  ///< --terms, --threshold, --no-remedies, --no-second-opinion
 
 /// The options with every text read. Throws Error(usage).

@@ -1,21 +1,23 @@
 #include <malloc.h>
 
-#include "command.hpp"
 #include "libchar/core/version.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 int main(int argc, char** argv) {
+  using namespace sensorchar;
   // Blocks of a few megabytes come and go all the time: kept instead of given back to the system, they need no new pages.
   mallopt(M_MMAP_THRESHOLD, 256 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
-  sensorchar::install_signal_handlers();
-  sensorchar::Session session;
+  install_signal_handlers();
+  Session session;
   session.command.assign(argv, argv + argc);
-  CLI::App app("What sensors do to what they measure: noise, models and fusion from recordings.",
-               "sensorchar");
-  app.set_version_flag("--version", "sensorchar " + std::string(libchar::version()));
-  app.require_subcommand(1);
-  app.footer("Begin with: sensorchar inspect LOG");
-  sensorchar::add_verbs(app, session);
-  return sensorchar::run(app, session);
+  return exit_code_of(session, [&] {
+    CommandLine line(
+        "sensorchar",
+        "What sensors do to what they measure: noise, models and fusion from recordings.",
+        "sensorchar " + std::string(libchar::version()),
+        "Begin with: sensorchar inspect LOG");
+    for (const VerbEntry& verb : verbs()) line.add(verb, session);
+    if (const auto text = line.run(session.command)) print(*text);
+  });
 }

@@ -9,46 +9,43 @@
 namespace sensorchar {
 namespace {
 
-void add_time_options(CLI::App& verb, libchar::ReadOptions& options) {
-  add_duration(verb,
-               "--from",
-               options.from_s,
-               "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
-      ->group("Reading");
-  add_duration(verb,
-               "--to",
-               options.to_s,
-               "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
-      ->group("Reading");
-  add_rate(verb,
-           "--rate",
-           options.rate_hz,
-           "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")
-      ->group("Reading");
-  verb.add_option(
+void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
+  verb.add_duration("--from",
+                    options.from_s,
+                    "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
+      .group("Reading");
+  verb.add_duration(
+          "--to",
+          options.to_s,
+          "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
+      .group("Reading");
+  verb.add_rate("--rate",
+                options.rate_hz,
+                "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")
+      .group("Reading");
+  verb.add_text(
           "--time-column",
           options.time_column,
           "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
-      ->type_name("NAME")
-      ->group("Reading");
-  add_choice(verb,
-             "--time-unit",
-             options.time_unit,
-             {"auto", "s", "ms", "us", "ns"},
-             "unit of the time column (default: auto)")
-      ->group("Reading");
+      .value_name("NAME")
+      .group("Reading");
+  verb.add_choice("--time-unit",
+                  options.time_unit,
+                  {"auto", "s", "ms", "us", "ns"},
+                  "unit of the time column (default: auto)")
+      .group("Reading");
 }
 
-void add_dialect_options(CLI::App& verb, libchar::ReadOptions& options) {
+void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  add_choice(verb,
-             "--format",
-             options.format,
-             {"auto", "csv", "npy", "raw"},
-             "format of the log (default: auto)")
-      ->group("Reading");
-  verb.add_option_function<std::string>(
+  verb.add_choice("--format",
+                  options.format,
+                  {"auto", "csv", "npy", "raw"},
+                  "format of the log (default: auto)")
+      .group("Reading");
+  verb.add_parsed(
           "--delimiter",
+          "CHAR",
           [&options](const std::string& text) {
             if (text != "auto" && text != "tab" && text != "space" && text.size() != 1)
               throw libchar::Error({libchar::ErrorKind::usage,
@@ -60,38 +57,33 @@ void add_dialect_options(CLI::App& verb, libchar::ReadOptions& options) {
             options.delimiter = text;
           },
           "between two cells: auto, tab, space, or one character (default: auto)")
-      ->type_name("CHAR")
-      ->group(csv);
-  add_choice(verb,
-             "--decimal",
-             options.decimal,
-             {"auto", "point", "comma"},
-             "decimal sign (default: auto)")
-      ->group(csv);
-  add_choice(verb,
-             "--header",
-             options.header,
-             {"auto", "yes", "no"},
-             "is the first row a header? (default: auto)")
-      ->group(csv);
-  add_choice(verb,
-             "--encoding",
-             options.encoding,
-             {"utf-8", "latin1"},
-             "encoding of the header (default: utf-8)")
-      ->group(csv);
-  add_count(verb, "--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")
-      ->group(csv);
+      .group(csv);
+  verb.add_choice(
+          "--decimal", options.decimal, {"auto", "point", "comma"}, "decimal sign (default: auto)")
+      .group(csv);
+  verb.add_choice("--header",
+                  options.header,
+                  {"auto", "yes", "no"},
+                  "is the first row a header? (default: auto)")
+      .group(csv);
+  verb.add_choice("--encoding",
+                  options.encoding,
+                  {"utf-8", "latin1"},
+                  "encoding of the header (default: utf-8)")
+      .group(csv);
+  verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")
+      .group(csv);
 }
 
 // Flags whose only other value is "no, end with an error", which is the default.
-void add_accepting_flag(CLI::App& verb,
+void add_accepting_flag(VerbOptions& verb,
                         const std::string& name,
                         const std::string& word,
                         bool& value,
                         const std::string& help) {
-  verb.add_option_function<std::string>(
+  verb.add_parsed(
           name,
+          word + "|error",
           [&value, name, word](const std::string& text) {
             if (text != word && text != "error")
               throw libchar::Error({libchar::ErrorKind::usage,
@@ -103,37 +95,36 @@ void add_accepting_flag(CLI::App& verb,
             value = text == word;
           },
           help)
-      ->type_name(word + "|error")
-      ->group("Reading CSV");
+      .group("Reading CSV");
 }
 
 }  // namespace
 
-void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options) {
-  verb.add_option("--names",
-                  options.names,
-                  "names for the channels that are read, in order, where the log has none "
-                  "(default: c0, c1…)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,…")
-      ->group("Reading");
-  verb.add_option(
+void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
+  verb.add_texts("--names",
+                 options.names,
+                 "names for the channels that are read, in order, where the log has none "
+                 "(default: c0, c1…)")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("NAME,…")
+      .group("Reading");
+  verb.add_texts(
           "--units",
           options.units,
           "units of the channels that are read, in order, or one for all (default: as in the log)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("UNIT,…")
-      ->group("Reading");
-  verb.add_option("-c,--channel",
-                  options.channels,
-                  "channel to read, by name or position c0, c1…; repeat it or separate by commas "
-                  "(default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME")
-      ->group("Reading");
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("UNIT,…")
+      .group("Reading");
+  verb.add_texts("-c,--channel",
+                 options.channels,
+                 "channel to read, by name or position c0, c1…; repeat it or separate by commas "
+                 "(default: all)")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("NAME")
+      .group("Reading");
   add_time_options(verb, options);
   add_dialect_options(verb, options);
   add_accepting_flag(verb,
@@ -146,17 +137,17 @@ void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions&
                      "skip",
                      options.skip_repeated_header,
                      "skip: header lines inside the data are skipped (default: error)");
-  verb.add_option_function<std::string>(
+  verb.add_parsed(
           "--threads",
+          "N",
           [&options](const std::string& text) {
             options.threads = static_cast<int>(parse_count(text, 0, 4096));
           },
           "threads for reading; the result does not depend on it (default: 0 = all cores)")
-      ->type_name("N")
-      ->group("Reading");
+      .group("Reading");
   verb.add_flag(
           "--strict", session.strict, "a warning about the input ends the run with exit code 3")
-      ->group("Reading");
+      .group("Reading");
 }
 
 std::string shell_word(std::string_view word) {

@@ -1,14 +1,13 @@
 #pragma once
-#include <CLI/CLI.hpp>
-
-#include "command.hpp"
+#include "command_line.hpp"
 #include "libchar/log/read.hpp"
+#include "session.hpp"
 
 namespace sensorchar {
 
 /// Adds every flag that says how a log is to be read (--channel, --from, --to, --rate,
 /// --time-column, …, --strict). `options` and `session` must live until the verb has run.
-void add_reading_options(CLI::App& verb, Session& session, libchar::ReadOptions& options);
+void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options);
 
 /// The flags that read this log the same way again, what was guessed of it pinned (" --time-column
 /// t --time-unit us").

@@ -1,0 +1,273 @@
+// The only file that includes the parser.
+#include "command_line.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "numbers.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using libchar::Error;
+using libchar::ErrorKind;
+
+// The chosen verb, else the program itself.
+const CLI::App& chosen(const CLI::App& app) {
+  const auto verbs = app.get_subcommands();
+  return verbs.empty() ? app : *verbs.front();
+}
+
+std::string full_name(const CLI::App& app) {
+  const CLI::App& verb = chosen(app);
+  return &verb == &app ? app.get_name() : app.get_name() + " " + verb.get_name();
+}
+
+std::vector<std::string> option_names(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// CLI11 only lists what it could not place; the nearest name is what people need.
+std::string say_unknown(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining(true);
+  const std::string word = rest.empty() ? "" : rest.front();
+  const bool option = word.starts_with('-');
+  std::string line =
+      option ? fmt::format("unknown option \"{}\"", libchar::printable(word, 40))
+             : fmt::format("\"{}\" is one argument too many", libchar::printable(word, 40));
+  if (option) {
+    if (const auto near =
+            libchar::nearest(word.substr(0, word.find('=')), option_names(chosen(app))))
+      line += fmt::format("; did you mean {}?", *near);
+  }
+  return line;
+}
+
+// A word in the place of the verb that is none: its nearest verb, or what to do with a file.
+void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  if (command.size() < 2)
+    throw Error({ErrorKind::usage,
+                 "E0203",
+                 app.get_name(),
+                 fmt::format("which verb? one of {}", fmt::join(verbs, ", ")),
+                 "",
+                 fmt::format("{} --help", app.get_name())});
+  if (command[1].starts_with('-')) {
+    static const std::vector<std::string> kOwn = {"--help", "--version", "-h"};
+    if (std::find(kOwn.begin(), kOwn.end(), command[1]) != kOwn.end()) return;
+    const auto near = libchar::nearest(command[1], kOwn);
+    throw Error({ErrorKind::usage,
+                 "E0204",
+                 app.get_name(),
+                 "unknown option in front of the verb",
+                 command[1],
+                 near ? fmt::format("did you mean {}?", *near) : "options stand behind the verb"});
+  }
+  if (std::find(verbs.begin(), verbs.end(), command[1]) != verbs.end()) return;
+  struct stat status {};
+  std::string hint = fmt::format("the verbs are {}", fmt::join(verbs, ", "));
+  if (const auto near = libchar::nearest(command[1], verbs))
+    hint = fmt::format("did you mean {}?", *near);
+  else if (::stat(command[1].c_str(), &status) == 0)
+    hint = fmt::format("to see what is in this file: {} inspect FILE", app.get_name());
+  throw Error({ErrorKind::usage, "E0203", app.get_name(), "unknown verb", command[1], hint});
+}
+
+}  // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::group(const std::string& heading) {
+  option_->group(heading);
+  return *this;
+}
+
+Option& Option::value_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+Option& Option::separated_by_commas() {
+  option_->delimiter(',');
+  return *this;
+}
+
+Option& Option::one_value_each() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option VerbOptions::add_flag(const std::string& names, bool& value, const std::string& help) {
+  return Option(app_->add_flag(names, value, help));
+}
+
+Option VerbOptions::add_text(const std::string& names,
+                             std::string& value,
+                             const std::string& help) {
+  return Option(app_->add_option(names, value, help));
+}
+
+Option VerbOptions::add_texts(const std::string& names,
+                              std::vector<std::string>& values,
+                              const std::string& help) {
+  return Option(app_->add_option(names, values, help));
+}
+
+Option VerbOptions::add_parsed(const std::string& names,
+                               const std::string& value_name,
+                               std::function<void(const std::string&)> read,
+                               const std::string& help) {
+  const std::string name = names.substr(names.rfind(',') + 1);
+  const auto named = [read = std::move(read), name](const std::string& text) {
+    try {
+      read(text);
+    } catch (const Error& error) {
+      libchar::Problem problem = error.problem();
+      if (problem.where.empty()) problem.where = name;
+      throw Error(problem);
+    }
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(names, named, help);
+  return Option(option->type_name(value_name));
+}
+
+Option VerbOptions::add_number(const std::string& names,
+                               std::optional<double>& value,
+                               const std::string& help,
+                               double lowest,
+                               double highest) {
+  const auto read = [&value, lowest, highest](const std::string& text) {
+    value = parse_number(text, lowest, highest);
+  };
+  return add_parsed(names, "NUMBER", read, help);
+}
+
+Option VerbOptions::add_number(const std::string& names,
+                               double& value,
+                               const std::string& help,
+                               double lowest,
+                               double highest) {
+  const auto read = [&value, lowest, highest](const std::string& text) {
+    value = parse_number(text, lowest, highest);
+  };
+  return add_parsed(names, "NUMBER", read, help);
+}
+
+Option VerbOptions::add_count(const std::string& names,
+                              std::uint64_t& value,
+                              const std::string& help,
+                              std::uint64_t lowest,
+                              std::uint64_t highest) {
+  const auto read = [&value, lowest, highest](const std::string& text) {
+    value = parse_count(text, lowest, highest);
+  };
+  return add_parsed(names, "N", read, help);
+}
+
+Option VerbOptions::add_duration(const std::string& names,
+                                 std::optional<double>& seconds,
+                                 const std::string& help) {
+  const auto read = [&seconds](const std::string& text) { seconds = parse_duration_s(text); };
+  return add_parsed(names, "TIME", read, help);
+}
+
+Option VerbOptions::add_rate(const std::string& names,
+                             std::optional<double>& hertz,
+                             const std::string& help) {
+  const auto read = [&hertz](const std::string& text) { hertz = parse_rate_hz(text); };
+  return add_parsed(names, "RATE", read, help);
+}
+
+Option VerbOptions::add_bytes(const std::string& names,
+                              std::uint64_t& bytes,
+                              const std::string& help) {
+  const auto read = [&bytes](const std::string& text) { bytes = parse_bytes(text); };
+  return add_parsed(names, "BYTES", read, help);
+}
+
+Option VerbOptions::add_choice(const std::string& names,
+                               std::string& value,
+                               std::vector<std::string> words,
+                               const std::string& help) {
+  const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
+  const auto read = [&value, words = std::move(words)](const std::string& text) {
+    if (std::find(words.begin(), words.end(), text) == words.end()) {
+      const auto near = libchar::nearest(text, words);
+      throw Error({ErrorKind::usage,
+                   "E0202",
+                   "",
+                   fmt::format("expected one of {}", fmt::join(words, ", ")),
+                   text,
+                   near ? fmt::format("did you mean {}?", *near) : ""});
+    }
+    value = text;
+  };
+  return add_parsed(names, value_name, read, help);
+}
+
+CommandLine::CommandLine(const std::string& program,
+                         const std::string& what,
+                         const std::string& version,
+                         const std::string& footer)
+    : app_(std::make_unique<CLI::App>(what, program)) {
+  app_->set_version_flag("--version", version);
+  app_->require_subcommand(1);
+  app_->footer(footer);
+}
+
+CommandLine::~CommandLine() = default;
+
+void CommandLine::add(const VerbEntry& entry, Session& session) {
+  CLI::App* sub = app_->add_subcommand(entry.name, entry.what);
+  sub->get_formatter()->column_width(34);
+  sub->add_flag_callback(
+      "-q,--quiet",
+      [&session] { session.terminal.be_quiet(); },
+      "no progress, no warnings, no notes");
+  VerbOptions options(*sub);
+  sub->final_callback(entry.add_options(options, session));
+}
+
+std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {
+  const auto refuse = [&](const char* code, const std::string& what) {
+    const std::string name = full_name(*app_);
+    throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
+  };
+  try {
+    check_verb(*app_, argv);
+    std::vector<std::string> last_first(argv.rbegin(), argv.rend() - 1);
+    app_->parse(last_first);
+  } catch (const CLI::Success& answer) {  // --help, --version
+    std::ostringstream out, err;
+    app_->exit(answer, out, err);
+    return out.str();
+  } catch (const CLI::ExtrasError&) {
+    refuse("E0204", say_unknown(*app_));
+  } catch (const CLI::ParseError& error) {
+    refuse("E0205", error.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace sensorchar

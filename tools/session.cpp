@@ -1,0 +1,111 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/version.hpp"
+
+namespace sensorchar {
+namespace {
+
+using libchar::Error;
+using libchar::ErrorKind;
+
+int exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return 2;
+    case ErrorKind::input:
+      return 3;
+    case ErrorKind::numeric:
+      return 4;
+    case ErrorKind::output:
+      return 5;
+    case ErrorKind::check:
+      return 6;
+  }
+  return 1;
+}
+
+}  // namespace
+
+void report_warnings(Session& session, const libchar::LogInfo& info) {
+  if (info.warnings.empty()) return;
+  session.terminal.warn(info.warnings, info.file);
+  session.warned_files.push_back(info.file);
+}
+
+libchar::Json document_head(const Session& session,
+                            const std::string& format,
+                            const std::vector<const libchar::LogInfo*>& inputs) {
+  libchar::Json head;
+  head["format"] = format;
+  head["version"] = 1;
+  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(libchar::version())}};
+  libchar::Json command = libchar::Json::array();
+  for (const std::string& word : session.command)
+    command.push_back(
+        libchar::first_invalid_utf8(word) == std::string::npos ? word : libchar::printable(word));
+  head["command"] = std::move(command);
+  head["input"] = libchar::Json::array();
+  head["warnings"] = libchar::Json::array();
+  for (const libchar::LogInfo* info : inputs) {
+    libchar::Json hash;
+    if (!info->sha256.empty()) hash = info->sha256;
+    head["input"].push_back(
+        {{"path", libchar::printable(info->file)}, {"sha256", hash}, {"bytes", info->bytes}});
+    for (const libchar::Warning& w : info->warnings.list()) {
+      libchar::Json where = libchar::Json::array();
+      for (const std::string& place : w.places) where.push_back(libchar::printable(place));
+      head["warnings"].push_back({{"file", libchar::printable(info->file)},
+                                  {"code", w.code},
+                                  {"message", libchar::printable(w.message)},
+                                  {"count", w.count},
+                                  {"where", where}});
+    }
+  }
+  return head;
+}
+
+int exit_code_of(Session& session, const std::function<void()>& work) {
+  const auto fail = [&](std::string_view line, int code) {
+    session.terminal.clear();
+    say(line);
+    return code;
+  };
+  try {
+    work();
+    if (session.strict && !session.warned_files.empty())
+      throw Error({ErrorKind::input,
+                   "E0206",
+                   session.warned_files.front(),
+                   "has warnings, and --strict was given",
+                   "",
+                   "leave out --strict to accept what the warnings say"});
+    return 0;
+  } catch (const Error& error) {
+    // An error after a signal is its consequence: the input of a pipe ended early.
+    if (stop_signal() != 0)
+      return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
+    return fail(error.what(), exit_code(error.problem().kind));
+  } catch (const libchar::Cancelled& cancelled) {
+    return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
+  } catch (const StdoutClosed&) {
+    return 0;
+  } catch (const std::bad_alloc&) {
+    return fail(
+        "sensorchar: error E0401: not enough memory for this input; hint: read less of it with "
+        "--channel, --from and --to",
+        4);
+  } catch (const std::exception& error) {
+    return fail(
+        fmt::format("sensorchar: internal error: {}; please report this with the command line",
+                    libchar::printable(error.what())),
+        1);
+  }
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,34 @@
+#pragma once
+// One run of the program, and what every verb does with it.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libchar/core/json.hpp"
+#include "libchar/log/recording.hpp"
+#include "terminal.hpp"
+
+namespace sensorchar {
+
+struct Session {
+  std::vector<std::string> command;  ///< argv as given
+  Terminal terminal;
+  bool strict = false;                    ///< warnings end the run with exit code 3
+  std::vector<std::string> warned_files;  ///< files that had warnings, in order
+};
+
+/// Says the warnings of one input on stderr and remembers them for --strict.
+void report_warnings(Session& session, const libchar::LogInfo& info);
+
+/// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],"warnings":[{code,message,
+/// count,where}…]}: the head of every --json document; the verb adds its own keys behind.
+libchar::Json document_head(const Session& session,
+                            const std::string& format,
+                            const std::vector<const libchar::LogInfo*>& inputs);
+
+/// Runs `work` and turns whatever happened into one message and an exit code: 0 ok, 1 internal, 2
+/// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.
+int exit_code_of(Session& session, const std::function<void()>& work);
+
+}  // namespace sensorchar

@@ -1,0 +1,27 @@
+#pragma once
+// A verb is one file tools/verbs/NAME.cpp that defines
+//     VerbEntry verb_NAME();
+// with `-` in NAME written `_`. Nothing else has to be told: the table of all verbs is made from the
+// names of the files (tools/CMakeLists.txt).
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+#include "session.hpp"
+
+namespace sensorchar {
+
+struct VerbEntry {
+  int place;  ///< verbs stand in this order in the help
+  std::string name;
+  std::string what;  ///< the line in the help
+  /// Adds the verb's options, and returns what runs when it is chosen.
+  std::function<std::function<void()>(VerbOptions&, Session&)> add_options;
+};
+
+/// All verbs, in the order of the help.
+std::vector<VerbEntry> verbs();
+
+}  // namespace sensorchar

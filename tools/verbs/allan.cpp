@@ -1,0 +1,119 @@
+// allan LOG: deviations of every channel as a table or JSON.
+
+#include <fmt/format.h>
+
+#include "analysis_options.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/report/outputs.hpp"
+#include "reading_options.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct AllanVerb {
+  std::string log, output;
+  bool json = false, force = false;
+  AnalysisOptions analysis;
+};
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string as_csv(const Characterization& result) {
+  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms\n";
+  for (const ChannelResult& c : result.channels)
+    for (const AllanPoint& p : c.allan.points)
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
+                          csv_cell(c.channel.name),
+                          csv_cell(c.channel.unit),
+                          shortest(p.tau_s),
+                          shortest(p.deviation),
+                          shortest(p.ci68.low),
+                          shortest(p.ci68.high),
+                          shortest(p.ci95.low),
+                          shortest(p.ci95.high),
+                          shortest(p.edf),
+                          p.terms);
+  return text;
+}
+
+Json as_json(const Session& session, const Characterization& result) {
+  Json document = document_head(session, "allan", {&result.log});
+  std::vector<Channel> channels;
+  std::vector<AllanCurve> curves;
+  for (const ChannelResult& c : result.channels) {
+    channels.push_back(c.channel);
+    curves.push_back(c.allan);
+  }
+  document.update(allan_json(channels, curves));
+  return document;
+}
+
+void run_allan(Session& session, const AllanVerb& verb) {
+  CharacterizeOptions options = finish(verb.analysis);
+  options.wanted = {.quality = false, .allan = true, .spectrum = false, .fit = false};
+  options.fit.second_opinion = false;
+  const Characterization result = characterize(verb.log, options, session.terminal);
+  session.terminal.clear();
+  report_warnings(session, result.log);
+  bool any = false;
+  for (const ChannelResult& c : result.channels) {
+    any = any || !c.allan.points.empty();
+    for (const std::string& problem : c.problems)
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
+    for (const std::string& note : c.allan.notes)
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(note)));
+  }
+  if (!any)
+    throw Error({ErrorKind::numeric,
+                 "E0710",
+                 verb.log,
+                 "no channel gives an Allan deviation",
+                 "",
+                 result.log.time.rate_hz > 0
+                     ? ""
+                     : "the sampling rate is not known: a log without time stamps needs --rate"});
+  const std::string text = verb.json ? dump_json(as_json(session, result)) : as_csv(result);
+  if (verb.output.empty()) {
+    print(text);
+  } else {
+    refuse_same_file(verb.log, verb.output);
+    write_whole_file(verb.output, text, verb.force);
+  }
+}
+
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<AllanVerb>();
+  options
+      .add_text("LOG",
+                verb->log,
+                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .required();
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag("--json", verb->json, "one JSON document instead of CSV");
+  add_reading_options(options, session, verb->analysis.options.reading);
+  add_data_options(options, verb->analysis);
+  add_allan_options(options, verb->analysis);
+  return [&session, verb] { run_allan(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_allan() {
+  return {3,
+          "allan",
+          "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
+          add_options};
+}
+
+}  // namespace sensorchar

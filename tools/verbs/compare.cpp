@@ -1,0 +1,142 @@
+// compare A B: two reports of one scene side by side, and checks for build servers.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/model/model_reader.hpp"
+#include "libchar/replay/comparison.hpp"
+#include "libchar/replay/comparison_check.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/comparison_text.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct CompareVerb {
+  std::string a, b;
+  std::vector<std::string> checks;
+  bool unlike = false, json = false, markdown = false;
+};
+
+std::string number(const AlgorithmSummary* one, double AlgorithmSummary::*member, int digits) {
+  const double value = one != nullptr && one->ran ? one->*member : std::nan("");
+  return std::isfinite(value) ? significant(value, digits) : "–";
+}
+
+std::string bytes(const AlgorithmSummary* one) {
+  return one != nullptr && one->ran && std::isfinite(one->peak_bytes)
+             ? people_bytes(static_cast<std::uint64_t>(one->peak_bytes))
+             : "–";
+}
+
+std::string text_for_people(const Comparison& c) {
+  std::string out =
+      fmt::format("A: {}: {}\nB: {}: {}\n",
+                  printable(c.a.file),
+                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
+                  printable(c.b.file),
+                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
+  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
+  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
+  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
+  std::vector<std::vector<std::string>> rows = {{"algorithm",
+                                                 score + " A",
+                                                 score + " B",
+                                                 "change",
+                                                 "ns/sample A",
+                                                 "B",
+                                                 "change",
+                                                 "memory A",
+                                                 "B",
+                                                 "error of B"}};
+  for (const ComparedAlgorithm& row : c.algorithms) {
+    const std::string where = side_of(row);
+    if (where == "skipped in both") continue;
+    rows.push_back({printable(row.label),
+                    number(row.a, &AlgorithmSummary::rmse, 5),
+                    number(row.b, &AlgorithmSummary::rmse, 5),
+                    people_change(row.rmse_change),
+                    number(row.a, &AlgorithmSummary::ns_per_sample, 3),
+                    number(row.b, &AlgorithmSummary::ns_per_sample, 3),
+                    people_change(row.ns_change),
+                    bytes(row.a),
+                    bytes(row.b),
+                    where.empty() ? std::string(name_of(row.difference)) : where});
+  }
+  return out + "\n" + table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
+}
+
+Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
+  std::vector<LogInfo> files(2);
+  const std::string* paths[] = {&c.a.file, &c.b.file};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string text = read_document_text(*paths[i]);
+    Sha256 hash;
+    hash.update(text);
+    files[i].file = *paths[i];
+    files[i].sha256 = hash.finish();
+    files[i].bytes = text.size();
+  }
+  Json out = document_head(session, "replay-comparison", {&files[0], &files[1]});
+  out.update(comparison_json(c));
+  out["failed"] = Json::array();
+  for (const std::string& sentence : failed) out["failed"].push_back(printable(sentence));
+  return out;
+}
+
+void run_compare(Session& session, const CompareVerb& verb) {
+  std::vector<ComparisonCheck> checks;
+  for (const std::string& text : verb.checks) checks.push_back(parse_comparison_check(text));
+  const Comparison comparison =
+      compare_replays(read_replay_report(verb.a), read_replay_report(verb.b));
+  if (!verb.unlike) refuse_unlike(comparison);
+  std::vector<std::string> failed;
+  for (const ComparisonCheck& check : checks)
+    for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
+  print(verb.json       ? dump_json(document(session, comparison, failed))
+        : verb.markdown ? comparison_markdown(comparison)
+                        : text_for_people(comparison));
+  if (failed.empty()) return;
+  std::string what = failed[0];
+  for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];
+  throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
+}
+
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<CompareVerb>();
+  options.add_text("A", verb->a, "report.json of a replay, or the folder that holds it").required();
+  options.add_text("B", verb->b, "the same of the replay that is held against it").required();
+  options
+      .add_texts("--fail-if",
+                 verb->checks,
+                 "exit code 6 when B is worse than A by more: rmse+5%, ns_per_sample+20%, "
+                 "peak_bytes+10%, regret+0.5% (points); minque:rmse+5% for one algorithm; "
+                 "several times")
+      .value_name("[LABEL:]METRIC+N%")
+      .one_value_each();
+  options.add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
+  const Option json =
+      options.add_flag("--json", verb->json, "one JSON document instead of the table");
+  options.add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table")
+      .excludes(json);
+  return [&session, verb] { run_compare(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_compare() {
+  return {9,
+          "compare",
+          "Two reports of replay side by side; refuses those of unlike scenes",
+          add_options};
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,290 @@
+// sensorchar model FILE…: what a sensor model says, and the same numbers for the programs that
+// consume them (--to NAME).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/export/exports.hpp"
+#include "libchar/model/model_json.hpp"
+#include "libchar/model/model_reader.hpp"
+#include "numbers.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct ModelVerb {
+  std::vector<std::string> files, places;
+  std::string target, output, axes = "auto";
+  ExportOptions options;
+  bool list = false, force = false, json = false;
+};
+
+struct ReadModels {
+  std::vector<SensorModel> models;
+  std::vector<LogInfo> files;
+};
+
+ReadModels read_all(const ModelVerb& verb) {
+  ReadModels read;
+  for (const std::string& file : verb.files) {
+    const std::vector<SensorModel> models = read_model_list(file);
+    read.models.insert(read.models.end(), models.begin(), models.end());
+    LogInfo info;
+    info.file = file;
+    const std::string text = read_document_text(file);
+    Sha256 hash;
+    hash.update(text);
+    info.sha256 = hash.finish();
+    info.bytes = text.size();
+    read.files.push_back(std::move(info));
+  }
+  return read;
+}
+
+AxisChoice axis_choice(const std::string& word) {
+  static constexpr std::pair<std::string_view, AxisChoice> kWords[] = {{"max", AxisChoice::max},
+                                                                       {"rms", AxisChoice::rms},
+                                                                       {"x", AxisChoice::x},
+                                                                       {"y", AxisChoice::y},
+                                                                       {"z", AxisChoice::z}};
+  for (const auto& [name, choice] : kWords)
+    if (name == word) return choice;
+  return AxisChoice::automatic;
+}
+
+AxisOverrides overrides(const std::vector<std::string>& places) {
+  AxisOverrides out;
+  for (const std::string& text : places) {
+    const std::size_t sign = text.rfind('=');
+    if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
+      throw Error({ErrorKind::usage,
+                   "E0581",
+                   "--axis",
+                   "expected CHANNEL=PLACE",
+                   text,
+                   "such as --axis imu_3=gx"});
+    out.emplace_back(text.substr(0, sign), text.substr(sign + 1));
+  }
+  return out;
+}
+
+// What a person wants to know of a term: its figure in the habitual units, sides said.
+std::string in_other_words(const Coefficient& c, std::size_t t, const std::string& unit) {
+  std::string text;
+  for (const HabitualValue& habit : habitual_units(kTermNames[t].key, unit))
+    text += fmt::format("{}{}{} {}{}",
+                        text.empty() ? "" : ", ",
+                        c.value ? "" : "≤ ",
+                        significant(habit.factor * c.value.value_or(c.upper95.value_or(0)), 4),
+                        habit.symbol,
+                        habit.name.find("floor") != std::string::npos       ? " floor"
+                        : habit.name.find("one-sided") != std::string::npos ? " one-sided"
+                        : habit.name.find("two-sided") != std::string::npos ? " two-sided"
+                                                                            : "");
+  return text;
+}
+
+std::vector<std::string> term_row(const Coefficient& c, std::size_t t, const std::string& unit) {
+  const bool interval = c.value && c.status != Status::given && c.ci95.high > 0;
+  std::string status(name_of(c.status));
+  std::replace(status.begin(), status.end(), '_', ' ');
+  return {fmt::format("{} {}", kTermNames[t].key, kTermNames[t].letter),
+          c.value     ? significant(*c.value, 5)
+          : c.upper95 ? "≤ " + significant(*c.upper95, 3)
+                      : "–",
+          interval ? fmt::format("{} … {}", significant(c.ci95.low, 4), significant(c.ci95.high, 4))
+                   : "",
+          term_unit(kTermNames[t].key, printable(unit)),
+          status,
+          c.value || c.upper95 ? in_other_words(c, t, unit) : ""};
+}
+
+std::string summary(const SensorModel& m) {
+  const std::string axis = axis_of(m);
+  std::string text = fmt::format("{}{}: {}{}, {}, {}\n",
+                                 printable(m.channel),
+                                 m.unit.empty() ? "" : fmt::format(" [{}]", printable(m.unit)),
+                                 printable(kind_of(m)),
+                                 axis.empty() ? "" : " " + axis,
+                                 m.rate_hz > 0 ? significant(m.rate_hz, 6) + " Hz" : "rate unknown",
+                                 printable(m.obtained));
+  std::vector<std::vector<std::string>> rows = {
+      {"term", "value", "95 % interval", "unit", "status", "in other words"}};
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    if (m.noise[t].status == Status::not_fitted && !m.noise[t].value) continue;
+    rows.push_back(term_row(m.noise[t], t, m.unit));
+  }
+  text += rows.size() > 1 ? table(rows, "  ", true) : "  no noise\n";
+  text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
+  if (m.bandwidth_hz)
+    text += fmt::format("  low-pass corner {} Hz\n", significant(*m.bandwidth_hz, 4));
+  if (m.resolution) text += fmt::format("  resolution {}\n", significant(*m.resolution, 4));
+  if (m.tau_max_s > 0)
+    text += fmt::format("  valid for averaging times of {} s … {} s\n",
+                        significant(m.tau_min_s, 3),
+                        significant(m.tau_max_s, 3));
+  for (const std::string& remark : m.remarks) text += fmt::format("  {}\n", printable(remark));
+  return text;
+}
+
+Json head_of(const Session& session, const char* format, const std::vector<LogInfo>& files) {
+  std::vector<const LogInfo*> inputs;
+  for (const LogInfo& info : files) inputs.push_back(&info);
+  return document_head(session, format, inputs);
+}
+
+void print_targets(const Session& session, bool json) {
+  if (json) {
+    Json document = head_of(session, "model-targets", {});
+    document["targets"] = Json::array();
+    for (const ExportTarget& t : export_targets())
+      document["targets"].push_back({{"name", t.name},
+                                     {"title", t.title},
+                                     {"convention", t.convention},
+                                     {"file", t.file},
+                                     {"needs", needs_text(t.needs)}});
+    return print(dump_json(document));
+  }
+  std::string text;
+  for (const ExportTarget& t : export_targets())
+    text += fmt::format("{:<13} {} ({}; needs {})\n{:<13} {}\n",
+                        t.name,
+                        t.title,
+                        t.file,
+                        needs_text(t.needs),
+                        "",
+                        t.convention);
+  print(text);
+}
+
+void deliver(const ModelVerb& verb, const std::string& text) {
+  if (verb.output.empty()) return print(text);
+  for (const std::string& file : verb.files) refuse_same_file(file, verb.output);
+  write_whole_file(verb.output, text, verb.force);
+}
+
+void run_export(Session& session, const ModelVerb& verb) {
+  const ExportTarget& target = find_export_target(verb.target);
+  const ReadModels read = read_all(verb);
+  const Export made = export_models(target, read.models, verb.options);
+  if (!verb.json) {
+    deliver(verb, made.text);
+    for (const std::string& note : made.notes) session.terminal.note("note: " + printable(note));
+    return;
+  }
+  Json document = head_of(session, "model-export", read.files);
+  document["target"] = target.name;
+  document["convention"] = target.convention;
+  document["file"] = verb.output.empty() ? std::string(target.file) : printable(verb.output);
+  document["notes"] = made.notes;
+  document["text"] = made.text;
+  if (!verb.output.empty()) deliver(verb, made.text);
+  print(dump_json(document));
+}
+
+void run_summary(const Session& session, const ModelVerb& verb) {
+  const ReadModels read = read_all(verb);
+  std::string text;
+  if (verb.json) {
+    Json document = head_of(session, "models", read.files);
+    document["models"] = Json::array();
+    for (const SensorModel& m : read.models) document["models"].push_back(model_json(m));
+    text = dump_json(document);
+  } else {
+    for (const SensorModel& m : read.models) text += (text.empty() ? "" : "\n") + summary(m);
+  }
+  deliver(verb, text);
+}
+
+void run_model(Session& session, ModelVerb& verb) {
+  if (verb.list) return print_targets(session, verb.json);
+  if (verb.files.empty())
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "model",
+                 "FILE is required",
+                 "",
+                 "sensorchar model --list names the targets"});
+  verb.options.axes = axis_choice(verb.axes);
+  verb.options.axis = overrides(verb.places);
+  if (verb.target.empty()) return run_summary(session, verb);
+  run_export(session, verb);
+}
+
+void add_choices(VerbOptions& sub, ModelVerb& verb) {
+  ExportOptions& options = verb.options;
+  constexpr double kSmall = 1e-300;
+  sub.add_choice(
+      "--axes",
+      verb.axes,
+      {"auto", "max", "rms", "x", "y", "z"},
+      "one number for three axes: the largest, their root mean square, or one axis (auto: each "
+      "its own where the consumer takes three, else max)");
+  sub.add_texts(
+         "--axis",
+         verb.places,
+         "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
+         "a, m alone for all three axes")
+      .value_name("CHANNEL=PLACE")
+      .one_value_each();
+  sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
+  sub.add_number(
+      "--floor-tau",
+      options.floor_tau_s,
+      "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from "
+      "the model)",
+      kSmall);
+  sub.add_number("--correlation-time",
+                 options.correlation_s,
+                 "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)",
+                 kSmall);
+  sub.add_number("--airsim-tau",
+                 options.bias_tau_s,
+                 "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
+                 kSmall);
+  sub.add_number("--filter-step",
+                 options.filter_step_s,
+                 "px4: step of the filter's prediction in s (0.01)",
+                 kSmall);
+  sub.add_number(
+      "--gravity", options.gravity, "vins, gtsam: gravity in m/s² (not written)", kSmall);
+  sub.add_text("--topic", options.topic, "kalibr, openvins: ROS topic (/imu0)").value_name("NAME");
+  sub.add_flag("--older",
+               options.older,
+               "basalt: one number in place of three; orbslam3: whole rate, no File.version");
+}
+
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<ModelVerb>();
+  options.add_texts(
+      "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
+  options.add_text("--to", verb->target, "target; --list names them").value_name("NAME");
+  options.add_flag("--list", verb->list, "the targets, each with its convention");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag("--json", verb->json, "one JSON document instead of text");
+  add_choices(options, *verb);
+  return [&session, verb] { run_model(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_model() {
+  return {6,
+          "model",
+          "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
+          add_options};
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,312 @@
+// psd LOG: power spectra of every channel as a table or JSON, or the lines in them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/report/escape.hpp"
+#include "libchar/report/json_pieces.hpp"
+#include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/window.hpp"
+#include "numbers.hpp"
+#include "reading_options.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct PsdVerb {
+  std::string log, output, segment, sides = "one", scaling = "psd", window = "hann",
+                                    detrend = "constant";
+  double overlap = 0.5;
+  std::uint64_t log_bins = 0;
+  bool json = false, force = false, lines = false;
+  ReadOptions reading;
+};
+
+struct ChannelSpectrum {
+  Channel channel;
+  Spectrum spectrum;
+  std::vector<SpectralLine> lines;
+};
+
+struct Result {
+  LogInfo info;
+  std::vector<ChannelSpectrum> channels;
+};
+
+WelchOptions welch_options(const PsdVerb& verb) {
+  WelchOptions options;
+  options.window = *window_named(verb.window);
+  options.overlap = verb.overlap;
+  options.sides = verb.sides == "two" ? Sides::two : Sides::one;
+  options.scaling = verb.scaling == "ps"    ? Scaling::ps
+                    : verb.scaling == "lsd" ? Scaling::lsd
+                    : verb.scaling == "ls"  ? Scaling::ls
+                                            : Scaling::psd;
+  options.detrend = verb.detrend == "none"     ? Detrend::none
+                    : verb.detrend == "linear" ? Detrend::linear
+                                               : Detrend::constant;
+  options.threads = verb.reading.threads;
+  return options;
+}
+
+// "4096" counts samples; "20s" is a time and needs the rate.
+std::uint64_t segment_of(const std::string& text, double rate_hz) {
+  if (std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+    return parse_count(text, 8);
+  const double seconds = parse_duration_s(text);
+  if (!(rate_hz > 0))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "--segment",
+                 "a time needs the sampling rate, which this log does not say",
+                 text,
+                 "give --rate, or a number of samples"});
+  const double samples = std::round(seconds * rate_hz);
+  if (!(samples >= 8 && samples < 1e12))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "--segment",
+                 fmt::format("at {} Hz this is {} samples, and a segment needs at least 8",
+                             significant(rate_hz, 6),
+                             significant(samples, 6)),
+                 text,
+                 ""});
+  return static_cast<std::uint64_t>(samples);
+}
+
+void check_rate(const LogInfo& info) {
+  if (info.time.rate_hz > 0) return;
+  throw Error({ErrorKind::numeric,
+               "",
+               info.file,
+               "the sampling rate is not known",
+               "",
+               "a log without time stamps needs --rate"});
+}
+
+// A channel that gives no spectrum is named and left out; the others are still of use.
+template <typename Make>
+void try_channel(Session& session, Result& result, const Channel& channel, const Make& make) {
+  try {
+    result.channels.push_back({channel, make(), {}});
+    for (const std::string& note : result.channels.back().spectrum.notes)
+      session.terminal.note(fmt::format("{}: {}", printable(channel.name), note));
+  } catch (const Error& error) {
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    session.terminal.note(fmt::format("{}: {}", printable(channel.name), error.what()));
+  }
+}
+
+// One segment a channel in memory, however long the log is.
+class StreamSink : public BlockSink {
+ public:
+  StreamSink(const PsdVerb& verb, WelchOptions options) : verb_(verb), options_(options) {}
+  void begin(const LogInfo& so_far) override {
+    options_.segment = segment_of(verb_.segment, so_far.time.rate_hz);
+    for (std::size_t c = 0; c < so_far.channels.size(); ++c) streams_.emplace_back(options_);
+  }
+  void block(const SampleBlock& samples) override {
+    for (std::size_t c = 0; c < streams_.size(); ++c)
+      streams_[c].push({samples.channels[c], samples.rows});
+  }
+  const std::vector<WelchStream>& streams() const { return streams_; }
+
+ private:
+  const PsdVerb& verb_;
+  WelchOptions options_;
+  std::vector<WelchStream> streams_;
+};
+
+Result streamed(Session& session, const PsdVerb& verb) {
+  StreamSink sink(verb, welch_options(verb));
+  Result result;
+  result.info = read_log(verb.log, verb.reading, sink, session.terminal);
+  check_rate(result.info);
+  for (std::size_t c = 0; c < sink.streams().size(); ++c)
+    try_channel(session, result, result.info.channels[c], [&] {
+      return sink.streams()[c].finish(result.info.time.rate_hz);
+    });
+  return result;
+}
+
+// Segments of a quarter of the record: the record has to be there first. Where one channel needs
+// shorter segments than another, all get the shortest, so that they share one frequency axis.
+Result whole(Session& session, const PsdVerb& verb) {
+  const Recording recording = read_recording(verb.log, verb.reading, session.terminal);
+  check_rate(recording.info);
+  WelchOptions options = welch_options(verb);
+  const auto spectra = [&] {
+    Result result;
+    result.info = recording.info;
+    for (std::size_t c = 0; c < recording.samples.size(); ++c)
+      try_channel(session, result, recording.info.channels[c], [&] {
+        return welch(recording.channel(c), recording.info.time.rate_hz, options);
+      });
+    return result;
+  };
+  Result result = spectra();
+  std::uint64_t shortest_segment = 0;
+  bool alike = true;
+  for (const ChannelSpectrum& c : result.channels) {
+    alike = alike && c.spectrum.segment == result.channels.front().spectrum.segment;
+    if (shortest_segment == 0 || c.spectrum.segment < shortest_segment)
+      shortest_segment = c.spectrum.segment;
+  }
+  if (alike) return result;
+  session.terminal.note(
+      fmt::format("all channels: segments of {} samples, the shortest that one of them needs",
+                  shortest_segment));
+  options.segment = shortest_segment;
+  return spectra();
+}
+
+std::string spectra_csv(const Result& result) {
+  std::string text = "frequency_hz";
+  for (const ChannelSpectrum& c : result.channels)
+    text += "," + csv_cell(fmt::format(
+                      "{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
+  text += "\n";
+  const std::vector<double>& frequency = result.channels.front().spectrum.frequency_hz;
+  for (std::size_t k = 0; k < frequency.size(); ++k) {
+    text += shortest(frequency[k]);
+    for (const ChannelSpectrum& c : result.channels) text += "," + shortest(c.spectrum.value[k]);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string lines_csv(const Result& result) {
+  std::string text = "channel,unit,frequency_hz,amplitude,excess,width_hz\n";
+  for (const ChannelSpectrum& c : result.channels)
+    for (const SpectralLine& line : c.lines)
+      text += fmt::format("{},{},{},{},{},{}\n",
+                          csv_cell(c.channel.name),
+                          csv_cell(c.channel.unit),
+                          shortest(line.frequency_hz),
+                          shortest(line.amplitude),
+                          shortest(line.excess),
+                          shortest(line.width_hz));
+  return text;
+}
+
+Json channel_json(const PsdVerb& verb, const ChannelSpectrum& c) {
+  Json out = spectrum_channel_json(c.channel, c.spectrum, nullptr);
+  if (verb.lines) {
+    out["lines"] = Json::array();
+    for (const SpectralLine& line : c.lines)
+      out["lines"].push_back({{"frequency_hz", line.frequency_hz},
+                              {"amplitude", line.amplitude},
+                              {"excess", line.excess},
+                              {"width_hz", line.width_hz}});
+  }
+  return out;
+}
+
+Json as_json(const Session& session, const PsdVerb& verb, const Result& result) {
+  Json document = document_head(session, "spectrum", {&result.info});
+  document["sides"] = verb.sides;
+  document["scaling"] = verb.scaling;
+  document["window"] = verb.window;
+  document["overlap"] = verb.overlap;
+  document["detrend"] = verb.detrend;
+  document["rate_hz"] = result.info.time.rate_hz;
+  document["channels"] = Json::array();
+  for (const ChannelSpectrum& c : result.channels)
+    document["channels"].push_back(channel_json(verb, c));
+  return document;
+}
+
+void write_result(const PsdVerb& verb, const std::string& text) {
+  if (verb.output.empty()) return print(text);
+  refuse_same_file(verb.log, verb.output);
+  write_whole_file(verb.output, text, verb.force);
+}
+
+void run_psd(Session& session, const PsdVerb& verb) {
+  Result result = verb.segment.empty() ? whole(session, verb) : streamed(session, verb);
+  session.terminal.clear();
+  report_warnings(session, result.info);
+  if (result.channels.empty())
+    throw Error({ErrorKind::numeric,
+                 "",
+                 verb.log,
+                 "no channel gives a spectrum",
+                 "",
+                 verb.segment.empty() ? "" : "try a shorter --segment"});
+  for (ChannelSpectrum& c : result.channels) {
+    if (verb.lines) c.lines = find_lines(c.spectrum);
+    if (verb.log_bins > 0) c.spectrum = log_binned(c.spectrum, verb.log_bins);
+  }
+  write_result(verb,
+               verb.json    ? dump_json(as_json(session, verb, result))
+               : verb.lines ? lines_csv(result)
+                            : spectra_csv(result));
+}
+
+std::function<void()> add_options(VerbOptions& options, Session& session) {
+  auto verb = std::make_shared<PsdVerb>();
+  options
+      .add_text("LOG",
+                verb->log,
+                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .required();
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  options.add_flag(
+      "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
+  options.add_flag(
+      "--lines", verb->lines, "list the spectral lines (with --json: beside the spectra)");
+  options.add_choice("--sides", verb->sides, {"one", "two"}, "one- or two-sided (default: one)");
+  options.add_choice("--scaling",
+                     verb->scaling,
+                     {"psd", "ps", "lsd", "ls"},
+                     "density U^2/Hz, power U^2, and their roots (default: psd)");
+  options
+      .add_text("--segment",
+                verb->segment,
+                "samples per segment, or a time such as 20s; a log of any length then streams "
+                "through (default: a quarter of the record)")
+      .value_name("N|TIME");
+  options.add_number(
+      "--overlap", verb->overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  options.add_choice("--window",
+                     verb->window,
+                     {"hann", "rectangular", "blackman_harris", "flat_top", "hann_nonzero"},
+                     "window (default: hann)");
+  options.add_choice("--detrend",
+                     verb->detrend,
+                     {"none", "constant", "linear"},
+                     "what is removed from each segment (default: constant)");
+  options.add_count(
+      "--log-bins",
+      verb->log_bins,
+      "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
+      0,
+      1000000);
+  add_reading_options(options, session, verb->reading);
+  return [&session, verb] { run_psd(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_psd() {
+  return {4, "psd", "power spectrum of every channel (Welch), as CSV or JSON", add_options};
+}
+
+}  // namespace sensorchar
