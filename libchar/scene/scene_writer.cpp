@@ -12,7 +12,7 @@
 #include "libchar/core/version.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/scene/scene.hpp"
-#include "libchar/scene/scene_paths.hpp"
+#include "libchar/scene/detail/scene_paths.hpp"
 
 namespace libchar {
 namespace {

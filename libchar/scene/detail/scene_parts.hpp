@@ -7,7 +7,7 @@
 
 #include "libchar/core/schema.hpp"
 #include "libchar/scene/scene.hpp"
-#include "libchar/scene/scene_paths.hpp"
+#include "libchar/scene/detail/scene_paths.hpp"
 
 namespace libchar {
 

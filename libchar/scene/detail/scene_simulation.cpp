@@ -8,7 +8,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
-#include "libchar/scene/scene_signal.hpp"
+#include "libchar/scene/detail/scene_signal.hpp"
 
 namespace libchar {
 namespace {
