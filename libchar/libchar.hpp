@@ -35,6 +35,7 @@
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/inspection.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_file.hpp"

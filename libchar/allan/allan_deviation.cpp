@@ -1,16 +1,16 @@
 // The Allan family by differences of the phase x (cumulated rate), step m, tau = m dt, n terms
 // (NIST SP 1065, 5):
 //
-//   ADEV, OADEV   sum (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 tau^2 n)          i = 0, m, 2m, …  /
-//   every i HDEV, OHDEV   sum (x_{i+3m} - 3 x_{i+2m} + 3 x_{i+m} - x_i)^2 / (6 tau^2 n)   likewise
-//   MDEV          sum (x averaged over m points, then the second difference)^2 / (2 tau^2 n) =
-//   third difference of the sum W
-//                 of x, divided by m:  sum (W_{i+3m} - 3 W_{i+2m} + 3 W_{i+m} - W_i)^2 / (2 m^2
-//                 tau^2 n)
+//   ADEV, OADEV   sum (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 tau^2 n)
+//                 i = 0, m, 2m, … / every i
+//   HDEV, OHDEV   sum (x_{i+3m} - 3 x_{i+2m} + 3 x_{i+m} - x_i)^2 / (6 tau^2 n)
+//                 likewise
+//   MDEV          sum (x averaged over m points, then the second difference)^2 / (2 tau^2 n)
+//                 = third difference of the sum W of x, divided by m:
+//                 sum (W_{i+3m} - 3 W_{i+2m} + 3 W_{i+m} - W_i)^2 / (2 m^2 tau^2 n)
 //   TDEV          tau MDEV / sqrt(3)
 //   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
-//   ends by reflection about
-//                 the end point; that is, the rate is mirrored
+//                 ends by reflection about the end point; that is, the rate is mirrored
 //
 // A term that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts,
 // added in order, so that the result does not depend on the number of threads.

@@ -33,8 +33,8 @@ struct AllanPoint {
   double tau_s = 0;
   double deviation = 0;
   std::uint64_t terms = 0;  ///< second (third) differences that were averaged
-  double edf =
-      0;  ///< equivalent degrees of freedom for the mixture given to `add_intervals`; 0 before
+  /// equivalent degrees of freedom for the mixture given to `add_intervals`; 0 before
+  double edf = 0;
   Interval ci68, ci95;   ///< equal-tailed chi-square, at confidence 68.27 % and 95 %
   bool reliable = true;  ///< edf >= 5
 };
@@ -44,8 +44,8 @@ struct AllanCurve {
   double dt_s = 1;
   std::uint64_t samples = 0;  ///< rate samples, missing ones included
   std::uint64_t missing = 0;
-  std::uint64_t stride_divisor =
-      0;  ///< 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used
+  /// 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used
+  std::uint64_t stride_divisor = 0;
   std::vector<AllanPoint> points;
   std::vector<std::string> notes;  ///< what was approximated or left out
 };
@@ -54,8 +54,8 @@ struct AllanOptions {
   DeviationType type = DeviationType::oadev;
   DataKind data = DataKind::rate;
   TauGrid grid = TauGrid::octave;
-  std::vector<double>
-      taus_s;  ///< for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
+  /// for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
+  std::vector<double> taus_s;
   double tau_min_s = 0;  ///< 0 = dt
   double tau_max_s = 0;  ///< 0 = T/2 (each type's own limit is applied as well)
   int threads = 0;       ///< 0 = all cores; the result does not depend on it

@@ -2,9 +2,10 @@
 // to nu = 1e6. Beyond that Boost 1.74 loses digits and then gives up (1e6 terms of a series), while
 // two expansions are exact to a rounding there:
 //   quantile  Cornish & Fisher:  nu + sqrt(2 nu) z + 2(z^2 - 1)/3 + (z^3 - 7z)/(9 sqrt(2 nu)) - …
-//   tail      Temme:             erfc(eta sqrt(a/2))/2 + exp(-a eta^2/2)/sqrt(2 pi a) (-1/3 +
-//   eta/12 - 2 eta^2/135 …),
+//   tail      Temme:             erfc(eta sqrt(a/2))/2
+//                                + exp(-a eta^2/2)/sqrt(2 pi a) (-1/3 + eta/12 - 2 eta^2/135 …),
 //                                a = nu/2, eta^2/2 = mu - ln(1 + mu), mu = x/nu - 1
+//   density   Stirling:          exp(-a eta^2/2 - 1/(12 a)) / (2 (1 + mu) sqrt(2 pi a))
 
 #include "libchar/core/chi_square.hpp"
 

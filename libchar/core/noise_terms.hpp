@@ -11,8 +11,8 @@ enum class Term : std::size_t { white = 0, flicker = 1, walk = 2, quantization =
 inline constexpr std::size_t kTerms = 5;
 
 struct TermName {
-  std::string_view
-      key;  ///< in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
+  /// in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
+  std::string_view key;
   std::string_view letter;  ///< in text for people, beside the long name: Q, B, K, Qz, R
   std::string_view ieee;    ///< IEEE 952 letter: N, B, K, Q, R
 };

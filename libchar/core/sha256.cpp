@@ -89,11 +89,11 @@ Sha256::~Sha256() = default;
 Sha256::Sha256(Sha256&&) noexcept = default;
 Sha256& Sha256::operator=(Sha256&&) noexcept = default;
 
-bool Sha256::goes_along() const {
+bool Sha256::can_interleave() const {
   return state_->context == nullptr;
 }
 
-Sha256Blocks* Sha256::along(std::string_view bytes) {
+Sha256Blocks* Sha256::begin_interleaved(std::string_view bytes) {
   State& s = *state_;
   s.length += bytes.size();
   if (s.in_pending > 0) {
@@ -108,7 +108,7 @@ Sha256Blocks* Sha256::along(std::string_view bytes) {
   return &s.blocks;
 }
 
-void Sha256::settle() {
+void Sha256::finish_interleaved() {
   State& s = *state_;
   take_all(s.blocks);
   const auto rest = static_cast<std::size_t>(s.blocks.end - s.blocks.next);
@@ -123,8 +123,8 @@ void Sha256::update(std::string_view bytes) {
     EVP_DigestUpdate(state_->context, bytes.data(), bytes.size());
     return;
   }
-  along(bytes);
-  settle();
+  begin_interleaved(bytes);
+  finish_interleaved();
 }
 
 std::string Sha256::finish() {

@@ -17,12 +17,12 @@ class Sha256 {
   Sha256& operator=(Sha256&&) noexcept;
   void update(std::string_view bytes);
   /// Can another loop hash blocks beside its own work (sha256_blocks.hpp)?
-  bool goes_along() const;
+  bool can_interleave() const;
   /// The stream's next bytes, for such a loop: it takes as many of the whole blocks as it likes,
-  /// and `settle` the rest. The bytes must stay where they are until then. Only where
-  /// `goes_along()`.
-  Sha256Blocks* along(std::string_view bytes);
-  void settle();
+  /// and `finish_interleaved` the rest. The bytes must stay where they are until then. Only where
+  /// `can_interleave()`.
+  Sha256Blocks* begin_interleaved(std::string_view bytes);
+  void finish_interleaved();
   /// 64 lower-case hexadecimal digits. Ends the stream.
   std::string finish();
 

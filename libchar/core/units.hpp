@@ -25,8 +25,8 @@ enum class Quantity {
 struct Unit {
   std::string symbol;  ///< canonical spelling, e.g. "deg/s"
   Quantity quantity = Quantity::ratio;
-  double to_si =
-      1;  ///< multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
+  /// multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
+  double to_si = 1;
 };
 
 /// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as people write

@@ -2,9 +2,10 @@
 // is known of its scatter decides the weights and what the intervals mean, and a sentence says so:
 //   relative_sd given       weights 1/sd^2, chi-square tells whether they were right;
 //   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted
-//   mixture, refined three times); neither                 equal relative errors, estimated from
-//   the scatter about the fit; neighbouring residuals that go the
-//                           same way count as fewer points, n (1-r)/(1+r).
+//                           mixture, refined three times);
+//   neither                 equal relative errors, estimated from the scatter about the fit;
+//                           neighbouring residuals that go the same way count as fewer points,
+//                           n (1-r)/(1+r).
 #include "libchar/fit/curve_fit.hpp"
 
 #include <fmt/format.h>

@@ -49,14 +49,14 @@ struct NoiseFit {
   std::optional<double> bandwidth_hz;  ///< corner of the first-order low-pass, when it was needed
   std::optional<Interval> bandwidth_ci95;
   Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
-  std::array<std::array<double, kTerms>, kTerms>
-      covariance{};  ///< of ln(theta) of the terms with a value
+  /// of ln(theta) of the terms with a value
+  std::array<std::array<double, kTerms>, kTerms> covariance{};
   Goodness goodness;
   std::optional<SecondOpinion> second_opinion;
   std::vector<Remedy> remedies;
   std::vector<FitResidual> residuals;
-  std::vector<std::string>
-      sentences;  ///< for people: "the record cannot tell bias instability from random walk…"
+  /// for people: "the record cannot tell bias instability from random walk…"
+  std::vector<std::string> sentences;
   std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …
   bool converged = true;
   int iterations = 0;
@@ -73,8 +73,8 @@ struct FitOptions {
       true,
       false,
       false};  ///< offered from the start; quantization and ramp are added on alarm
-  bool remedies =
-      true;  ///< automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
+  /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
+  bool remedies = true;
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first

@@ -1,8 +1,8 @@
 // Squared DCT-II coefficients as log bins. A record of at most `block` samples: one DCT, k = 1..N-1
 // (exact). A longer one:
-//   above f_split = 15.5/(2 block dt):  DCT of each block, pooled over blocks, k >= 16, and of the
-//   tail; below f_split:                      DCT of the series of means of block/64 samples over
-//   the whole segment.
+//   above f_split = 15.5/(2 block dt):  DCT of each block, pooled over blocks, k >= 16, and of the tail;
+//   below f_split:                      DCT of the series of means of block/64 samples over the whole
+//                                       segment.
 // Both levels use their exact expectations (dct_means). Sixteen coefficients of every block are
 // left to the second level, so that neighbouring blocks stay uncorrelated under flicker and walk
 // and the slow noise is seen with the full resolution of the segment; white noise is exactly
@@ -190,9 +190,9 @@ struct PowerBinner::State {
   std::vector<double> taken_power;   ///< the same over those transformed elsewhere
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
-  std::vector<double>
-      means;         ///< sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  double shift = 0;  ///< first sample of the segment
+  /// sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
+  std::vector<double> means;
+  double shift = 0;                 ///< first sample of the segment
   std::array<double, 8> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<Power> done;  ///< of finished segments (their tails and series of means)

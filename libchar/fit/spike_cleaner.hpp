@@ -30,8 +30,8 @@ class SpikeCleaner {
   std::size_t pilot_;
   double limit_ = -1;  ///< < 0: the pilot is still being filled
   std::uint64_t count_ = 0;
-  bool has_before_ =
-      false;  ///< held_[0] is the neighbour before the next sample, given out already
+  /// held_[0] is the neighbour before the next sample, given out already
+  bool has_before_ = false;
   std::vector<double> held_, ready_;
 };
 

@@ -9,20 +9,19 @@
 //   };
 //
 // It may also have
-//   static constexpr std::array options{Option{…}…};   and the constructor A(const Given&, const
-//                                                      Settings&)
-//   void learn(const Sample& y, const Sample& truth);  one instant of the learning window
-//                                                      (card.needs says so)
-//   void skip(const Sample& y);                        instead of it where the truth is missing (or
-//                                                      a sample, unless the card accepts that):
-//                                                      for those that count instants or follow time
-//   void finish_learning();                            after the last one; throws Error(numeric)
-//                                                      when nothing can be learnt
-//   Eigen::MatrixXd weights() const;                   n x r, as they stand now
-//   Eigen::VectorXd variances() const;                 of a sample's noise, channel by channel, as
-//                                                      estimated now
+//   static constexpr std::array options{Option{…}…};
+//       and the constructor A(const Given&, const Settings&)
+//   void learn(const Sample& y, const Sample& truth);
+//       one instant of the learning window (card.needs says so)
+//   void skip(const Sample& y);
+//       instead of it where the truth is missing (or a sample, unless the card accepts that): for
+//       those that count instants or follow time
+//   void finish_learning();
+//       after the last one; throws Error(numeric) when nothing can be learnt
+//   Eigen::MatrixXd weights() const;      n x r, as they stand now
+//   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
-//   void remarks(Warnings&) const;                     what the reader of the result must know
+//   void remarks(Warnings&) const;        what the reader of the result must know
 // and is known to the engine by one line in registry.cpp.
 
 #include <Eigen/Core>
@@ -77,11 +76,11 @@ struct Needs {
   Eigen::Index more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
   std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
   bool reference = false;             ///< learns from a reference, in the learning window
-  bool reference_throughout =
-      false;                  ///< looks at the reference of the run itself: a bound, not a method
+  /// looks at the reference of the run itself: a bound, not a method
+  bool reference_throughout = false;
   bool noise_levels = false;  ///< a noise variance for each channel
-  bool observation_matrix =
-      false;  ///< takes any H (otherwise every channel must see the one input with gain one)
+  /// takes any H (otherwise every channel must see the one input with gain one)
+  bool observation_matrix = false;
   bool accepts_missing = false;   ///< otherwise an instant with a missing sample has no estimate
   bool fault_free_start = false;  ///< a stretch without faults at the beginning of the run
   bool rate = false;              ///< the sampling rate
@@ -95,8 +94,8 @@ struct Card {
   std::string_view source;      ///< where the equations stand
   std::string_view complexity;  ///< of a step
   Needs needs = {};
-  std::string_view learning_complexity =
-      "";  ///< of one learning instant; "" when nothing is learnt
+  /// of one learning instant; "" when nothing is learnt
+  std::string_view learning_complexity = "";
 };
 
 /// Empty: the algorithm can run on this. Else the sentence that a report prints.

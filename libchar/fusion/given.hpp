@@ -17,19 +17,19 @@ struct TiltChannels {
 
 struct Given {
   Eigen::Index channels = 0;  ///< n
-  Eigen::MatrixXd
-      observation_matrix;  ///< H, n rows of r inputs; empty: one input seen equally by all (H = 1)
-  Eigen::VectorXd
-      noise_levels;    ///< variance of a sample's noise, channel by channel; empty: not known
+  /// H, n rows of r inputs; empty: one input seen equally by all (H = 1)
+  Eigen::MatrixXd observation_matrix;
+  /// variance of a sample's noise, channel by channel; empty: not known
+  Eigen::VectorXd noise_levels;
   double rate_hz = 0;  ///< 0: not known
-  std::int64_t learning_samples =
-      0;  ///< instants with a reference before the run (0: no learning window)
-  std::int64_t fault_free_samples =
-      0;  ///< the first so many instants of the run are known to hold no fault
-  bool reference_throughout =
-      false;  ///< the reference covers the whole run: bounds and oracles may look at it
-  std::vector<std::int64_t>
-      section_starts;  ///< instants of the run at which a sensor fails or comes back
+  /// instants with a reference before the run (0: no learning window)
+  std::int64_t learning_samples = 0;
+  /// the first so many instants of the run are known to hold no fault
+  std::int64_t fault_free_samples = 0;
+  /// the reference covers the whole run: bounds and oracles may look at it
+  bool reference_throughout = false;
+  /// instants of the run at which a sensor fails or comes back
+  std::vector<std::int64_t> section_starts;
   std::optional<TiltChannels> tilt;
 
   Eigen::Index inputs() const {

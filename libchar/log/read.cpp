@@ -17,7 +17,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
-#include "libchar/log/time/time_base.hpp"
+#include "libchar/log/time/grid.hpp"
 
 namespace libchar {
 namespace {
@@ -80,7 +80,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
 
 // What the user knows of the channels and the log does not say.
 void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
-  const auto refuse = [&](const char* flag, std::size_t given) {
+  const auto refuse = [&](const char* flag, std::size_t count) {
     std::string read;
     for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c)
       read += (c == 0 ? "" : ", ") + channels[c].name;
@@ -88,7 +88,7 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
                  "",
                  flag,
                  fmt::format("{} given, and {} channel{} read: {}{}",
-                             given,
+                             count,
                              channels.size(),
                              channels.size() == 1 ? " is" : "s are",
                              read,

@@ -26,8 +26,8 @@ struct SensorFault {
   FaultKind kind = FaultKind::bias;
   double value = 0;
   double from_s = 0;
-  double to_s =
-      std::numeric_limits<double>::infinity();  ///< the first sample at or after it is sound again
+  /// the first sample at or after it is sound again
+  double to_s = std::numeric_limits<double>::infinity();
 };
 
 std::string_view name_of(FaultKind kind);
@@ -51,8 +51,8 @@ class FaultInjector {
   std::vector<DeviateStream> noise_;
   double rate_hz_;
   std::uint64_t done_ = 0;
-  double last_ =
-      std::numeric_limits<double>::quiet_NaN();  ///< last sample outside every stuck fault
+  /// last sample outside every stuck fault
+  double last_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace libchar

@@ -24,17 +24,17 @@ struct ArraySimulation {
   double rate_hz = 0;
   std::uint64_t samples = 0;
   std::uint64_t seed = 1;
-  std::uint64_t oversampling = 1;  ///< signals, noise and filters run at oversampling * rate_hz;
-                                   ///< every oversampling-th sample is kept
+  /// signals, noise and filters run at oversampling * rate_hz; every oversampling-th sample is kept
+  std::uint64_t oversampling = 1;
   std::vector<SignalSpec> truth = {SignalSpec{}};
   std::vector<std::string> truth_names = {"truth"};
-  std::optional<double> truth_bandwidth_hz;  ///< the truth columns are given through the same
-                                             ///< first-order low-pass as the sensors
+  /// the truth columns are given through the same first-order low-pass as the sensors
+  std::optional<double> truth_bandwidth_hz;
   std::optional<SignalSpec> temperature;  ///< degC; none: every model's own reference temperature
   std::vector<SimulatedSensor> sensors;
   std::vector<SensorFault> faults;
-  bool low_pass_starts_at_zero =
-      false;  ///< as published; else in the steady state of the first sample
+  /// as published; else in the steady state of the first sample
+  bool low_pass_starts_at_zero = false;
 };
 
 /// Throws Error(input) with one sentence when the parts do not fit together (no sensors, h of

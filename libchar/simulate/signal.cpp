@@ -1,10 +1,10 @@
 // x(t_k), t_k = k / rate:
 //   sine         offset + A sin(2 pi f t + phase)
 //   chirp        offset + A sin(2 pi (f0 t + (f1 - f0) t^2 / (2 T)) + phase)
-//   noise        offset + first-order low-passed white noise of the given standard deviation,
-//   stationary uniform      offset + uniform on [-A, A], renewed every renew_s and held ([RV 3.3]
-//   with `repeat`) random_walk  offset + sum of N(0, step^2 dt) derivative   (x_k - x_{k-1}) rate
-//   of another signal: the mean over the last interval, so that its
+//   noise        offset + first-order low-passed white noise of the given standard deviation, stationary
+//   uniform      offset + uniform on [-A, A], renewed every renew_s and held ([RV 3.3] with `repeat`)
+//   random_walk  offset + sum of N(0, step^2 dt)
+//   derivative   (x_k - x_{k-1}) rate of another signal: the mean over the last interval, so that its
 //                sum gives that signal back
 #include "libchar/simulate/signal.hpp"
 

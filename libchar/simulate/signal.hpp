@@ -22,15 +22,15 @@ struct SignalSpec {
   double phase_rad = 0;       ///< sine, chirp
   double from_hz = 0.01, to_hz = 1;  ///< chirp, linear in time over the whole length
   double standard_deviation = 1;     ///< noise: of the white noise after its low-pass
-  double bandwidth_hz =
-      0;               ///< noise: corner of its first-order low-pass; 0: white up to half the rate
+  /// noise: corner of its first-order low-pass; 0: white up to half the rate
+  double bandwidth_hz = 0;
   double renew_s = 0;  ///< uniform: a new value this often, held in between; 0: every sample
-  double repeat =
-      0;  ///< uniform: probability that the old value stays at a renewal [RV 3.3's solver]
+  /// uniform: probability that the old value stays at a renewal [RV 3.3's solver]
+  double repeat = 0;
   double step = 1;   ///< random_walk: U/√s
   double slope = 0;  ///< ramp: U/s
-  std::vector<std::pair<double, double>>
-      points;                 ///< points: (t in s, value), linear in between, constant outside
+  /// points: (t in s, value), linear in between, constant outside
+  std::vector<std::pair<double, double>> points;
   std::size_t of = 0;         ///< derivative, sine_of, cosine_of: index of an earlier signal (rad)
   std::string file, channel;  ///< recording: where `samples` came from
   std::vector<double> samples;  ///< recording: at the rate of the simulation, held at its end

@@ -23,8 +23,8 @@ struct Spectrum {
   double enbw_hz = 0;                ///< equivalent noise bandwidth
   std::vector<double> frequency_hz;  ///< two-sided: from -f_Nyquist (excluded) to +f_Nyquist
   std::vector<double> value;
-  std::vector<double>
-      dof;  ///< degrees of freedom per bin (overlap correlation included; half at DC and Nyquist)
+  /// degrees of freedom per bin (overlap correlation included; half at DC and Nyquist)
+  std::vector<double> dof;
   /// Correlation of a bin's power with that 1, 2, … bins away, for white noise: what an average
   /// over bins must account for.
   std::vector<double> neighbour_correlation;

@@ -26,8 +26,8 @@ class WelchWorkspace {
 
 struct WelchOptions {
   Window window = Window::hann;
-  std::uint64_t segment =
-      0;                 ///< samples per segment; 0 = a quarter of the record as in [RV app. A]
+  /// samples per segment; 0 = a quarter of the record as in [RV app. A]
+  std::uint64_t segment = 0;
   double overlap = 0.5;  ///< fraction of a segment, 0 <= overlap < 1
   Detrend detrend = Detrend::constant;
   Sides sides = Sides::one;

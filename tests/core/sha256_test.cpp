@@ -70,16 +70,16 @@ __attribute__((LIBCHAR_SHA_TARGET)) void take_some(libchar::Sha256Blocks* blocks
 }
 }  // namespace
 
-TEST_CASE("sha256: a loop that hashes along may take any number of blocks") {
-  if (!Sha256().goes_along()) return;
+TEST_CASE("sha256: a loop that hashes in between may take any number of blocks") {
+  if (!Sha256().can_interleave()) return;
   const std::string bytes = some_bytes(10000), whole = digest(bytes);
   for (const int count : {0, 1, 3, 1000})
     for (const std::size_t step :
          {std::size_t{30}, std::size_t{64}, std::size_t{200}, std::size_t{777}}) {
       Sha256 sha;
       for (std::size_t at = 0; at < bytes.size(); at += step) {
-        take_some(sha.along(std::string_view(bytes).substr(at, step)), count);
-        sha.settle();
+        take_some(sha.begin_interleaved(std::string_view(bytes).substr(at, step)), count);
+        sha.finish_interleaved();
       }
       CHECK(sha.finish() == whole);
     }

@@ -52,6 +52,19 @@ TEST_CASE("names of columns as people write them, with units, quotes, BOM, other
   CHECK(table->curves[0].curve.y == std::vector<double>{4, 2});
 }
 
+TEST_CASE("a curve is CSV as logs are: decimal commas, old line ends, blanks between the cells") {
+  const auto is_curve = [](const std::string& text) {
+    const auto table = read(text, true);
+    REQUIRE(table);
+    CHECK(table->curves.at(0).curve.x == std::vector<double>{0.5, 2});
+    CHECK(table->curves.at(0).curve.y == std::vector<double>{1.25, 0.75});
+  };
+  is_curve("tau;adev\n0,5;1,25\n2;0,75\n");
+  is_curve("tau,adev\r0.5,1.25\r2,0.75\r");
+  is_curve("tau adev\n0.5 1.25\n  2 0.75\n");
+  is_curve("% tau and deviation\ntau\tadev\n0.5\t1.25\n2\t+0.75\n");
+}
+
 TEST_CASE("degrees of freedom become the relative uncertainty of the deviation") {
   const auto table = read("tau_s,deviation,edf\n1,2,50\n2,1,8\n", true);
   REQUIRE(table);

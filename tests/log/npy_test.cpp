@@ -126,7 +126,7 @@ TEST_CASE("channels are chosen by name or position, in file order; a slip is nam
     CHECK(read(name, options).columns == std::vector<Column>{{0.25, 0.625, 1, 1.375}});
 }
 
-TEST_CASE("a plain array has a time column only when it is named by position") {
+TEST_CASE("an unnamed array has a time column only when it is named by position") {
   ReadOptions options;
   options.time_column = "c0";
   const auto got = read("fortran_order.npy", options);

@@ -23,8 +23,8 @@ struct Stretch {
 /// Phase x_p = y_0 + … + y_{p-1} of a rate record (or a phase record itself) and, for the modified
 /// variance, its own sum W_p = x_0 + … + x_{p-1}, each stored as  base of the block (twofold) +
 /// polynomial + small local rest (double):
-///   x_{bL+j} = X_b + j A_b + local_{bL+j},   W_{bL+j} = W_b + j X_b + j(j-1)/2 A_b +
-///   local2_{bL+j},
+///   x_{bL+j} = X_b + j A_b + local_{bL+j},
+///   W_{bL+j} = W_b + j X_b + j(j-1)/2 A_b + local2_{bL+j},
 /// A_b the first sample of block b less the first of the record. The local rests are sums of at
 /// most L deviations from a neighbour, so an offset cancels before anything is added, and a drift
 /// up to its change within one block.

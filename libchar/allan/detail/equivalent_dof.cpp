@@ -1,7 +1,7 @@
 // v = mean of M squared Gaussian terms d_i with autocovariance R(l), terms `q` samples apart, mean
 // mu (ramp):
-//   E v = R(0) + mu^2,   Var v = (2/M^2) sum_k (M - |k|) [R(qk)^2 + 2 mu^2 R(qk)],   edf = 2 (E
-//   v)^2 / Var v
+//   E v = R(0) + mu^2,   Var v = (2/M^2) sum_k (M - |k|) [R(qk)^2 + 2 mu^2 R(qk)],
+//   edf = 2 (E v)^2 / Var v
 // exact for the discrete mixture; R from term_covariance.hpp. White, m = 1: 2M/3. Walk, m = 1: M.
 //
 // Total deviation: Howe & Greenhall 1997, Greenhall, Howe & Percival 1999: edf = b T/tau - c with

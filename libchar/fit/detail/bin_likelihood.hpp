@@ -1,7 +1,7 @@
 #pragma once
 // The likelihood of power bins: independent gamma variables whose means are linear in theta.
-//   half deviance  D(theta) = sum_j nu_j/2 (u_j - 1 - ln u_j),  u_j = measured_j / mu_j,  mu = A
-//   theta,  -ln L = D + const
+//   half deviance  D(theta) = sum_j nu_j/2 (u_j - 1 - ln u_j),
+//                  u_j = measured_j / mu_j,  mu = A theta,  -ln L = D + const
 
 #include <Eigen/Core>
 #include <array>

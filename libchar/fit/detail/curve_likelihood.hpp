@@ -11,8 +11,8 @@ namespace libchar {
 struct CurveProblem {
   Eigen::ArrayXd value;  ///< variance or density, > 0
   Eigen::Array<double, Eigen::Dynamic, static_cast<int>(kTerms)> unit;
-  Eigen::MatrixXd
-      whitening;  ///< L^-1 with cov(ln value) = s L L'; empty = identity (equal relative errors)
+  /// L^-1 with cov(ln value) = s L L'; empty = identity (equal relative errors)
+  Eigen::MatrixXd whitening;
   Eigen::Index size() const { return value.size(); }
 };
 

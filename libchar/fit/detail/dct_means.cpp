@@ -1,10 +1,11 @@
 // Expected squared DCT-II coefficients (what they are for: docs/theory/fit.md).
 // With a = pi k / n:
-//   white         Q^2 fs                                                    exact, uncorrelated
-//   flicker       B^2 r_k / (2 sin(a/2)),  r_k = (2/pi) Si(pi k) - (2/pi^2)(1 - (-1)^k)/k error
-//   6e-5 at n = 4096 walk          K^2 dt / (4 sin^2(a/2))                                   exact,
-//   uncorrelated quantization  Qz^2 fs^2 [4 sin^2(a/2) + (4/n) cos^2(a/2)]               exact ramp
-//   (R dt t_k)^2, t_k = sqrt(2/n) cos(a/2) / (2 sin^2(a/2)) for odd k, 0 for even k
+//   white         Q^2 fs                                          exact, uncorrelated
+//   flicker       B^2 r_k / (2 sin(a/2)),
+//                 r_k = (2/pi) Si(pi k) - (2/pi^2)(1 - (-1)^k)/k  error 6e-5 at n = 4096
+//   walk          K^2 dt / (4 sin^2(a/2))                         exact, uncorrelated
+//   quantization  Qz^2 fs^2 [4 sin^2(a/2) + (4/n) cos^2(a/2)]     exact
+//   ramp          (R dt t_k)^2, t_k = sqrt(2/n) cos(a/2) / (2 sin^2(a/2)) for odd k, 0 for even k
 // The low coefficients are what ordinary periodograms get wrong: r_1 = 0.774, not 1.
 #include "libchar/fit/detail/dct_means.hpp"
 

@@ -9,8 +9,8 @@ struct Decision {
   TermSet kept{};   ///< terms of the reported model
   Mixture theta{};  ///< its maximum
   double half_deviance = 0;
-  Mixture likelihood_ratio{};  ///< 2 (lnL with - lnL without): of a kept term within the model, of
-                               ///< a dropped one when it is added
+  /// 2 (lnL with - lnL without): of a kept term within the model, of a dropped one when it is added
+  Mixture likelihood_ratio{};
   bool flicker_or_walk = false;  ///< neither is needed when the other is there, but one of them is
   int iterations = 0;
   bool converged = true;

@@ -3,8 +3,8 @@
 // input (Balzano & Nowak 2007; [RV 3.5]), then the mean of the corrected channels.
 //
 //   u_i = g_i x + beta_i + e_i,  C = covariance of u so far,  a_i = 1 / g_i up to a common factor
-//   without noise: (P o C) a = 0, P = I - 11'/n; the gauge sets the factor: a_ref = 1, or mean(a) =
-//   1 beta_i = mean(u_i) - t / a_i with sum beta = 0;  x = mean of a_i (u_i - beta_i)
+//   without noise: (P o C) a = 0, P = I - 11'/n; the gauge sets the factor: a_ref = 1, or mean(a) = 1
+//   beta_i = mean(u_i) - t / a_i with sum beta = 0;  x = mean of a_i (u_i - beta_i)
 //
 // Noise adds its variances D to the diagonal of C and biases every gain. Default: D is taken off,
 // as the noise levels where they are given, else estimated with the gains as the one factor of C =

@@ -1,8 +1,8 @@
 #pragma once
 // What could be had with the reference of the run itself: bounds to compare with, not methods.
-//   best-sensor: the one channel of the smallest error;  optimal-weights: least squares over the
-//   whole run, sum w = 1; sectioned-least-squares: the same for each section between the given
-//   instants [RV 5.1.2].
+//   best-sensor              the one channel of the smallest error
+//   optimal-weights          least squares over the whole run, sum w = 1
+//   sectioned-least-squares  the same for each section between the given instants [RV 5.1.2]
 
 #include <array>
 #include <vector>

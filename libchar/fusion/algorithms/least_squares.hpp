@@ -1,8 +1,9 @@
 #pragma once
 // Calibration and weights from a reference x in a learning window [RV 3.6].
 //
-//   calibration: y_i ~ a_i x + b_i, corrected c_i = (y_i - b_i) / a_i [RV 3.27-3.29] weights: x ~
-//   sum w_i c_i,   with sum w = 1 (default: unbiased), or free as published (shrinks, [RV 3.30])
+//   calibration:  y_i ~ a_i x + b_i, corrected c_i = (y_i - b_i) / a_i          [RV 3.27-3.29]
+//   weights:      x ~ sum w_i c_i, with sum w = 1 (default: unbiased), or free as published
+//                 (shrinks, [RV 3.30])
 //
 // All from one triangle of the rows [1, y_1 - x, …, y_n - x, x]: with sum w = 1, x - c_n =
 // sum_{i<n} w_i (c_i - c_n) + error holds differences only, in which a large x does not eat the

@@ -2,10 +2,11 @@
 // Exponentially forgotten second moments of the differences between channels, D_ij: the input
 // cancels exactly, and any subset of channels can be judged from them without a transient.
 //
-//   about the running mean:  D <- g (D + (1-g) delta^2), delta = d - mean, mean <- mean + (1-g)
-//   delta     (West 1979) about zero:              S <- g S + (1-g) d^2, D = S / (1 - g^k)
-//   variances of a subset of m channels, MINQUE with identity weights:  v_i = [sum_j D_ij -
-//   T/(m-1)] / (m-2),  T = sum_{j<k} D_jk
+//   about the running mean:  D <- g (D + (1-g) delta^2), delta = d - mean,
+//                            mean <- mean + (1-g) delta                       (West 1979)
+//   about zero:              S <- g S + (1-g) d^2, D = S / (1 - g^k)
+//   variances of a subset of m channels, MINQUE with identity weights:
+//                            v_i = [sum_j D_ij - T/(m-1)] / (m-2),  T = sum_{j<k} D_jk
 
 #include <Eigen/Core>
 #include <vector>

@@ -35,8 +35,8 @@ struct ReweightingOptions {
   double damping = 10;   ///< lambda = damping x a
   double floor = 1e-4;   ///< of a variance, relative to the fused variance of the other channels
   double floor_largest = 0;  ///< of a variance, relative to the largest one
-  double start_variance =
-      0;  ///< 0: from the first instant, with a gain that falls as 1/k to 1 - gamma
+  /// 0: from the first instant, with a gain that falls as 1/k to 1 - gamma
+  double start_variance = 0;
 };
 
 /// Variances, weights and residuals of n channels, some of which may sit out an instant.

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/binary/binary_rows.hpp"
 #include "libchar/log/binary/npy_header.hpp"
+#include "libchar/log/binary/rows.hpp"
 #include "libchar/log/detail/format.hpp"
 
 namespace libchar {

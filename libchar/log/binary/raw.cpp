@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/binary/binary_rows.hpp"
+#include "libchar/log/binary/rows.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/format.hpp"
 

@@ -10,7 +10,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/binary/binary_file.hpp"
+#include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/binary/yaml_guard.hpp"
 

@@ -19,8 +19,8 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256_blocks.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/csv/chunk_reader.hpp"
 #include "libchar/log/csv/dialect.hpp"
-#include "libchar/log/csv/feed.hpp"
 #include "libchar/log/csv/header.hpp"
 #include "libchar/log/csv/plan.hpp"
 #include "libchar/log/csv/rows.hpp"
@@ -33,27 +33,27 @@ namespace {
 class CsvSource final : public RowSource {
  public:
   CsvSource(const std::string& path, const ReadOptions& options)
-      : options_(options), feed_(path, options.block_bytes, options.hash) {
+      : options_(options), chunks_(path, options.block_bytes, options.hash) {
     info_.file = path == "-" ? "standard input" : path;
     info_.format = "csv";
-    const std::string_view head = feed_.head();
-    dialect_ = understand(head, feed_.whole(), options, info_);
+    const std::string_view head = chunks_.head();
+    dialect_ = understand(head, chunks_.whole(), options, info_);
     plan_ = plan_columns(dialect_, options, info_);
     missing_per_channel_.assign(plan_.channels, 0);
     words_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
     info_.rows = expected_rows(head);
-    feed_.start_at(dialect_.data_offset);
+    chunks_.start_at(dialect_.data_offset);
     next_line_ = dialect_.first_data_line;
-    info_.bytes = feed_.size();
+    info_.bytes = chunks_.size();
     info_.first_line = next_line_;
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
-        feed_.whole() && feed_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+        chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
-    goes_along_ = feed_.hashes_along();
+    interleave_ = chunks_.interleaves_hash();
     for (int i = 0; threads > 1 && !small && i < threads; ++i)
       workers_.emplace_back([this] { work(); });
     info_.read_ahead = !workers_.empty();
@@ -118,11 +118,11 @@ class CsvSource final : public RowSource {
       }
       add(warnings, "missing_cell", message + ")", missing_);
     }
-    if (feed_.nul_tail() > 0)
+    if (chunks_.nul_tail() > 0)
       warnings.add("nul_tail",
                    fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
-                               feed_.nul_tail(),
-                               feed_.cut_bytes() > 0 ? " with the line they cut off" : ""),
+                               chunks_.nul_tail(),
+                               chunks_.cut_bytes() > 0 ? " with the line they cut off" : ""),
                    place_name(next_line_, 1));
     if (inexact_ > 0)
       info_.dialect.push_back(
@@ -137,13 +137,13 @@ class CsvSource final : public RowSource {
                                      : fmt::format("{}:{}", info_.file, line_of(block, i));
   }
   std::uint64_t bytes_read() const override { return consumed_; }
-  std::uint64_t bytes_total() const override { return feed_.size(); }
+  std::uint64_t bytes_total() const override { return chunks_.size(); }
 
   std::string sha256() override {
     stop();
-    for (auto& [sequence, raw] : unhashed_) feed_.hash(raw);
+    for (auto& [sequence, raw] : unhashed_) chunks_.hash(raw);
     unhashed_.clear();
-    return feed_.finish_hash();
+    return chunks_.finish_hash();
   }
 
  private:
@@ -156,8 +156,8 @@ class CsvSource final : public RowSource {
     const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
     const auto lines = static_cast<std::uint64_t>(
         std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
-    if (body.empty() || feed_.size() <= dialect_.data_offset) return 0;
-    return static_cast<std::uint64_t>(static_cast<double>(feed_.size() - dialect_.data_offset) /
+    if (body.empty() || chunks_.size() <= dialect_.data_offset) return 0;
+    return static_cast<std::uint64_t>(static_cast<double>(chunks_.size() - dialect_.data_offset) /
                                       static_cast<double>(body.size()) *
                                       static_cast<double>(lines));
   }
@@ -166,8 +166,8 @@ class CsvSource final : public RowSource {
   // this reader.
   void check_account() const {
     const std::uint64_t bytes =
-        dialect_.data_offset + total_.bytes + feed_.nul_tail() + feed_.cut_bytes();
-    if (!total_.balanced() || bytes != feed_.bytes_read() ||
+        dialect_.data_offset + total_.bytes + chunks_.nul_tail() + chunks_.cut_bytes();
+    if (!total_.balanced() || bytes != chunks_.bytes_read() ||
         total_.cells != rows_ * plan_.target.size())
       throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
@@ -236,13 +236,13 @@ class CsvSource final : public RowSource {
   }
 
   bool take_inline(ParsedChunk& chunk) {
-    if (!feed_.next(raw_)) {
-      feed_.hash(raw_);
+    if (!chunks_.next(raw_)) {
+      chunks_.hash(raw_);
       raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
       return false;
     }
-    parse_rows(raw_.text(), plan_, chunk, feed_.begin_hash(raw_));
-    feed_.end_hash(raw_);
+    parse_rows(raw_.text(), plan_, chunk, chunks_.begin_hash(raw_));
+    chunks_.end_hash(raw_);
     raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
     current_offset_ = raw_.offset;
     return true;
@@ -282,9 +282,9 @@ class CsvSource final : public RowSource {
         // Neither the parsed chunks nor those that wait for their hash may pile up.
         room_changed_.wait(lock, [&] {
           const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
-          // A chunk can be hashed along with its parsing only when its turn has come, and what
+          // A chunk can be hashed between the steps of its parsing only when its turn has come, and what
           // others have parsed by then costs its hash on top.
-          const bool turn = !goes_along_ || parsing_ == 0;
+          const bool turn = !interleave_ || parsing_ == 0;
           return stop_ || exhausted_ || (!reading_ && room && turn);
         });
         if (stop_ || exhausted_) return;
@@ -301,35 +301,35 @@ class CsvSource final : public RowSource {
         }
       }
       try {
-        item.end = !feed_.next(raw);
+        item.end = !chunks_.next(raw);
       } catch (...) {
         item.failure = std::current_exception();
       }
       item.offset = raw.offset;
-      bool hashing = false;  // along with the parsing
+      bool hashing = false;  // between the steps of the parsing
       {
         const std::lock_guard lock(mutex_);
         reading_ = false;
         exhausted_ = exhausted_ || item.end || item.failure;
-        hashing = feed_.hashes_along() && !hashing_ && hashed_ == sequence;
+        hashing = chunks_.interleaves_hash() && !hashing_ && hashed_ == sequence;
         hashing_ = hashing_ || hashing;
         room_changed_.notify_all();
       }
-      Sha256Blocks* const along = hashing ? feed_.begin_hash(raw) : nullptr;
+      Sha256Blocks* const hash = hashing ? chunks_.begin_hash(raw) : nullptr;
       if (!item.end && !item.failure) {
         try {
-          parse_rows(raw.text(), plan_, item.chunk, along);
+          parse_rows(raw.text(), plan_, item.chunk, hash);
         } catch (...) {
           item.failure = std::current_exception();
         }
       }
-      // Rows that are not plain take no hash along: then all workers parse at once.
-      const bool along_enough =
-          hashing && 2 * (along->end - along->next) <= static_cast<std::ptrdiff_t>(raw.size);
-      if (hashing) feed_.end_hash(raw);
+      // Unusual rows are parsed without hashing in between: then all workers parse at once.
+      const bool interleaved_enough =
+          hashing && 2 * (hash->end - hash->next) <= static_cast<std::ptrdiff_t>(raw.size);
+      if (hashing) chunks_.end_hash(raw);
       {
         const std::lock_guard lock(mutex_);
-        if (hashing) goes_along_ = along_enough;
+        if (hashing) interleave_ = interleaved_enough;
         done_.emplace(sequence, std::move(item));
         if (hashing)
           note_hashed(std::move(raw));
@@ -354,7 +354,7 @@ class CsvSource final : public RowSource {
         raw = std::move(unhashed_.begin()->second);
         unhashed_.erase(unhashed_.begin());
       }
-      feed_.hash(raw);
+      chunks_.hash(raw);
       const std::lock_guard lock(mutex_);
       note_hashed(std::move(raw));
     }
@@ -384,7 +384,7 @@ class CsvSource final : public RowSource {
   LogInfo info_;
   Dialect dialect_;
   Plan plan_;
-  Feed feed_;
+  ChunkReader chunks_;
   Warnings pending_;
   RawChunk raw_;
   ParsedChunk current_;
@@ -407,7 +407,7 @@ class CsvSource final : public RowSource {
   std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
   std::size_t room_ = 2;
   int parsing_ = 0;  // workers between their read and their rows
-  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, goes_along_ = false;
+  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, interleave_ = false;
 };
 
 std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& options) {

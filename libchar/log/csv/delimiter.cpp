@@ -64,6 +64,18 @@ Score best_score(const std::vector<Line>& lines) {
   return best;
 }
 
+char decimal_mark(const std::vector<Line>& lines, char delimiter) {
+  std::size_t commas = 0, points = 0;
+  for (const Line& line : lines)
+    for (const Field& field : split(line.text, delimiter)) {
+      char mark = 0;
+      if (!numeric(field, delimiter, &mark)) continue;
+      commas += mark == ',';
+      points += mark == '.';
+    }
+  return commas > points ? ',' : '.';
+}
+
 char named_delimiter(const std::string& name) {
   if (name == "tab" || name == "\\t" || name == "\t") return '\t';
   if (name == "space" || name == " ") return ' ';

@@ -25,10 +25,13 @@ Score score(const std::vector<Line>& lines, char delimiter);
 /// The best among comma, semicolon, tab and blanks; one column when none fits.
 Score best_score(const std::vector<Line>& lines);
 
+/// ',' when more numbers of the sample show a decimal comma than a point, else '.'.
+char decimal_mark(const std::vector<Line>& lines, char delimiter);
+
 /// "tab", "space" or the character itself; throws Error(usage) for what cannot separate numbers.
 char named_delimiter(const std::string& name);
 
-/// For people: "tab", "blanks", or the character.
+/// For messages: "tab", "blanks", or the character.
 std::string delimiter_name(char delimiter);
 
 }  // namespace libchar::csv

@@ -137,21 +137,10 @@ struct Study {
                    options.decimal,
                    "use auto, point or comma"});
     if (mark == 0) {
-      std::size_t commas = 0, points = 0;
-      for (const Line& line : sample)
-        for (const Field& field : split(line.text, dialect.delimiter)) {
-          char found = 0;
-          if (numeric(field, dialect.delimiter, &found)) {
-            commas += found == ',';
-            points += found == '.';
-          }
-        }
-      if (commas > points) {
-        mark = ',';
-        info.guesses.push_back("decimal mark: comma, " + sampled());
-      }
+      mark = decimal_mark(sample, dialect.delimiter);
+      if (mark == ',') info.guesses.push_back("decimal mark: comma, " + sampled());
     }
-    dialect.decimal = mark == 0 ? '.' : mark;
+    dialect.decimal = mark;
     if (dialect.decimal == ',') info.dialect.push_back("decimal comma");
   }
 

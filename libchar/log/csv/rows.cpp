@@ -6,35 +6,35 @@
 #include <cstring>
 
 #include "libchar/log/csv/number.hpp"
-#include "libchar/log/csv/plain_rows.hpp"
+#include "libchar/log/csv/vector_rows.hpp"
 
 namespace libchar::csv {
 namespace {
 
 class RowParser {
  public:
-  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* along)
+  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* hash_blocks)
       : begin_(text.data()),
         end_(text.data() + text.size()),
         plan_(plan),
         dialect_(*plan.dialect),
         out_(out),
-        along_(along) {
+        hash_(hash_blocks) {
     reset();
   }
 
   void run() {
     const char* p = begin_;
-    const char* try_plain = begin_;  // where the fast way may be tried again
+    const char* try_vector = begin_;  // where the fast way may be tried again
     while (p < end_ && !out_.problem) {
       const char* const start = p;
-      if (p >= try_plain) {
-        p = plain_rows(p);
-        // Each try looks some way ahead: a file whose rows are mostly not plain must not pay for
+      if (p >= try_vector) {
+        p = vector_rows(p);
+        // Each try looks some way ahead: a file whose rows are mostly unusual must not pay for
         // that at every one of them.
-        try_plain = p + kPatience;
+        try_vector = p + kPatience;
       }
-      p = quick_rows(p, std::min(end_, try_plain));
+      p = quick_rows(p, std::min(end_, try_vector));
       out_.account.row_bytes += static_cast<std::uint64_t>(p - start);
       if (p == end_) break;
       p = careful_line(p);
@@ -103,18 +103,18 @@ class RowParser {
       out_.rows.line_offset[i] = static_cast<std::uint32_t>(i);
   }
 
-  static constexpr std::size_t kPlainRows =
+  static constexpr std::size_t kVectorRows =
       1024;  // at a time: their text fits the second-level cache
   static constexpr std::ptrdiff_t kPatience = std::ptrdiff_t{1} << 18U;
 
-  // The fast way of plain_rows.hpp, from p to the first row that it does not take.
-  const char* plain_rows(const char* p) {
+  // The fast way of vector_rows.hpp, from p to the first row that it does not take.
+  const char* vector_rows(const char* p) {
     const bool crlf = dialect_.line_end == LineEnd::crlf;
     const bool timed = dialect_.time_column >= 0;
     if (dialect_.delimiter == ' ' || dialect_.decimal != '.' ||
         (!crlf && dialect_.line_end != LineEnd::lf) || (timed && stamp_digits_ < 0))
       return p;
-    std::vector<PlainColumn> columns(plan_.target.size());
+    std::vector<VectorColumn> columns(plan_.target.size());
     std::vector<char> fractional(plan_.channels, 0);
     while (p < end_) {
       if (rows_ == capacity_) grow();
@@ -122,23 +122,23 @@ class RowParser {
         const int target = plan_.target[c];
         if (target >= 0) {
           const auto channel = static_cast<std::size_t>(target);
-          columns[c] = {.use = PlainColumn::Use::value,
+          columns[c] = {.use = VectorColumn::Use::value,
                         .values = pointers_[channel] + rows_,
                         .fractional = &fractional[channel]};
         } else if (target == Plan::kTime) {
-          columns[c] = {.use = PlainColumn::Use::stamp,
+          columns[c] = {.use = VectorColumn::Use::stamp,
                         .stamps = out_.rows.time_ns.data() + rows_,
                         .stamp_digits = stamp_digits_};
         }
       }
-      const std::size_t wanted = std::min(kPlainRows, capacity_ - rows_);
-      const PlainRows taken = parse_plain_rows({p, static_cast<std::size_t>(end_ - p)},
-                                               dialect_.delimiter,
-                                               crlf,
-                                               columns,
-                                               wanted,
-                                               separators_,
-                                               along_);
+      const std::size_t wanted = std::min(kVectorRows, capacity_ - rows_);
+      const VectorRows taken = parse_vector_rows({p, static_cast<std::size_t>(end_ - p)},
+                                                 dialect_.delimiter,
+                                                 crlf,
+                                                 columns,
+                                                 wanted,
+                                                 separators_,
+                                                 hash_);
       p += taken.consumed;
       if (lines_listed_)
         for (std::size_t i = 0; i < taken.rows; ++i)
@@ -153,7 +153,7 @@ class RowParser {
     return p;
   }
 
-  // Rows of plain numbers between delimiters, with the file's line end: nearly all of a file. Stops
+  // Rows of nothing but numbers between delimiters, with the file's line end: nearly all of a file. Stops
   // in front of the first row that is anything else, of which it has changed nothing but scratch.
   const char* quick_rows(const char* p, const char* const end) {
     if (dialect_.delimiter == ' ' || dialect_.line_end == LineEnd::cr ||
@@ -521,7 +521,7 @@ class RowParser {
   const Plan& plan_;
   const Dialect& dialect_;
   ParsedChunk& out_;
-  Sha256Blocks* along_;
+  Sha256Blocks* hash_;
   std::vector<double*> pointers_;
   std::size_t rows_ = 0, capacity_ = 0;
   int stamp_digits_ = -1;  // the time unit is 10^this ns
@@ -547,8 +547,11 @@ void Account::add(const Account& o) {
   stamps += o.stamps;
 }
 
-void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* along) {
-  RowParser(text, plan, out, along).run();
+void parse_rows(std::string_view text,
+                const Plan& plan,
+                ParsedChunk& out,
+                Sha256Blocks* hash_blocks) {
+  RowParser(text, plan, out, hash_blocks).run();
 }
 
 }  // namespace libchar::csv

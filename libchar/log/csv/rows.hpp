@@ -81,10 +81,10 @@ struct ParsedChunk {
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).
 /// `text` must be readable for kPadding bytes past its end. After a problem the rows before it are
-/// kept and the rest is not looked at. Blocks of `along` may be hashed on the way.
+/// kept and the rest is not looked at. Blocks of `hash_blocks` may be hashed on the way.
 void parse_rows(std::string_view text,
                 const Plan& plan,
                 ParsedChunk& out,
-                Sha256Blocks* along = nullptr);
+                Sha256Blocks* hash_blocks = nullptr);
 
 }  // namespace libchar::csv

@@ -8,7 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/time/time_base.hpp"
+#include "libchar/log/time/grid.hpp"
 
 namespace libchar {
 namespace {

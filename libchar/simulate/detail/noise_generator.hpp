@@ -22,8 +22,8 @@ enum class Sampling {
 struct NoiseDesign {
   Mixture coefficient{};  ///< Q, B, K, Qz, R themselves (not squared); a term of 0 costs nothing
   double rate_hz = 1;
-  std::optional<double>
-      bandwidth_hz;  ///< corner of the first-order low-pass; needed when band_limited
+  /// corner of the first-order low-pass; needed when band_limited
+  std::optional<double> bandwidth_hz;
   Sampling sampling = Sampling::per_sample;
   Start start = Start::stationary;           ///< of the flicker
   std::string flicker_method = "recursive";  ///< or "rv-truncated-iir", which starts at zero

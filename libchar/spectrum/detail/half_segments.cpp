@@ -7,15 +7,15 @@
 // (the last term is the transform of the step between the means), and with the periodic Hann
 // window, three terms of a cosine sum,
 //   Y_k = X_k/2 - (X_{k-1} + X_{k+1})/4.
-// The same Z_k gives the orthonormal DCT-II of the half:   c_k = sqrt(2/h) Re(exp(-i pi k / L)
-// Z_k).
+// The same Z_k gives the orthonormal DCT-II of the half:
+//   c_k = sqrt(2/h) Re(exp(-i pi k / L) Z_k).
 //
 // Z itself: even bins k = 2m are the DFT of the half, odd ones k = 2m+1 its DFT at frequencies
 // moved by half a bin. Two halves a and b are transformed at once as u = a + i b (R. N. Bracewell,
 // The Fourier Transform and Its Applications, on two real transforms in one):
-//   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),   m' = h - m for even bins, h - 1 -
-//   m
-// for odd ones. Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M.
+//   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),
+//   m' = h - m for even bins, h - 1 - m for odd ones.
+// Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M.
 // Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2
 // m1 / h), over t2; t = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in rows of
 // fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r) backwards, the neighbours m ±

@@ -4,8 +4,9 @@
 // Segments overlap, so their powers are correlated: for white noise by r_j^2, r_j = sum_t w_t
 // w_{t+jD} / sum w^2, and the average of K of them has (D. B. Percival and A. T. Walden, Spectral
 // Analysis for Physical Applications, 1993, ch. 6.17)
-//   nu = 2 K^2 / (K + 2 sum_j p_j r_j^2)       degrees of freedom, p_j = number of pairs of
-//   segments j apart (K - j without gaps).
+//   nu = 2 K^2 / (K + 2 sum_j p_j r_j^2)   degrees of freedom,
+//                                          p_j = number of pairs of segments j apart (K - j
+//                                          without gaps).
 
 #include "libchar/spectrum/detail/segments.hpp"
 

@@ -25,12 +25,12 @@ struct RawChunk {
 
 /// Reads with read(2), never by mapping: a file that shrinks while it is read must not kill the
 /// program. Not thread-safe.
-class Feed {
+class ChunkReader {
  public:
-  Feed(std::string path, std::size_t block_bytes, bool hash);
-  Feed(const Feed&) = delete;
-  Feed& operator=(const Feed&) = delete;
-  ~Feed();
+  ChunkReader(std::string path, std::size_t block_bytes, bool hash);
+  ChunkReader(const ChunkReader&) = delete;
+  ChunkReader& operator=(const ChunkReader&) = delete;
+  ~ChunkReader();
 
   /// The first bytes (up to kHeadBytes); `whole` when that is all.
   std::string_view head();
@@ -43,9 +43,9 @@ class Feed {
   /// The next chunk; false when there is none.
   bool next(RawChunk& chunk);
   void hash(const RawChunk& chunk);
-  /// The same in two steps, for a parser that hashes along between them; nullptr where that cannot
+  /// The same in two steps, for a parser that hashes between them; nullptr where that cannot
   /// be.
-  bool hashes_along() const { return hashing_ && sha_.goes_along(); }
+  bool interleaves_hash() const { return hashing_ && sha_.can_interleave(); }
   Sha256Blocks* begin_hash(const RawChunk& chunk);
   void end_hash(const RawChunk& chunk);
   /// Reads on to the end of a regular file for its hash; "" when a pipe was not read to its end or

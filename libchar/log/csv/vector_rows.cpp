@@ -3,23 +3,23 @@
 // own, so that no field waits for the end of the one before it.
 //
 // Both stages leave most of the processor's arithmetic idle, and so does SHA-256, which is one long
-// chain. Where the bytes of the file wait for their hash, its blocks go along: with every eight
-// values (plain_fours.hpp), and here and there on the way.
+// chain. Where the bytes of the file wait for their hash, its blocks are hashed in between: with every eight
+// values (vector_fours.hpp), and here and there on the way.
 
-#include "libchar/log/csv/plain_rows.hpp"
+#include "libchar/log/csv/vector_rows.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 
-#include "libchar/log/csv/plain_fours.hpp"
+#include "libchar/log/csv/vector_fours.hpp"
 
 namespace libchar {
 
 #if defined(LIBCHAR_X86_64)
 
-using namespace plain;
+using namespace vector_parsing;
 
 namespace {
 
@@ -35,7 +35,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t find_separators(
     std::size_t enough,
     std::vector<std::uint32_t>& positions,
     Sha256Lane& hash) {
-  const __m256i wanted = _mm256_set1_epi8(delimiter), feed = _mm256_set1_epi8('\n');
+  const __m256i wanted = _mm256_set1_epi8(delimiter), line_feed = _mm256_set1_epi8('\n');
   std::size_t count = 0;
   for (std::size_t at = 0; at < text.size() && count < enough; at += 64) {
     if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
@@ -45,7 +45,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t find_separators(
       const __m256i bytes =
           _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text.data() + at + 32 * half));
       const __m256i hit =
-          _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, feed));
+          _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, line_feed));
       mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit)))
               << (32 * half);
     }
@@ -145,7 +145,7 @@ LIBCHAR_SHA_INLINE inline std::size_t take_column(const Column& column,
 __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column,
                                                             std::size_t first,
                                                             std::size_t last,
-                                                            const PlainColumn& to,
+                                                            const VectorColumn& to,
                                                             Sha256Lane& hash) {
   double* const values = to.values;
   std::uint32_t behind = 0;  // of all fields together
@@ -154,7 +154,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column
                        const char* end,
                        std::uint32_t negative,
                        const Field& field) LIBCHAR_SHA_INLINE {
-    if (__builtin_expect(!field.plain || field.digits >= kExactInteger, 0)) {
+    if (__builtin_expect(!field.regular || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
       behind |= static_cast<std::uint32_t>(
@@ -187,7 +187,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column
 __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_stamps(const Column& column,
                                                             std::size_t first,
                                                             std::size_t last,
-                                                            const PlainColumn& to,
+                                                            const VectorColumn& to,
                                                             Sha256Lane& hash) {
   return take_column(
       column,
@@ -200,7 +200,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_stamps(const Column& column
           const Field& field) LIBCHAR_SHA_INLINE {
         if (row % kAside == 0 && hash.any()) hash.block();
         const int shift = to.stamp_digits - static_cast<int>(field.behind);
-        if (__builtin_expect(field.plain && shift >= 0, 1))
+        if (__builtin_expect(field.regular && shift >= 0, 1))
           return !__builtin_mul_overflow(negative ? -field.digits : field.digits,
                                          kIntegerPowers[static_cast<std::size_t>(shift)],
                                          &to.stamps[row]);
@@ -218,20 +218,20 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t check_fields(const Column& colum
       first,
       last,
       [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field)
-          LIBCHAR_SHA_INLINE { return field.plain || read_value_slowly(begin, end).good; });
+          LIBCHAR_SHA_INLINE { return field.regular || read_value_slowly(begin, end).good; });
 }
 
 constexpr std::size_t kBatch =
     128;  // rows read column by column while their text is in the first-level cache
 
-__attribute__((LIBCHAR_SHA_TARGET)) PlainRows parse(std::string_view text,
-                                                    char delimiter,
-                                                    bool crlf,
-                                                    std::span<const PlainColumn> columns,
-                                                    std::size_t max_rows,
-                                                    std::vector<std::uint32_t>& scratch,
-                                                    Sha256Blocks* along) {
-  Sha256Lane hash(along);
+__attribute__((LIBCHAR_SHA_TARGET)) VectorRows parse(std::string_view text,
+                                                     char delimiter,
+                                                     bool crlf,
+                                                     std::span<const VectorColumn> columns,
+                                                     std::size_t max_rows,
+                                                     std::vector<std::uint32_t>& scratch,
+                                                     Sha256Blocks* hash_blocks) {
+  Sha256Lane hash(hash_blocks);
   const std::size_t width = columns.size();
   const std::size_t rows =
       std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch, hash) / width);
@@ -242,13 +242,13 @@ __attribute__((LIBCHAR_SHA_TARGET)) PlainRows parse(std::string_view text,
     for (std::size_t c = 0; c < width; ++c) {
       const Column column{text.data(), scratch.data(), width, c, delimiter, crlf};
       switch (columns[c].use) {
-        case PlainColumn::Use::value:
+        case VectorColumn::Use::value:
           good = take_values(column, first, good, columns[c], hash);
           break;
-        case PlainColumn::Use::stamp:
+        case VectorColumn::Use::stamp:
           good = take_stamps(column, first, good, columns[c], hash);
           break;
-        case PlainColumn::Use::skip:
+        case VectorColumn::Use::skip:
           good = check_fields(column, first, good);
           break;
       }
@@ -261,28 +261,28 @@ __attribute__((LIBCHAR_SHA_TARGET)) PlainRows parse(std::string_view text,
 
 }  // namespace
 
-PlainRows parse_plain_rows(std::string_view text,
-                           char delimiter,
-                           bool crlf,
-                           std::span<const PlainColumn> columns,
-                           std::size_t max_rows,
-                           std::vector<std::uint32_t>& scratch,
-                           Sha256Blocks* along) {
+VectorRows parse_vector_rows(std::string_view text,
+                             char delimiter,
+                             bool crlf,
+                             std::span<const VectorColumn> columns,
+                             std::size_t max_rows,
+                             std::vector<std::uint32_t>& scratch,
+                             Sha256Blocks* hash_blocks) {
   static const bool capable = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
                               __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
   if (!capable || columns.empty()) return {};
-  return parse(text, delimiter, crlf, columns, max_rows, scratch, along);
+  return parse(text, delimiter, crlf, columns, max_rows, scratch, hash_blocks);
 }
 
 #else
 
-PlainRows parse_plain_rows(std::string_view,
-                           char,
-                           bool,
-                           std::span<const PlainColumn>,
-                           std::size_t,
-                           std::vector<std::uint32_t>&,
-                           Sha256Blocks*) {
+VectorRows parse_vector_rows(std::string_view,
+                             char,
+                             bool,
+                             std::span<const VectorColumn>,
+                             std::size_t,
+                             std::vector<std::uint32_t>&,
+                             Sha256Blocks*) {
   return {};
 }
 

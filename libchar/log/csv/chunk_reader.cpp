@@ -1,4 +1,4 @@
-#include "libchar/log/csv/feed.hpp"
+#include "libchar/log/csv/chunk_reader.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -36,7 +36,7 @@ std::size_t last_line_end(const char* text, std::size_t from, std::size_t size) 
 
 }  // namespace
 
-Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
+ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
     : path_(std::move(path)), block_(std::max<std::size_t>(1, block_bytes)), hashing_(hash) {
   if (path_ == "-") {
     descriptor_ = ::dup(STDIN_FILENO);
@@ -63,11 +63,11 @@ Feed::Feed(std::string path, std::size_t block_bytes, bool hash)
     block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
 }
 
-Feed::~Feed() {
+ChunkReader::~ChunkReader() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::size_t Feed::read_some(char* to, std::size_t n) {
+std::size_t ChunkReader::read_some(char* to, std::size_t n) {
   std::size_t done = 0;
   while (done < n && !ended_) {
     const ssize_t got = ::read(descriptor_, to + done, n - done);
@@ -82,7 +82,7 @@ std::size_t Feed::read_some(char* to, std::size_t n) {
   return done;
 }
 
-std::string_view Feed::head() {
+std::string_view ChunkReader::head() {
   const std::size_t first = std::size_t{1}
                             << 16U;  // small files end here; long headers ask for more
   head_.resize(first);
@@ -100,7 +100,7 @@ std::string_view Feed::head() {
   return head_;
 }
 
-std::size_t Feed::fill(char* to, std::size_t n, std::size_t& from_head) {
+std::size_t ChunkReader::fill(char* to, std::size_t n, std::size_t& from_head) {
   from_head = std::min(n, head_.size() - taken_);
   std::memcpy(to, head_.data() + taken_, from_head);
   taken_ += from_head;
@@ -111,7 +111,7 @@ std::size_t Feed::fill(char* to, std::size_t n, std::size_t& from_head) {
   return from_head < n ? from_head + read_some(to + from_head, n - from_head) : from_head;
 }
 
-bool Feed::next(RawChunk& chunk) {
+bool ChunkReader::next(RawChunk& chunk) {
   if (done_) return false;
   std::size_t size = carry_.size(), cut = 0, from_head = 0;
   chunk.bytes.resize(std::max(chunk.bytes.size(), size + block_ + kPadding));
@@ -144,7 +144,7 @@ bool Feed::next(RawChunk& chunk) {
 
 // A log cut by a power failure ends in NUL bytes: they are counted, and with them the line they cut
 // off.
-void Feed::drop_nul_tail(RawChunk& chunk) {
+void ChunkReader::drop_nul_tail(RawChunk& chunk) {
   std::size_t kept = chunk.size;
   while (kept > 0 && chunk.bytes[kept - 1] == '\0') --kept;
   if (kept == chunk.size) return;
@@ -165,17 +165,17 @@ void Feed::drop_nul_tail(RawChunk& chunk) {
   chunk.size = line;
 }
 
-Sha256Blocks* Feed::begin_hash(const RawChunk& chunk) {
+Sha256Blocks* ChunkReader::begin_hash(const RawChunk& chunk) {
   const std::string_view fresh(chunk.bytes.data() + chunk.hash_from,
                                chunk.hash_to - chunk.hash_from);
-  if (hashes_along()) return sha_.along(fresh);
+  if (interleaves_hash()) return sha_.begin_interleaved(fresh);
   if (hashing_) sha_.update(fresh);
   return nullptr;
 }
 
-void Feed::end_hash(const RawChunk& chunk) {
+void ChunkReader::end_hash(const RawChunk& chunk) {
   if (!hashing_) return;
-  if (hashes_along()) sha_.settle();
+  if (interleaves_hash()) sha_.finish_interleaved();
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
     const std::size_t n = std::min<std::uint64_t>(left, sizeof kZeros);
@@ -184,12 +184,12 @@ void Feed::end_hash(const RawChunk& chunk) {
   }
 }
 
-void Feed::hash(const RawChunk& chunk) {
+void ChunkReader::hash(const RawChunk& chunk) {
   begin_hash(chunk);
   end_hash(chunk);
 }
 
-std::string Feed::finish_hash() {
+std::string ChunkReader::finish_hash() {
   if (!hashing_) return "";
   if (!ended_ && !regular_) return "";
   std::vector<char> buffer(std::size_t{1} << 18U);

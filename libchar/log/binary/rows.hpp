@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/log/binary/binary_file.hpp"
+#include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/number_type.hpp"
 #include "libchar/log/detail/row_source.hpp"
 

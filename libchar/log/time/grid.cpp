@@ -1,4 +1,4 @@
-#include "libchar/log/time/time_base.hpp"
+#include "libchar/log/time/grid.hpp"
 
 #include <fmt/format.h>
 

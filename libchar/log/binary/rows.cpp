@@ -1,4 +1,4 @@
-#include "libchar/log/binary/binary_rows.hpp"
+#include "libchar/log/binary/rows.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// The common case of a CSV body, fast: rows of plain decimal numbers, nothing else. Everything
-// unusual is left to the general parser, row by row, so that this file decides nothing about dirt.
+// The common case of a CSV body, fast: rows of decimal numbers without exponents, nothing else. Everything
+// unusual is left to the general parser, row by row, so that this file decides nothing about damage.
 
 #include <cstdint>
 #include <span>
@@ -12,35 +12,34 @@ namespace libchar {
 struct Sha256Blocks;
 
 /// What each column of the body is to become.
-struct PlainColumn {
+struct VectorColumn {
   enum class Use { skip, value, stamp } use = Use::skip;
   double* values = nullptr;        ///< Use::value: destination of row 0
   std::int64_t* stamps = nullptr;  ///< Use::stamp: destination of row 0
-  char* fractional =
-      nullptr;           ///< Use::value: set when some value was not written as a plain integer
+  char* fractional = nullptr;  ///< Use::value: set when some value was not written as an integer
   int stamp_digits = 9;  ///< Use::stamp: decimal digits between the stamp's unit and nanoseconds (9
                          ///< s, 6 ms, 3 us, 0 ns)
 };
 
-struct PlainRows {
+struct VectorRows {
   std::size_t rows = 0;      ///< whole rows written, from row 0 of the destinations
   std::size_t consumed = 0;  ///< bytes of `text` that they took; the next row begins there
 };
 
-inline constexpr std::size_t kPlainPadding = 64;  ///< readable bytes that must follow `text`
+inline constexpr std::size_t kVectorPadding = 64;  ///< readable bytes that must follow `text`
 
 /// Parses rows from the start of `text` (which begins at a row and ends with a line feed) until the
-/// end, until `max_rows`, or until the first row that is not plain: wrong number of fields, an
+/// end, until `max_rows`, or until the first row that is unusual: wrong number of fields, an
 /// empty field, a quote, a word, a value that does not fit, another line end than `crlf` says.
 /// Looks at no more text than `max_rows` need. Numbers are rounded correctly, the same bits as
 /// std::from_chars. `scratch` is reused between calls. On a processor without AVX2 no row is taken.
-/// Where `along` is given, some of its blocks are hashed on the way.
-PlainRows parse_plain_rows(std::string_view text,
-                           char delimiter,
-                           bool crlf,
-                           std::span<const PlainColumn> columns,
-                           std::size_t max_rows,
-                           std::vector<std::uint32_t>& scratch,
-                           Sha256Blocks* along = nullptr);
+/// Where `hash_blocks` is given, some of its blocks are hashed on the way.
+VectorRows parse_vector_rows(std::string_view text,
+                             char delimiter,
+                             bool crlf,
+                             std::span<const VectorColumn> columns,
+                             std::size_t max_rows,
+                             std::vector<std::uint32_t>& scratch,
+                             Sha256Blocks* hash_blocks = nullptr);
 
 }  // namespace libchar

@@ -1,6 +1,6 @@
 // The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on
 // made-up clocks.
-#include "libchar/log/time/time_base.hpp"
+#include "libchar/log/time/grid.hpp"
 
 #include <fmt/format.h>
 

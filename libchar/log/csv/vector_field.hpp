@@ -1,5 +1,5 @@
 #pragma once
-// One plain decimal number from text, by AVX2.
+// One decimal number without exponent from text, by AVX2.
 //
 // A field -?D*.D* of at most 16 characters behind the sign becomes an integer m of its digits and
 // f, the number of digits behind the point; m < 2^53 and 10^f <= 10^15 are exact doubles, so m /
@@ -13,7 +13,7 @@
 
 #if defined(LIBCHAR_X86_64)
 
-namespace libchar::plain {
+namespace libchar::vector_parsing {
 
 inline constexpr std::array<double, 17> kPowers = {
     1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
@@ -62,7 +62,7 @@ inline __m128i vector_of(const Bytes& bytes) {
 struct Field {
   std::int64_t digits = 0;   // all digits as one integer
   std::uint32_t behind = 0;  // how many of them stand behind the point
-  bool plain = false;
+  bool regular = false;
 };
 
 LIBCHAR_SHA_INLINE inline Field read_field(const char* text, std::uint32_t length) {
@@ -75,13 +75,13 @@ LIBCHAR_SHA_INLINE inline Field read_field(const char* text, std::uint32_t lengt
   const auto is_digit = static_cast<std::uint32_t>(
       _mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(digit, vector_of(kNine)), digit)));
   Field field;
-  // Branches that are never taken in a plain file are cheaper than one flag put together from four.
+  // Branches that are never taken in a regular file are cheaper than one flag put together from four.
   if (__builtin_expect(length > 16 || ((is_digit | points) & inside) != inside ||
                            (points & (points - 1)) != 0 || (is_digit & inside) == 0 ||
                            (points != 0 && (points << 1U) > inside),
                        0))
     return field;
-  field.plain = true;
+  field.regular = true;
   const std::uint32_t point = _tzcnt_u32(points | (std::uint32_t{1} << length));
   field.behind = length - point - static_cast<std::uint32_t>(points != 0);
   const __m128i packed = _mm_shuffle_epi8(
@@ -107,6 +107,6 @@ struct Column {
   bool crlf;
 };
 
-}  // namespace libchar::plain
+}  // namespace libchar::vector_parsing
 
 #endif

@@ -1,4 +1,4 @@
-#include "libchar/log/csv/plain_rows.hpp"
+#include "libchar/log/csv/vector_rows.hpp"
 
 #include <catch2/catch.hpp>
 #include <charconv>
@@ -15,22 +15,23 @@ namespace {
 struct Parsed {
   std::vector<double> values;
   std::vector<std::int64_t> stamps;
-  PlainRows result;
+  VectorRows result;
   char fractional = 0;
 };
 
 // One stamp column (seconds) and one value column.
 Parsed parse(std::string text, bool crlf = false) {
   const std::size_t size = text.size();
-  text.append(kPlainPadding, '\0');
+  text.append(kVectorPadding, '\0');
   Parsed out;
   out.values.assign(1000, 0);
   out.stamps.assign(1000, 0);
-  const PlainColumn columns[] = {
-      {.use = PlainColumn::Use::stamp, .stamps = out.stamps.data()},
-      {.use = PlainColumn::Use::value, .values = out.values.data(), .fractional = &out.fractional}};
+  const VectorColumn columns[] = {{.use = VectorColumn::Use::stamp, .stamps = out.stamps.data()},
+                                  {.use = VectorColumn::Use::value,
+                                   .values = out.values.data(),
+                                   .fractional = &out.fractional}};
   std::vector<std::uint32_t> scratch;
-  out.result = parse_plain_rows({text.data(), size}, ',', crlf, columns, 1000, scratch);
+  out.result = parse_vector_rows({text.data(), size}, ',', crlf, columns, 1000, scratch);
   return out;
 }
 
@@ -40,7 +41,7 @@ bool same_bits(double a, double b) {
 
 }  // namespace
 
-TEST_CASE("plain rows: known numbers") {
+TEST_CASE("vector rows: known numbers") {
   if (parse("0,1\n").result.rows == 0)
     return;  // a processor without AVX2: the general parser does all
   const Parsed p = parse("0.001,-1.5\n-2,-0\n1e0,3\n");
@@ -62,7 +63,7 @@ TEST_CASE("plain rows: known numbers") {
   CHECK(parse("0,1\r\n", false).result.rows == 0);
 }
 
-TEST_CASE("plain rows: whatever is not a plain row is not taken") {
+TEST_CASE("vector rows: whatever is unusual is not taken") {
   for (const char* text : {"0,\n",
                            "0,nan\n",
                            "0,1,2\n",
@@ -88,7 +89,7 @@ TEST_CASE("plain rows: whatever is not a plain row is not taken") {
   }
 }
 
-TEST_CASE("plain rows: the same bits as std::from_chars on random numbers of every width") {
+TEST_CASE("vector rows: the same bits as std::from_chars on random numbers of every width") {
   if (parse("0,1\n").result.rows == 0) return;
   std::mt19937_64 random(7);
   for (int round = 0; round < 300; ++round) {
@@ -128,7 +129,7 @@ TEST_CASE("plain rows: the same bits as std::from_chars on random numbers of eve
   }
 }
 
-TEST_CASE("plain rows: one unusual field among plain ones is found in whatever row it stands") {
+TEST_CASE("vector rows: one unusual field among regular ones is found in whatever row it stands") {
   if (parse("0,1\n").result.rows == 0) return;
   std::mt19937_64 random(8);
   for (const char* unusual : {"",
@@ -166,7 +167,7 @@ TEST_CASE("plain rows: one unusual field among plain ones is found in whatever r
   }
 }
 
-TEST_CASE("plain rows: fields that fours cannot take, among those they can") {
+TEST_CASE("vector rows: fields that fours cannot take, among those they can") {
   if (parse("0,1\n").result.rows == 0) return;
   const auto rows_of = [](const std::string& special) {
     std::string text;

@@ -1,4 +1,4 @@
-#include "libchar/log/binary/binary_file.hpp"
+#include "libchar/log/binary/file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 #pragma once
-// Four plain decimal numbers at once, by AVX2, and the hash of the file beside them
+// Four decimal numbers without exponent at once, by AVX2, and the hash of the file beside them
 // (sha256_blocks.hpp).
 
-#include "libchar/log/csv/plain_field.hpp"
+#include "libchar/log/csv/vector_field.hpp"
 
 #if defined(LIBCHAR_X86_64)
 
-namespace libchar::plain {
+namespace libchar::vector_parsing {
 
 // What to divide by, by the distance from the point (or the end, when there is none) to the end:
 // 10^(distance - 1); nothing good when the point stands last. From 32 on with a sign, which the
@@ -14,8 +14,8 @@ namespace libchar::plain {
 inline constexpr auto kDivisors = [] {
   std::array<double, 64> table{};
   for (std::size_t distance = 0; distance < 32; ++distance) {
-    const bool plain = distance == 0 || (distance >= 2 && distance <= 17);
-    table[distance] = !plain ? __builtin_nan("") : distance == 0 ? 1 : kPowers[distance - 1];
+    const bool regular = distance == 0 || (distance >= 2 && distance <= 17);
+    table[distance] = !regular ? __builtin_nan("") : distance == 0 ? 1 : kPowers[distance - 1];
     table[32 + distance] = -table[distance];
   }
   return table;
@@ -107,7 +107,7 @@ LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
   return true;
 }
 
-/// Whole fours of rows, as long as all fields are plain; a block of the hash goes along with every
+/// Whole fours of rows, as long as all fields are regular; a block of the hash is taken with every
 /// two of them. Row 0 must not be among the rows. Returns the first row that is left.
 template <bool kLast>
 LIBCHAR_SHA_INLINE inline std::size_t take_fours(const Column& column,
@@ -141,6 +141,6 @@ LIBCHAR_SHA_INLINE inline std::size_t take_fours(const Column& column,
   return row;
 }
 
-}  // namespace libchar::plain
+}  // namespace libchar::vector_parsing
 
 #endif

@@ -1,0 +1,71 @@
+#include "libchar/log/text_table.hpp"
+
+#include <fstream>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/log/csv/delimiter.hpp"
+#include "libchar/log/csv/line.hpp"
+#include "libchar/log/csv/number.hpp"
+#include "libchar/log/csv/sample.hpp"
+
+namespace libchar {
+namespace {
+
+std::optional<std::string> whole_text(const std::string& path, std::size_t max_bytes) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error({ErrorKind::input, "E0101", path, "cannot be opened", "", ""});
+  std::string text(max_bytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text.size() > max_bytes ? std::nullopt : std::optional(text);
+}
+
+// Those that are neither blank nor comments.
+std::vector<csv::Line> lines_of(const std::string& text) {
+  std::vector<csv::Line> lines;
+  std::uint64_t number = 1;
+  for (std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
+    const csv::Line line = csv::line_at(text, at, number);
+    if (!trimmed(line.text).empty() && !csv::is_comment(line.text)) lines.push_back(line);
+    at = line.after;
+    number += line.lines;
+  }
+  return lines;
+}
+
+TextRow row_of(const csv::Line& line, char delimiter) {
+  TextRow row{line.number, {}};
+  for (csv::Field& field : csv::split(line.text, delimiter))
+    row.cells.push_back({std::move(field.text), field.offset + 1});
+  return row;
+}
+
+}  // namespace
+
+std::optional<TextTable> read_text_table(const std::string& path, std::size_t max_bytes) {
+  const auto text = whole_text(path, max_bytes);
+  if (!text) return std::nullopt;
+  TextTable table;
+  table.bytes = text->size();
+  Sha256 hash;
+  hash.update(*text);
+  table.sha256 = hash.finish();
+  const std::vector<csv::Line> lines = lines_of(*text);
+  if (lines.empty()) return table;
+  const std::vector<csv::Line> sample(
+      lines.begin(),
+      lines.begin() + static_cast<std::ptrdiff_t>(std::min(lines.size(), csv::kSample)));
+  const char delimiter = csv::best_score(sample).delimiter;
+  table.decimal = csv::decimal_mark(sample, delimiter);
+  table.header = row_of(lines[0], delimiter);
+  for (std::size_t i = 1; i < lines.size(); ++i) table.rows.push_back(row_of(lines[i], delimiter));
+  return table;
+}
+
+std::optional<double> number_in(const TextCell& cell, char decimal) {
+  const csv::Cell read = csv::read_cell(cell.text, decimal);
+  return read.kind == csv::Cell::value ? std::optional(read.number) : std::nullopt;
+}
+
+}  // namespace libchar
