@@ -3,8 +3,7 @@
 //   Cov(A1, A2) = 1/(2 n1 n2) sum_{i,k} [R12^2 + 2 mu1 mu2 R12],   A = mean of d^2/2,   mu = R tau
 //   (ramp)
 // The double sum is one over lags, weighted with the number of pairs at each. Being quadratic in
-// theta it is kept as the symmetric matrix of products of unit covariances (shared accuracy notes,
-// 3).
+// theta it is kept as the symmetric matrix of products of unit covariances (docs/theory/allan.md).
 
 #include "libchar/allan/allan_covariance.hpp"
 

@@ -50,7 +50,7 @@ class AllanCovariance {
 };
 
 /// Exact covariance of overlapping Allan variances at the points of `curve` (their m, terms,
-/// stride) for the mixture; cost independent of the record length (accuracy.md 3).
+/// stride) for the mixture; cost independent of the record length (docs/theory/allan.md).
 Eigen::MatrixXd allan_covariance(const AllanCurve& curve, const Mixture& theta);
 
 /// Remembers what was prepared: the channels of one log have the same points and share it. May be used from several threads.

@@ -9,7 +9,7 @@
 namespace libchar {
 
 /// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m
-/// >= 8 at stride m/4 (accuracy.md 9-10). One pass, no cumulative sum over the record. Result
+/// >= 8 at stride m/4 (docs/theory/allan.md). One pass, no cumulative sum over the record. Result
 /// independent of block boundaries.
 class AllanPyramid {
  public:

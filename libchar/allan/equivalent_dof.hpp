@@ -9,7 +9,7 @@
 namespace libchar {
 
 /// Exact equivalent degrees of freedom, 2 E[v]^2 / Var[v], of the deviation's variance at factor m
-/// from `terms` terms at stride `stride`, for the discrete noise mixture (accuracy.md 3).
+/// from `terms` terms at stride `stride`, for the discrete noise mixture (docs/theory/allan.md).
 /// Identities: white, m=1: 2M/3; random walk, m=1: M.
 double equivalent_dof(DeviationType type,
                       const Mixture& theta,

@@ -10,7 +10,7 @@
 //
 // The flicker form is that of Kasdin, Proc. IEEE 83 (1995) 802 (fractional differencing). Its
 // variogram is (4/pi) H_n; summing twice gives s(n) below, and the Allan variance [s(2m) - 4 s(m) +
-// 3 s(0)]/m^2 (shared accuracy notes, 1). The bracket above is the same thing arranged so that
+// 3 s(0)]/m^2 (docs/theory/allan.md). The bracket above is the same thing arranged so that
 // nothing cancels: H_2m - H_m tends to ln(2)/2.
 
 #include "libchar/allan/noise_curves.hpp"

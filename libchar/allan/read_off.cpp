@@ -2,7 +2,7 @@
 // 1 s; the one of slope +1/2 gives K = sigma sqrt(3/tau), its value at 3 s; the minimum is at most
 // 0.664 B + what Q and K add [RV 1.4.1]. A line is drawn only where the local slope is within 1/4
 // of its own: reading K off a point that is not on the +1/2 asymptote is wrong by factors of 29 to
-// 140 (shared notes on peers, 7).
+// 140.
 
 #include "libchar/allan/read_off.hpp"
 

@@ -30,6 +30,7 @@ constexpr double kAllIsOne =
     1e18;  // relative spread sqrt(2/nu) far below the interval's own rounding
 
 constexpr double kHuge = 1e6;  // from here on the expansions
+constexpr double kFar = 0.06;  // |x / nu - 1|: 40 standard deviations and more
 
 /// z: standard normal quantile of the same probability.
 double huge_quantile(double z, double nu) {
@@ -39,16 +40,30 @@ double huge_quantile(double z, double nu) {
                z * (w * (9 * w + 256) - 433) / (4860 * nu * root));
 }
 
+// mu - ln(1 + mu), |mu| <= 0.06, without cancellation.
+double log_excess(double mu) {
+  double excess = 0, power = mu * mu;
+  for (int k = 2; k < 16; ++k, power *= -mu) excess += power / k;
+  return excess;
+}
+
 /// P(X > x), or P(X <= x) for side = -1.
 double huge_tail(double x, double nu, double side) {
   const double a = nu / 2, mu = x / nu - 1;
-  if (std::fabs(mu) > 0.06) return side * mu > 0 ? 0 : 1;  // 40 standard deviations and more
-  double excess = 0, power = mu * mu;  // mu - ln(1 + mu), summed without cancellation
-  for (int k = 2; k < 16; ++k, power *= -mu) excess += power / k;
+  if (std::fabs(mu) > kFar) return side * mu > 0 ? 0 : 1;
+  const double excess = log_excess(mu);
   const double eta = std::copysign(std::sqrt(2 * excess), mu);
   const double c = -1.0 / 3 + eta * (1.0 / 12 - eta * (2.0 / 135 - eta / 864)) - 1 / (540 * a);
   return std::erfc(side * eta * std::sqrt(a / 2)) / 2 +
          side * std::exp(-a * excess) / std::sqrt(2 * std::numbers::pi * a) * c;
+}
+
+// Stirling's formula for gamma(a).
+double huge_density(double x, double nu) {
+  const double a = nu / 2, mu = x / nu - 1;
+  if (std::fabs(mu) > kFar) return 0;
+  return std::exp(-a * log_excess(mu) - 1 / (12 * a)) / (2 * std::sqrt(2 * std::numbers::pi * a)) /
+         (1 + mu);
 }
 
 }  // namespace
@@ -77,6 +92,12 @@ double chi_square_tail(double x, double dof) {
   if (!(dof > 0)) return 1;
   if (dof > kHuge) return huge_tail(x, dof, 1);
   return x <= 0 ? 1 : boost::math::gamma_q(dof / 2, x / 2, Policy());
+}
+
+double chi_square_density(double x, double dof) {
+  if (!(x > 0)) return 0;
+  if (dof > kHuge) return huge_density(x, dof);
+  return boost::math::gamma_p_derivative(dof / 2, x / 2, Policy()) / 2;
 }
 
 Interval chi_square_interval(double deviation, double edf, double confidence) {

@@ -14,6 +14,8 @@ double chi_square_upper_quantile(double tail, double dof);
 double chi_square_cdf(double x, double dof);
 /// P(X > x).
 double chi_square_tail(double x, double dof);
+/// Probability density at x.
+double chi_square_density(double x, double dof);
 
 /// Interval of a deviation from its edf: deviation * sqrt(edf / chi2_{(1±confidence)/2}(edf)). A
 /// mean of squares has at least one degree of freedom: a smaller edf counts as 1, so that the

@@ -6,7 +6,7 @@
 
 namespace libchar {
 
-/// Maps one to one to the exit codes of design.md 6.1 (done in tools/main.cpp only).
+/// Maps one to one to the exit codes of the program (docs/errors.md).
 enum class ErrorKind {
   usage,    ///< the command line asks for something impossible            (exit 2)
   input,    ///< an input is missing, malformed or over a named limit      (exit 3)

@@ -4,24 +4,23 @@
 #include <cmath>
 #include <cstring>
 
+#include "libchar/core/lanes.hpp"
+
 namespace libchar {
 namespace {
 
 constexpr int kLanes = 8;  // independent partial sums: any vector width gives the same bits
-using Four = double __attribute__((vector_size(32)));  // four of the lanes
-using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
-#define LIBCHAR_CLONES __attribute__((target_clones("avx2", "default")))
 
 double fold(const double (&lane)[kLanes]) {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
-LIBCHAR_CLONES double shifted_sum(const double* x, int n, double shift) {
+LIBCHAR_WIDE_LANES double shifted_sum(const double* x, int n, double shift) {
   Four sum[2] = {};
   const int whole = n - n % kLanes;
   for (int i = 0; i < whole; i += kLanes)
     for (int h = 0; h < 2; ++h) {
-      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      const Four v = LIBCHAR_FOUR(x + i + 4 * h);
       sum[h] += v - shift;
     }
   double lane[kLanes];
@@ -31,12 +30,13 @@ LIBCHAR_CLONES double shifted_sum(const double* x, int n, double shift) {
 }
 
 /// Sums of the first four powers of (x - shift) - offset.
-LIBCHAR_CLONES void power_sums(const double* x, int n, double shift, double offset, double out[4]) {
+LIBCHAR_WIDE_LANES void power_sums(
+    const double* x, int n, double shift, double offset, double out[4]) {
   Four sum[4][2] = {};
   const int whole = n - n % kLanes;
   for (int i = 0; i < whole; i += kLanes)
     for (int h = 0; h < 2; ++h) {
-      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      const Four v = LIBCHAR_FOUR(x + i + 4 * h);
       const Four d = (v - shift) - offset, d2 = d * d;
       sum[0][h] += d;
       sum[1][h] += d2;
@@ -56,13 +56,13 @@ LIBCHAR_CLONES void power_sums(const double* x, int n, double shift, double offs
 }
 
 /// Extremes of n values (a multiple of eight); false when one of them is NaN.
-LIBCHAR_CLONES bool extremes(const double* x, int n, double& minimum, double& maximum) {
+LIBCHAR_WIDE_LANES bool extremes(const double* x, int n, double& minimum, double& maximum) {
   Four low[2] = {{minimum, minimum, minimum, minimum}, {minimum, minimum, minimum, minimum}};
   Four high[2] = {{maximum, maximum, maximum, maximum}, {maximum, maximum, maximum, maximum}};
   Four seen[2] = {};
   for (int i = 0; i < n; i += kLanes)
     for (int h = 0; h < 2; ++h) {
-      const Four v = *reinterpret_cast<const FourInMemory*>(x + i + 4 * h);
+      const Four v = LIBCHAR_FOUR(x + i + 4 * h);
       low[h] = v < low[h] ? v : low[h];
       high[h] = v > high[h] ? v : high[h];
       seen[h] = v == v ? seen[h] : v;  // keeps a NaN once it has come by

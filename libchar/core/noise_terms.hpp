@@ -1,5 +1,5 @@
 #pragma once
-// The five noise terms of design.md 2, by index, name and letter; and a mixture of them.
+// The five noise terms (docs/theory/allan.md), by index, name and letter; and a mixture of them.
 
 #include <array>
 #include <cstddef>

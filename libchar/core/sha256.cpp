@@ -9,7 +9,7 @@
 
 #include "libchar/core/sha256_blocks.hpp"
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 #include <cpuid.h>
 #endif
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kBlock = kSha256Block;
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 
 bool has_instructions() {
   static const bool has = [] {

@@ -9,7 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__x86_64__)
+#include "libchar/core/processor.hpp"
+
+#if defined(LIBCHAR_X86_64)
 #include <immintrin.h>
 #endif
 
@@ -26,7 +28,7 @@ struct Sha256Blocks {
 
 inline constexpr std::ptrdiff_t kSha256Block = 64;
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 
 // AVX2 is named for the sake of the loops that these functions are built into.
 #define LIBCHAR_SHA_TARGET target("sha,avx2,bmi,bmi2,popcnt")

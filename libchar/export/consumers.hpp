@@ -1,7 +1,7 @@
 #pragma once
 // Which number goes where: the same coefficients in the units and under the names of the programs
-// and papers that ask for them (shared/reference/exports.md 1-2). Only Q, K and B are exchanged;
-// everything else follows by the formula shown.
+// and papers that ask for them (docs/exports.md). Only Q, K and B are exchanged;
+// everything else follows by the formula shown. The rows: detail/consumer_rows.hpp.
 
 #include <string>
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace libchar {
 
-struct ConsumerRow {
+struct ConsumerNumber {
   std::string consumer;  ///< "Kalibr, EuRoC, OpenVINS"
   std::string key;       ///< "gyroscope_noise_density"
   std::string formula;   ///< "Q"
-  std::string value;     ///< for people, "≤" in front when it is an upper limit
+  std::string value;     ///< to be read, "≤" in front when it is an upper limit
   std::string unit;
 };
 
 /// Rows for a channel of known quantity; for other channels those that need no convention. Empty
 /// without white noise.
-std::vector<ConsumerRow> consumer_rows(const Coefficients& coefficients,
-                                       const std::string& unit,
-                                       double rate_hz);
+std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients,
+                                             const std::string& unit,
+                                             double rate_hz);
 
 }  // namespace libchar

@@ -7,123 +7,11 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 
 namespace libchar {
 namespace {
 
 using enum ExportNeeds;
-
-constexpr std::array<ExportTarget, 15> kTargets = {{
-    {"kalibr",
-     "Kalibr",
-     "continuous densities: Q in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
-     "m/s^3/sqrt(Hz); all > 0",
-     "imu.yaml",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_kalibr},
-    {"euroc",
-     "EuRoC data sets",
-     "continuous densities: Q and K as for Kalibr",
-     "sensor.yaml",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_euroc},
-    {"openvins",
-     "OpenVINS",
-     "continuous densities: Q and K; OpenCV YAML",
-     "kalibr_imu_chain.yaml",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_openvins},
-    {"orbslam3",
-     "ORB-SLAM3",
-     "continuous densities: Q and K, with the rate as a real number; OpenCV YAML",
-     "imu_orbslam3.yaml",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_orbslam3},
-    {"basalt",
-     "Basalt",
-     "continuous densities, though named std: Q and K, one for each axis",
-     "calibration_imu.json",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_basalt},
-    {"vins",
-     "VINS-Mono, VINS-Fusion",
-     "per sample, as its code reads them: acc_n, gyr_n = Q sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
-     "OpenCV YAML",
-     "imu_vins.yaml",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_vins},
-    {"gtsam",
-     "GTSAM",
-     "continuous covariances: Q^2 and K^2",
-     "imu_params.cpp",
-     gyroscope_and_accelerometer,
-     "QK",
-     export_gtsam},
-    {"ros",
-     "ROS sensor_msgs",
-     "variance of a sample: Q^2 f on the diagonal, one for each axis",
-     "imu_covariance.yaml",
-     gyroscope_or_accelerometer,
-     "Q",
-     export_ros},
-    {"sdf",
-     "SDFormat, Gazebo",
-     "stddev of a sample Q sqrt(f); a Gauss-Markov bias by its continuous driving density",
-     "imu.sdf",
-     any_sensor,
-     "QBK",
-     export_sdf},
-    {"rotors",
-     "RotorS, PX4 Gazebo classic, UUV",
-     "continuous densities: Q, and a Gauss-Markov bias by its driving density and correlation time",
-     "imu_plugin.xml",
-     gyroscope_and_accelerometer,
-     "QBK",
-     export_rotors},
-    {"airsim",
-     "AirSim",
-     "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
-     "settings.json",
-     gyroscope_or_accelerometer,
-     "QK",
-     export_airsim},
-    {"gnss-ins-sim",
-     "gnss-ins-sim",
-     "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, "
-     "m/s^2",
-     "imu_err.py",
-     gyroscope_and_accelerometer,
-     "QBK",
-     export_gnss_ins_sim},
-    {"matlab",
-     "MATLAB gyroparams, accelparams",
-     "two-sided densities (NoiseType double-sided): Q, K, and B itself",
-     "imu_params.m",
-     gyroscope_or_accelerometer,
-     "QBK",
-     export_matlab},
-    {"px4",
-     "PX4 EKF2, ArduPilot EK3",
-     "per filter step dt: Q / sqrt(dt), K / sqrt(dt); a lower bound, not a tuning",
-     "ekf_params.txt",
-     gyroscope_or_accelerometer,
-     "QK",
-     export_px4},
-    {"json",
-     "generic JSON",
-     "the sensor model itself, every key of its file; reads back",
-     "model.json",
-     any_sensor,
-     "QBKQzR",
-     export_json},
-}};
 
 std::string channels_of(const SensorGroup& group) {
   std::string text;
@@ -165,7 +53,7 @@ void check_options(const ExportOptions& options) {
   positive("--filter-step", options.filter_step_s);
   if (options.correlation_s) positive("--correlation-time", *options.correlation_s);
   if (options.floor_tau_s) positive("--floor-tau", *options.floor_tau_s);
-  if (options.airsim_tau_s) positive("--airsim-tau", *options.airsim_tau_s);
+  if (options.bias_tau_s) positive("--airsim-tau", *options.bias_tau_s);
   if (options.gravity) positive("--gravity", *options.gravity);
 }
 
@@ -178,9 +66,7 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
                                     target.title));
   };
   for (const SensorModel* m : group.others) leave(*m);
-  const bool magnetic =
-      target.name == "ros" || target.name == "matlab" || target.name == "gnss-ins-sim";
-  if (!group.magnetometer || magnetic) return;
+  if (!group.magnetometer || target.takes.magnetometer) return;
   for (const auto& placed : group.magnetometer->axis)
     if (placed) leave(*placed->model);
 }
@@ -189,7 +75,6 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
 // low-pass, behind which samples scatter less than Q sqrt(f) and neighbours are correlated.
 std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGroup& group) {
   std::vector<std::string> out;
-  if (target.name == "json") return out;
   const auto among = [&](const auto& concerned) {
     std::string channels;
     for (const SensorModel* m : group.all)
@@ -205,7 +90,7 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
   }
   const std::string filtered = among(
       [](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
-  if (!filtered.empty())
+  if (!filtered.empty() && !target.takes.low_pass)
     out.push_back(fmt::format(
         "not in this file: the low-pass of {}; densities are kept, single samples scatter less",
         filtered));
@@ -227,15 +112,18 @@ std::string needs_text(ExportNeeds needs) {
                                               : "gyroscope or accelerometer";
 }
 
-std::span<const ExportTarget> export_targets() {
-  return kTargets;
+std::string targets_that_take(bool ExportTakes::*option) {
+  std::string names;
+  for (const ExportTarget& target : export_targets())
+    if (target.takes.*option) names += fmt::format("{}{}", names.empty() ? "" : ", ", target.name);
+  return names;
 }
 
 const ExportTarget& find_export_target(std::string_view name) {
-  for (const ExportTarget& target : kTargets)
+  for (const ExportTarget& target : export_targets())
     if (target.name == name) return target;
   std::vector<std::string> names;
-  for (const ExportTarget& target : kTargets) names.emplace_back(target.name);
+  for (const ExportTarget& target : export_targets()) names.emplace_back(target.name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
                "E0592",
@@ -254,7 +142,7 @@ Export export_models(const ExportTarget& target,
   group.unexpressed = unexpressed(target, group);
   Export out = target.write(group, options);
   out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
-  if (options.inflate != 1 && target.name != "json")
+  if (options.inflate != 1 && target.takes.inflate)
     out.notes.push_back(
         fmt::format("every noise number is multiplied by {}", shortest(options.inflate)));
   note_left_out(target, group, out);

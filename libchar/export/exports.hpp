@@ -1,6 +1,6 @@
 #pragma once
-// Sensor models for the programs that consume them. One table of targets (exports.cpp), one file
-// export_TARGET.cpp each; nothing here reads or writes files. Conventions and formulas:
+// Sensor models for the programs that consume them. One table of targets (targets.cpp), one file
+// targets/TARGET.cpp each; nothing here reads or writes files. Conventions and formulas:
 // docs/exports.md.
 
 #include <optional>
@@ -26,11 +26,11 @@ struct ExportOptions {
   AxisChoice axes = AxisChoice::automatic;
   double inflate = 1;  ///< every noise number is multiplied by this (before squaring)
   std::optional<double> correlation_s;  ///< of a Gauss-Markov bias; else by `floor_tau_s`
-  std::optional<double> floor_tau_s;   ///< averaging time of the flat part of the Allan curve; else
-                                       ///< from the coefficients and the valid range of the model
-  std::optional<double> airsim_tau_s;  ///< else AirSim's own 500 s and 800 s
-  double filter_step_s = 0.01;         ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
-  std::optional<double> gravity;       ///< m/s^2, for the consumers that have a key for it
+  std::optional<double> floor_tau_s;  ///< averaging time of the flat part of the Allan curve; else
+                                      ///< from the coefficients and the valid range of the model
+  std::optional<double> bias_tau_s;   ///< of AirSim's bias stability; else its own 500 s and 800 s
+  double filter_step_s = 0.01;        ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
+  std::optional<double> gravity;      ///< m/s^2, for the consumers that have a key for it
   std::string topic = "/imu0";
   bool older = false;  ///< for releases before the current file formats (Basalt, ORB-SLAM3)
   AxisOverrides axis;
@@ -50,6 +50,19 @@ enum class ExportNeeds {
 /// "gyroscope and accelerometer", "gyroscope or accelerometer", "any sensor".
 std::string needs_text(ExportNeeds needs);
 
+/// What a target can do something with, beyond the models that it needs.
+struct ExportTakes {
+  bool inflate = true;        ///< `ExportOptions::inflate`; false: numbers are written as they are
+  bool low_pass = false;      ///< the file can say that a sensor has one
+  bool magnetometer = false;  ///< beside the gyroscope and the accelerometer
+  bool gauss_markov = false;  ///< `correlation_s`, `floor_tau_s`
+  bool bias_tau = false;      ///< `bias_tau_s`
+  bool filter_step = false;   ///< `filter_step_s`
+  bool gravity = false;
+  bool topic = false;
+  bool older = false;
+};
+
 struct ExportTarget {
   std::string_view name;        ///< for --to
   std::string_view title;       ///< who reads it
@@ -57,11 +70,15 @@ struct ExportTarget {
   std::string_view file;        ///< name that the consumer's users give it
   ExportNeeds needs;
   std::string_view terms;  ///< letters of the noise terms that the file can express
+  ExportTakes takes;
   Export (*write)(const SensorGroup&, const ExportOptions&);
 };
 
 /// All targets, in the order of the documentation.
 std::span<const ExportTarget> export_targets();
+
+/// "kalibr, openvins": the targets that declare `option`, such as `&ExportTakes::topic`.
+std::string targets_that_take(bool ExportTakes::*option);
 
 /// Throws Error(usage) with the nearest name.
 const ExportTarget& find_export_target(std::string_view name);

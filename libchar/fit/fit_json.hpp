@@ -1,5 +1,5 @@
 #pragma once
-// A fit as JSON, one element of "channels" in `fit --json` and in report.json (design.md 6.3).
+// A fit as JSON, one element of "channels" in `fit --json` and in report.json (docs/json.md).
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Noise coefficients of a record with honest uncertainties. Theory and figures: shared/reference/accuracy.md, docs/theory.
+// Noise coefficients of a record with honest uncertainties. Theory and figures: docs/theory/fit.md.
 
 #include <array>
 #include <cstdint>

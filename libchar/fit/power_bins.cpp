@@ -29,7 +29,7 @@ constexpr std::uint64_t kMeansPerBlock = 64;
 constexpr std::uint64_t kSmallest = 8;  ///< shorter segments carry nothing worth their edge effects
 constexpr std::uint64_t kSingles = 24, kPerOctave = 8;
 constexpr std::uint64_t kExactBelow =
-    4096;  ///< shorter records get the exact flicker means (accuracy.md 1: 6e-5 beyond)
+    4096;  ///< shorter records get the exact flicker means (beyond, the limit is good to 6e-5)
 constexpr std::uint64_t kLongGap = 4096;  ///< shorter gaps are closed up
 
 /// Mean squared coefficients k = first.. of one transform length, pooled over `pooled` transforms.

@@ -21,7 +21,7 @@ struct PowerBin {
 };
 
 /// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`
-/// samples are transformed one by one (k >= 1) and their means as one more series (accuracy.md 1, 10). A record of at most
+/// samples are transformed one by one (k >= 1) and their means as one more series (docs/theory/fit.md). A record of at most
 /// `block` samples gets one exact DCT. Missing samples: short ones are closed up (concatenated), at a long gap a new record
 /// starts and likelihoods add.
 class PowerBinner {

@@ -24,7 +24,7 @@ Inspection inspect(const std::string& path,
 /// "euroc.csv: 6 channels, 200.000 Hz (jitter 0.8 us), 7200 s, 0 gaps".
 std::string summary_line(const LogInfo& info);
 
-/// {"format":"inspect","version":1,"recordings":[…]} with the keys of design.md 6.3.
+/// {"format":"inspect","version":1,"recordings":[…]} with the keys of docs/json.md.
 Json inspection_json(const std::vector<Inspection>& inspections);
 
 }  // namespace libchar

@@ -1,5 +1,5 @@
 #pragma once
-// A sensor model: what is needed to simulate one sensor (design.md 4, [RV 2.2]), and where each
+// A sensor model: what is needed to simulate one sensor (docs/models.md, [RV 2.2]), and where each
 // number came from.
 //
 //   y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))

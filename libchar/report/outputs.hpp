@@ -12,7 +12,7 @@ std::string html_report(const Characterization& result);
 /// The same where its document is there already.
 std::string html_report(const Characterization& result, const Json& without_times);
 
-/// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (design.md 6.3).
+/// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (docs/json.md).
 Json json_report(const Characterization& result);
 /// The document without "measured": all that a page shows, and the same bytes for the same characterization.
 Json json_without_times(const Characterization& result);
@@ -21,7 +21,7 @@ void add_times(Json& document, const Characterization& result);
 /// Allan and spectrum curves of all channels in one table: curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model.
 std::string csv_curves(const Characterization& result);
 
-/// The pieces of JSON that the verbs share (keys of design.md 6.3).
+/// The pieces of JSON that the verbs share (keys: docs/json.md).
 Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
 /// tool, command, input (path, sha256, bytes), warnings: the frame around every document.
 void add_provenance(Json& document,

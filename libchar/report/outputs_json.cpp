@@ -1,4 +1,4 @@
-// The JSON pieces that the verbs share; the keys are those of design.md 6.3, which may grow and
+// The JSON pieces that the verbs share; the keys are those of docs/json.md, which may grow and
 // never change.
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// report.json of a replay; the keys of design.md 6.3, which may grow and never change.
+// report.json of a replay; the keys of docs/json.md, which may grow and never change.
 
 #include "libchar/core/json.hpp"
 #include "libchar/replay/replay_result.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// A scene: a recording (or a simulation of one) plus what is known about it (design.md 1, 6.2).
+// A scene: a recording (or a simulation of one) plus what is known about it (docs/scenes.md).
 
 #include <optional>
 #include <string>

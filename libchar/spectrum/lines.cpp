@@ -14,12 +14,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
 #include <span>
 
+#include "libchar/core/chi_square.hpp"
 #include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/window.hpp"
@@ -129,8 +129,7 @@ class LocalFloor {
  public:
   LocalFloor(const Density& density, std::size_t begin, std::size_t guard)
       : begin_(begin), guard_(guard), power_(density.power) {
-    const boost::math::chi_squared distribution(density.dof);
-    typical_ = quantile(distribution, 0.5) / density.dof;
+    typical_ = chi_square_quantile(0.5, density.dof) / density.dof;
   }
   // Of the flanks that have enough bins the higher; none: count 0. Slopes fall to the right:
   // without a left flank nothing tells a slope from a line.
@@ -166,9 +165,8 @@ class LocalFloor {
 class Threshold {
  public:
   Threshold(double dof, double correlation, double alarm) : dof_(dof), alarm_(alarm) {
-    const boost::math::chi_squared distribution(dof);
-    const double median = quantile(distribution, 0.5);
-    const double spread = 2 * pdf(distribution, median) * median;
+    const double median = chi_square_quantile(0.5, dof);
+    const double spread = 2 * chi_square_density(median, dof) * median;
     median_variance_ = (1 + 2 * correlation) / (spread * spread);
   }
   double operator()(std::size_t count) {

@@ -16,6 +16,7 @@
 #include <complex>
 #include <numbers>
 
+#include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
 
@@ -162,11 +163,8 @@ double average_of_present(const double* x, const std::array<double, kTaps>& taps
   return weight >= 0.75 ? sum / weight : std::nan("");
 }
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-void filter(const double* x, std::size_t count, const double* taps, double shift, double* out) {
+LIBCHAR_WIDE_LANES void filter(
+    const double* x, std::size_t count, const double* taps, double shift, double* out) {
   for (std::size_t i = 0; i < count; ++i) {
     const double* here = x + i * kStep;
     double lanes[kStep] = {};

@@ -3,19 +3,17 @@
 
 #include "libchar/spectrum/spectrum_interval.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 
-#include "libchar/spectrum/spectrum.hpp"
+#include "libchar/core/chi_square.hpp"
 
 namespace libchar {
 
 std::pair<double, double> interval_factors(double dof, double confidence) {
   if (!(dof > 0)) return {0, std::numeric_limits<double>::infinity()};
-  const boost::math::chi_squared distribution(dof);
   const double tail = (1 - confidence) / 2;
-  return {dof / quantile(complement(distribution, tail)), dof / quantile(distribution, tail)};
+  return {dof / chi_square_upper_quantile(tail, dof), dof / chi_square_quantile(tail, dof)};
 }
 
 std::pair<double, double> IntervalFactors::of(double dof) {

@@ -60,7 +60,7 @@ TEST_CASE("flicker Allan variance agrees with 113-bit sums") {
   CHECK(worst < 1e-15);
 }
 
-TEST_CASE("flicker Allan variance joins its asymptote: factors of design.md 2 and m up to 1e9") {
+TEST_CASE("flicker Allan variance joins its asymptote: the published factors and m up to 1e9") {
   const double floor = 2 * std::numbers::ln2 / std::numbers::pi;
   const auto ratio = [&](double m) { return unit_allan_variance(Term::flicker, m, 1) / floor; };
   CHECK(ratio(1) == Approx(1.4427).margin(5e-5));
@@ -144,7 +144,7 @@ TEST_CASE("discrete densities meet their asymptotes at low frequency and the sta
   const double dt = 0.5;
   for (const Term t : {Term::white, Term::flicker, Term::walk, Term::quantization})
     CHECK(unit_spectrum(t, 1e-6, dt) == Approx(spectrum_asymptote(t, 1e-6, dt)).epsilon(1e-11));
-  // accuracy.md 1: S_d/S_c at nu = 1/2 is pi/2 for flicker, (pi/2)^2 for the walk.
+  // Aliasing of sampled noise: S_d/S_c at nu = 1/2 is pi/2 for flicker, (pi/2)^2 for the walk.
   CHECK(unit_spectrum(Term::flicker, 1, dt) / spectrum_asymptote(Term::flicker, 1, dt) ==
         Approx(1.5708).margin(1e-4));
   CHECK(unit_spectrum(Term::walk, 1, dt) / spectrum_asymptote(Term::walk, 1, dt) ==

@@ -1,6 +1,6 @@
 // Learning algorithms of fusion: what they cost and what they reach.
 //   fusion_learning_bench perceptron [SEEDS]  training time and RMS, 3 to 30 neurons, five sensors
-//                                             of [RV] 3.3 (calibrated; thesis.md A1)
+//                                             of [RV] 3.3 (calibrated)
 //   fusion_learning_bench takens              microseconds a step; RMS against the optimum
 //   fusion_learning_bench tilt                RMS of the tilt filters against the best-tuned ones
 
@@ -40,7 +40,7 @@ struct Scene {
   Given given;
 };
 
-/// White levels of [RV] table 3.1 (thesis.md A1: variance 608.4 S and 14.5 S of flicker, taken as
+/// White levels of [RV] table 3.1 (variance 608.4 S and 14.5 S of flicker, taken as
 /// white here); the input has variance 5.78 and, after its filter, correlation .285 at one sample.
 Scene five_sensors(std::uint64_t seed, Eigen::Index instants, Eigen::Index learning) {
   const Eigen::ArrayXd variances =

@@ -54,7 +54,7 @@ TEST_CASE("NIST StRD univariate sets within half a digit of what binary64 input 
     std::size_t n;
     double mean, deviation, mean_digits, deviation_digits;
   };
-  // Certified values from the files; digits: `limit` of reliability.md 2.1 minus 0.5, at most 14.5.
+  // Certified values from the files; digits: what binary64 input allows, less 0.5, at most 14.5.
   const Row rows[] = {
       {"Lew", 200, -177.435, 277.332168044316, 14.5, 14.4},
       {"Lottery", 218, 518.958715596330, 291.699727470969, 14.3, 14.4},

@@ -61,7 +61,7 @@ TEST_CASE("sha256: the digest does not depend on how the bytes are cut") {
   }
 }
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 namespace {
 __attribute__((LIBCHAR_SHA_TARGET)) void take_some(libchar::Sha256Blocks* blocks, int count) {
   libchar::Sha256Lane lane(blocks);

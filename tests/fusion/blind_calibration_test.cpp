@@ -89,7 +89,7 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
     const Eigen::VectorXd estimated = blind.inverse_gain().cwiseInverse() * gain[4];
     return (estimated - gain).cwiseAbs().sum();
   };
-  CHECK(error(false, 0) > 0.3);  // thesis.md B 25: 0.677 with another gauge
+  CHECK(error(false, 0) > 0.3);  // without noise compensation: 0.677 with another gauge
   CHECK(error(false, 1) < 0.03);
   CHECK(error(true, 1) < 0.03);
 }

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(TEST_HEAP_IS_SANITIZED)
 
 namespace {
 thread_local std::size_t trips = 0;

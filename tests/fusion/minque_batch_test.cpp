@@ -78,7 +78,7 @@ TEST_CASE("which variances the differences of the channels determine") {
         "the noise variances of 2 channels of 1 input cannot be told apart: their differences give "
         "1 second moments for 2 "
         "variances");
-  // thesis.md B 35: r = 3 with n = 6 works, though 2r < n is not met; the block H of r = 2, n = 5
+  // r = 3 with n = 6 works, though 2r < n is not met; the block H of r = 2, n = 5
   // does not.
   const Eigen::MatrixXd general = (Eigen::MatrixXd(6, 3) << 1,
                                    .3,

@@ -1,5 +1,5 @@
-// Recursive re-weighted MINQUE: the 50-digit vector, efficiency against the formulas of thesis.md
-// C, faults.
+// Recursive re-weighted MINQUE: the 50-digit vector, efficiency against the information bound of
+// restricted maximum likelihood (docs/theory/fusion.md), faults.
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>

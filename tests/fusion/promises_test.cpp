@@ -1,4 +1,4 @@
-// What each algorithm promises (reliability.md 4), in one table: an algorithm that is registered
+// What each algorithm promises, in one table: an algorithm that is registered
 // without a row here fails.
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Promises that hold for every algorithm of the registry on every scene (reliability.md 4).
+// Promises that hold for every algorithm of the registry on every scene.
 
 #include <catch2/catch.hpp>
 #include <cstring>

@@ -109,7 +109,7 @@ TEST_CASE("Stable32: one value a line, comments, CRLF, rate from the user") {
 }
 
 TEST_CASE("units in names, and names that only look like it") {
-  using csv::name_and_unit;
+  using libchar::name_and_unit;
   using Pair = std::pair<std::string, std::string>;
   CHECK(name_and_unit("gyro_x [deg/s]") == Pair{"gyro_x", "deg/s"});
   CHECK(name_and_unit("imu1_gx[1/16.4 deg/s]") == Pair{"imu1_gx", "1/16.4 deg/s"});

@@ -1,5 +1,5 @@
 // Every shipped scene, cut short, through every algorithm it can feed: what must not change the
-// numbers does not (reliability.md 4).
+// numbers does not.
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -188,14 +188,14 @@ TEST_CASE("outputs do not depend on the time it took, but for one key") {
   CHECK(again == report);
 }
 
-TEST_CASE("which number goes where: the formulas of exports.md on its own figures") {
+TEST_CASE("which number goes where: the formulas of docs/exports.md on figures of its own") {
   NoiseFit fit;
   fit.term[0].value = 1.6968e-4;
   fit.term[0].ci95 = {1.69679e-4, 1.69681e-4};
   fit.term[2].value = 1.9393e-5;
   fit.term[2].ci95 = {1.93929e-5, 1.93931e-5};
   std::map<std::string, std::string> value;
-  for (const ConsumerRow& row : consumer_rows(fit.term, "rad/s", 200))
+  for (const ConsumerNumber& row : consumer_numbers(fit.term, "rad/s", 200))
     value[row.consumer + "/" + row.key] = row.value;
   CHECK(value["Kalibr, EuRoC, OpenVINS/gyroscope_noise_density"] == "1.69680×10⁻⁴");
   CHECK(value["VINS-Mono, VINS-Fusion/gyr_n"] == "0.00339360");
@@ -207,10 +207,10 @@ TEST_CASE("which number goes where: the formulas of exports.md on its own figure
   CHECK(value.count("Data sheet/bias instability") == 0);
   fit.term[2].value.reset();
   fit.term[2].upper95 = 1e-5;
-  for (const ConsumerRow& row : consumer_rows(fit.term, "rad/s", 200)) {
+  for (const ConsumerNumber& row : consumer_numbers(fit.term, "rad/s", 200)) {
     if (row.key == "gyroscope_random_walk") CHECK(row.value == "≤ 1.00×10⁻⁵");
   }
-  CHECK(consumer_rows(Coefficients{}, "rad/s", 200).empty());
+  CHECK(consumer_numbers(Coefficients{}, "rad/s", 200).empty());
 }
 
 TEST_CASE("verdict: says what is fine, what is not, and where") {

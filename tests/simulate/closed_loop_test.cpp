@@ -1,5 +1,5 @@
 // Simulate, fit, compare: the numbers of [RV tables 2.1 and 2.2], each fitted jointly, over 24
-// seeds. (thesis.md A3: the source reads single points off the curves, which finds 0.0040 +- 0.0028
+// seeds. ([RV] 2 reads single points off the curves, which finds 0.0040 +- 0.0028
 // for K and 2.9 times too much for the random walk of the spectrum.)
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -48,7 +48,7 @@ const std::vector<std::size_t> kLengths = {1,   2,   3,   4,    5,    6,    7,  
                                            243, 500, 511, 1009, 1024, 1025, 2048, 3001};
 
 // Relative error in the mean square. FFTW reaches about 0.3 eps sqrt(log2 n) where n has small
-// factors (reliability.md 2.7); large primes run through Rader's convolution and pay a few times
+// factors; large primes run through Rader's convolution and pay a few times
 // that.
 double limit(std::size_t n) {
   const double eps = std::numeric_limits<double>::epsilon();

@@ -322,6 +322,11 @@ TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
   CHECK(interval_factors(10, 0.95).first == Approx(10 / 20.4831773508).epsilon(1e-10));
   CHECK(interval_factors(10, 0.95).second == Approx(10 / 3.2469727802).epsilon(1e-10));
   CHECK(std::isinf(interval_factors(0, 0.95).second));
+  // Cornish & Fisher's expansion in 60 digits.
+  CHECK(interval_factors(1e8, 0.95).first == Approx(0.99972287711094144).epsilon(1e-15));
+  CHECK(interval_factors(1e11, 0.95).first == Approx(0.99999123483248003).epsilon(1e-15));
+  CHECK(interval_factors(1e11, 0.95).second == Approx(1.00000876528329220).epsilon(1e-15));
+  CHECK(interval_factors(1e13, 0.95).second == Approx(1.00000087652311944).epsilon(1e-15));
   const Spectrum s = welch(gaussian(1U << 18U, 6), 2, segments_of(4096));
   int inside = 0, count = 0;
   for (std::size_t k = 2; k < 2048; k += 3, ++count) {

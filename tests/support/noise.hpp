@@ -85,7 +85,7 @@ class FlickerSource {
   std::vector<double> amplitude_;
 };
 
-/// A record of white, flicker and walk with coefficients Q, B, K at rate fs (accuracy.md 1).
+/// A record of white, flicker and walk with coefficients Q, B, K at rate fs (docs/theory/simulation.md).
 class NoiseSource {
  public:
   NoiseSource(std::size_t n, double rate_hz, std::uint64_t seed)

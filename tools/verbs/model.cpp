@@ -249,7 +249,7 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                  "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)",
                  kSmall);
   sub.add_number("--airsim-tau",
-                 options.airsim_tau_s,
+                 options.bias_tau_s,
                  "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
                  kSmall);
   sub.add_number("--filter-step",

@@ -1,6 +1,6 @@
 // Differences of a cumulated record, re-anchored every block. Why: the plain sum of 1e8 samples
 // with an offset of 1e9 standard deviations is 100 % noise, and 9.81 m/s^2 with 1e-3 noise already
-// costs eight digits (shared reliability notes, 4).
+// costs eight digits (docs/theory/allan.md).
 
 #include "libchar/allan/detail/anchored_phase.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "libchar/allan/lanes.hpp"
+#include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
@@ -33,10 +33,10 @@ template <int kOrder>
   for (std::uint64_t t = 0; t < whole; t += kLanes)
     for (std::uint64_t h = 0; h < 2; ++h) {
       const std::uint64_t at = t + 4 * h;
-      const Four middle = LIBCHAR_FOUR_AT(run.at[1] + at), third = LIBCHAR_FOUR_AT(run.at[2] + at);
+      const Four middle = LIBCHAR_FOUR(run.at[1] + at), third = LIBCHAR_FOUR(run.at[2] + at);
       const Four high = third - middle;
-      Four d = high - (middle - LIBCHAR_FOUR_AT(run.at[0] + at));
-      if constexpr (kOrder == 3) d = ((LIBCHAR_FOUR_AT(run.at[3] + at) - third) - high) - d;
+      Four d = high - (middle - LIBCHAR_FOUR(run.at[0] + at));
+      if constexpr (kOrder == 3) d = ((LIBCHAR_FOUR(run.at[3] + at) - third) - high) - d;
       d += c0 + u[h] * (c1 + u[h] * c2);
       u[h] += static_cast<double>(kLanes);
       sum[h] += d * d;
@@ -57,11 +57,11 @@ template <int kOrder>
 
 }  // namespace
 
-LIBCHAR_CLONES double squared_second_differences(const DifferenceRun& run) {
+LIBCHAR_WIDE_LANES double squared_second_differences(const DifferenceRun& run) {
   return any_stride<2>(run);
 }
 
-LIBCHAR_CLONES double squared_third_differences(const DifferenceRun& run) {
+LIBCHAR_WIDE_LANES double squared_third_differences(const DifferenceRun& run) {
   return any_stride<3>(run);
 }
 

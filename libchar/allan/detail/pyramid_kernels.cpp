@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "libchar/allan/lanes.hpp"
+#include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
@@ -24,19 +24,17 @@ double fold(const double (&lane)[kLanes]) {
 }
 
 // The same for four starts at once.
-#define FOUR_OF_ONE(z) (LIBCHAR_FOUR_AT((z) + 1) - LIBCHAR_FOUR_AT(z))
-#define FOUR_OF_TWO(z)                               \
-  ((LIBCHAR_FOUR_AT((z) + 2) - LIBCHAR_FOUR_AT(z)) + \
-   (LIBCHAR_FOUR_AT((z) + 3) - LIBCHAR_FOUR_AT((z) + 1)))
-#define FOUR_OF_FOUR(z)                                      \
-  (((LIBCHAR_FOUR_AT((z) + 4) - LIBCHAR_FOUR_AT(z)) +        \
-    (LIBCHAR_FOUR_AT((z) + 6) - LIBCHAR_FOUR_AT((z) + 2))) + \
-   ((LIBCHAR_FOUR_AT((z) + 5) - LIBCHAR_FOUR_AT((z) + 1)) +  \
-    (LIBCHAR_FOUR_AT((z) + 7) - LIBCHAR_FOUR_AT((z) + 3))))
+#define FOUR_OF_ONE(z) (LIBCHAR_FOUR((z) + 1) - LIBCHAR_FOUR(z))
+#define FOUR_OF_TWO(z) \
+  ((LIBCHAR_FOUR((z) + 2) - LIBCHAR_FOUR(z)) + (LIBCHAR_FOUR((z) + 3) - LIBCHAR_FOUR((z) + 1)))
+#define FOUR_OF_FOUR(z)                                                                            \
+  (((LIBCHAR_FOUR((z) + 4) - LIBCHAR_FOUR(z)) + (LIBCHAR_FOUR((z) + 6) - LIBCHAR_FOUR((z) + 2))) + \
+   ((LIBCHAR_FOUR((z) + 5) - LIBCHAR_FOUR((z) + 1)) +                                              \
+    (LIBCHAR_FOUR((z) + 7) - LIBCHAR_FOUR((z) + 3))))
 
 }  // namespace
 
-LIBCHAR_CLONES double squares_of_four(const double* z, std::size_t n) {
+LIBCHAR_WIDE_LANES double squares_of_four(const double* z, std::size_t n) {
   if (n < 8) return 0;
   double lane[kLanes] = {};
   const std::size_t terms = n - 7, whole = terms / kLanes * kLanes;
@@ -55,7 +53,7 @@ LIBCHAR_CLONES double squares_of_four(const double* z, std::size_t n) {
   return fold(lane);
 }
 
-LIBCHAR_CLONES void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
+LIBCHAR_WIDE_LANES void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
   double one[kLanes] = {}, two[kLanes] = {}, four[kLanes] = {};
   const std::size_t whole = n >= 8 ? (n - 7) / kLanes * kLanes : 0;
   Four sum[6] = {};
@@ -88,16 +86,16 @@ LIBCHAR_CLONES void squares_of_one_two_four(const double* z, std::size_t n, doub
   out[2] = fold(four);
 }
 
-LIBCHAR_CLONES void sum_pairs(const double* z, std::size_t pairs, double origin, double* pair) {
+LIBCHAR_WIDE_LANES void sum_pairs(const double* z, std::size_t pairs, double origin, double* pair) {
   for (std::size_t i = 0; i < pairs; ++i) pair[i] = (z[2 * i] - origin) + (z[2 * i + 1] - origin);
 }
 
-LIBCHAR_CLONES bool all_finite(const double* z, std::size_t n) {
+LIBCHAR_WIDE_LANES bool all_finite(const double* z, std::size_t n) {
   Four sum[2] = {};  // x - x is 0 for a number, NaN for NaN and infinity
   const std::size_t whole = n / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes)
     for (std::size_t h = 0; h < 2; ++h) {
-      const Four v = LIBCHAR_FOUR_AT(z + i + 4 * h);
+      const Four v = LIBCHAR_FOUR(z + i + 4 * h);
       sum[h] += v - v;
     }
   double lane[kLanes];

@@ -20,7 +20,7 @@ namespace libchar {
 namespace {
 
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
-constexpr double kPeakTau = 1.8926178678038266;      // of the hump, in Tc
+constexpr double kPeakTau = 1.8926178678038266;      // of the maximum, in Tc
 constexpr double kSteadyOverB = 1.0759975729152143;  // 0.6642825 / 0.6173643
 
 struct AxisNumber {
@@ -261,6 +261,12 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
                                 triad.kind,
                                 significant(rate, 6)));
   return rate;
+}
+
+const Figure& figure_of(const ImuFigures& f, std::string_view sensor, Term term) {
+  const bool walk = term == Term::walk;
+  if (sensor == "gyroscope") return walk ? f.gyroscope_walk : f.gyroscope_white;
+  return walk ? f.accelerometer_walk : f.accelerometer_white;
 }
 
 ImuFigures imu_figures(const SensorGroup& group,

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/export/exports.hpp"
@@ -75,6 +76,9 @@ struct ImuFigures {
   Figure gyroscope_white, gyroscope_walk, accelerometer_white, accelerometer_walk;
   double gyroscope_rate_hz = 0, accelerometer_rate_hz = 0;
 };
+/// The figure of "gyroscope" or "accelerometer", white noise or random walk.
+const Figure& figure_of(const ImuFigures& figures, std::string_view sensor, Term term);
+
 /// Notes on limits and rates go to `notes`. Throws as `positive_figure` and `rate_of`.
 ImuFigures imu_figures(const SensorGroup& group,
                        const ExportOptions& options,

@@ -8,6 +8,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
+#include "libchar/export/detail/consumer_rows.hpp"
 
 namespace libchar {
 namespace {
@@ -134,13 +135,12 @@ std::string yaml_line(std::string_view key,
 
 std::string density_lines(const ImuFigures& f, std::string_view indent) {
   std::string out;
-  const auto line = [&](const char* key, const Figure& figure, const char* unit) {
-    out += std::string(indent) + yaml_line(key, *figure.value, unit, figure.origin);
-  };
-  line("accelerometer_noise_density", f.accelerometer_white, "m/s^2/sqrt(Hz)");
-  line("accelerometer_random_walk", f.accelerometer_walk, "m/s^3/sqrt(Hz)");
-  line("gyroscope_noise_density", f.gyroscope_white, "rad/s/sqrt(Hz)");
-  line("gyroscope_random_walk", f.gyroscope_walk, "rad/s^2/sqrt(Hz)");
+  for (const char* sensor : {"accelerometer", "gyroscope"})
+    for (const ConsumerRow* row : rows_of("kalibr", sensor)) {
+      const Figure& figure = figure_of(f, sensor, row->term);
+      out += indent;
+      out += yaml_line(row->key, row_value(*row, *figure.value), file_unit(*row), figure.origin);
+    }
   return out;
 }
 

@@ -4,18 +4,13 @@
 // bias instability B. A key that is left out keeps AirSim's MPU-6000, so an absent walk is written
 // as 0.
 
-#include <cmath>
-#include <numbers>
-
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kGravity = 9.80665;
 
 struct Writer {
   const ExportOptions& options;
@@ -23,31 +18,30 @@ struct Writer {
   Json imu{{"SensorType", 2}, {"Enabled", true}};
   Json comments = Json::object();
 
-  void put(const char* key, const SensorTriad& triad, Term term, double factor) {
+  void put(const SensorTriad& triad, Term term, double bias_tau_s = 0) {
+    const ConsumerRow& row = row_of("airsim", triad.kind, term);
+    const std::string key(row.key);
     const Figure figure = scalar_figure(triad, term, Absent::zero, options);
     note_figure(out.notes, key, figure);
     if (!figure.origin.empty()) comments[key] = "before conversion: " + figure.origin;
-    imu[key] = value_or_zero(figure) * factor;
+    imu[key] = row_value(row, value_or_zero(figure), {.bias_tau_s = bias_tau_s});
   }
 };
 
-}  // namespace
-
-Export export_airsim(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Writer writer{options, out};
   if (group.gyroscope) {
-    const double tau = options.airsim_tau_s.value_or(500);
-    writer.put("AngularRandomWalk", *group.gyroscope, Term::white, 60 * kDegrees);
+    const double tau = options.bias_tau_s.value_or(500);
+    writer.put(*group.gyroscope, Term::white);
     writer.imu["GyroBiasStabilityTau"] = tau;
-    writer.put("GyroBiasStability", *group.gyroscope, Term::walk, std::sqrt(tau) * 3600 * kDegrees);
+    writer.put(*group.gyroscope, Term::walk, tau);
   }
   if (group.accelerometer) {
-    const double tau = options.airsim_tau_s.value_or(800);
-    writer.put("VelocityRandomWalk", *group.accelerometer, Term::white, 1e3 / kGravity);
+    const double tau = options.bias_tau_s.value_or(800);
+    writer.put(*group.accelerometer, Term::white);
     writer.imu["AccelBiasStabilityTau"] = tau;
-    writer.put(
-        "AccelBiasStability", *group.accelerometer, Term::walk, std::sqrt(tau) * 1e6 / kGravity);
+    writer.put(*group.accelerometer, Term::walk, tau);
   }
   if (!group.gyroscope || !group.accelerometer)
     out.notes.push_back(std::string("no ") + (group.gyroscope ? "accelerometer" : "gyroscope") +
@@ -64,6 +58,20 @@ Export export_airsim(const SensorGroup& group, const ExportOptions& options) {
   document["sensorchar"] = head;
   out.text = dump_json(document);
   return out;
+}
+
+}  // namespace
+
+ExportTarget airsim_target() {
+  return {
+      "airsim",
+      "AirSim",
+      "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
+      "settings.json",
+      ExportNeeds::gyroscope_or_accelerometer,
+      "QK",
+      {.bias_tau = true},
+      write};
 }
 
 }  // namespace libchar

@@ -3,9 +3,10 @@
 // finds named values by name but takes the first value of the document for value0: nothing may
 // stand in front of it.
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
@@ -16,46 +17,46 @@ struct Writer {
   Json& comments;
 
   // A vector, one number for each axis; one number in old files.
-  Json numbers(const char* key, const SensorTriad& triad, Term term) {
-    const Figure largest = positive_figure(triad, term, options, "Basalt", key);
+  Json numbers(const ConsumerRow& row, const SensorTriad& triad) {
+    const std::string key(row.key);
+    const Figure largest = positive_figure(triad, row.term, options, "Basalt", key);
     if (options.older) {
       comment(key, largest.origin);
-      return number(key, largest);
+      return number(row, largest);
     }
     Json list = Json::array();
     std::array<std::string, 3> origins;
-    const auto figures = axis_figures(triad, term, Absent::limit, options);
+    const auto figures = axis_figures(triad, row.term, Absent::limit, options);
     for (std::size_t i = 0; i < 3; ++i) {
       // An axis of which nothing is known gets what the others have at most.
-      list.push_back(number(key, figures[i].value ? figures[i] : largest));
+      list.push_back(number(row, figures[i].value ? figures[i] : largest));
       origins[i] = figures[i].origin + (figures[i].value ? "" : ": the largest of the others");
     }
     comment(key, axis_origins(origins));
     return list;
   }
 
-  void comment(const char* key, const std::string& origin) {
+  void comment(const std::string& key, const std::string& origin) {
     if (!origin.empty()) comments[key] = origin;
   }
 
-  double number(const char* key, const Figure& figure) {
-    if (figure.limit) note_figure(out.notes, key, figure);
-    return *figure.value;
+  double number(const ConsumerRow& row, const Figure& figure) {
+    if (figure.limit) note_figure(out.notes, row.key, figure);
+    return row_value(row, *figure.value);
   }
 };
 
-}  // namespace
-
-Export export_basalt(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Json comments = Json::object();
   Writer writer{options, out, comments};
   Json value;
   value["imu_update_rate"] = rate_of(*group.gyroscope, out.notes);
-  value["accel_noise_std"] = writer.numbers("accel_noise_std", *group.accelerometer, Term::white);
-  value["gyro_noise_std"] = writer.numbers("gyro_noise_std", *group.gyroscope, Term::white);
-  value["accel_bias_std"] = writer.numbers("accel_bias_std", *group.accelerometer, Term::walk);
-  value["gyro_bias_std"] = writer.numbers("gyro_bias_std", *group.gyroscope, Term::walk);
+  for (const Term term : {Term::white, Term::walk})
+    for (const SensorTriad* triad : {&*group.accelerometer, &*group.gyroscope}) {
+      const ConsumerRow& row = row_of("basalt", triad->kind, term);
+      value[std::string(row.key)] = writer.numbers(row, *triad);
+    }
   Json head = head_json(group,
                         options,
                         "noise_std = white_noise, bias_std = random_walk (roots of two-sided, "
@@ -71,6 +72,19 @@ Export export_basalt(const SensorGroup& group, const ExportOptions& options) {
     out.notes.emplace_back(
         "releases whose calibrations hold one number in place of three: --older");
   return out;
+}
+
+}  // namespace
+
+ExportTarget basalt_target() {
+  return {"basalt",
+          "Basalt",
+          "continuous densities, though named std: Q and K, one for each axis",
+          "calibration_imu.json",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {.older = true},
+          write};
 }
 
 }  // namespace libchar

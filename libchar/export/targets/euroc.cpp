@@ -1,12 +1,13 @@
 // The sensor.yaml of a EuRoC data set: the same four numbers as Kalibr's, in a data set folder.
 
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_euroc(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
   out.text = commented(head_lines(group,
@@ -28,6 +29,19 @@ Export export_euroc(const SensorGroup& group, const ExportOptions& options) {
   out.notes.emplace_back(
       "T_BS is the identity: a recording at rest does not say where the sensor sits");
   return out;
+}
+
+}  // namespace
+
+ExportTarget euroc_target() {
+  return {"euroc",
+          "EuRoC data sets",
+          "continuous densities: Q and K as for Kalibr",
+          "sensor.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {},
+          write};
 }
 
 }  // namespace libchar

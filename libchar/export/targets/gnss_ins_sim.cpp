@@ -5,19 +5,19 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-std::string with_unit(const char* unit, const std::string& origin) {
+std::string with_unit(const std::string& unit, const std::string& origin) {
   return origin.empty() ? unit : fmt::format("{}; {}", unit, origin);
 }
 
@@ -32,16 +32,18 @@ struct Writer {
         "    '{}': np.array({}),  # {}\n", key, export_list(values), comment_text(comment));
   }
 
-  void white(const std::string& key, const SensorTriad& triad, double factor, const char* unit) {
+  void white(const SensorTriad& triad, double rate_hz = 0) {
+    const ConsumerRow& row = row_of("gnss-ins-sim", triad.kind, Term::white);
+    const std::string key(row.key);
     const auto figures = axis_figures(triad, Term::white, Absent::zero, options);
     std::array<double, 3> values{};
     std::array<std::string, 3> origins;
     for (std::size_t i = 0; i < 3; ++i) {
-      values[i] = value_or_zero(figures[i]) * factor;
+      values[i] = row_value(row, value_or_zero(figures[i]), {.rate_hz = rate_hz});
       note_figure(out.notes, key, figures[i]);
       origins[i] = figures[i].origin;
     }
-    line(key, values, with_unit(unit, axis_origins(origins)));
+    line(key, values, with_unit(file_unit(row), axis_origins(origins)));
   }
 
   void bias(const std::string& name, const SensorTriad& triad, double factor, const char* unit) {
@@ -66,9 +68,7 @@ struct Writer {
   }
 };
 
-}  // namespace
-
-Export export_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Writer writer{options, out};
   out.text = commented(head_lines(group,
@@ -84,15 +84,30 @@ Export export_gnss_ins_sim(const SensorGroup& group, const ExportOptions& option
   require_axes(*group.gyroscope, only_axis(options));
   require_axes(*group.accelerometer, only_axis(options));
   writer.bias("gyro", *group.gyroscope, 3600 * kDegrees, "deg/h");
-  writer.white("gyro_arw", *group.gyroscope, 60 * kDegrees, "deg/sqrt(h)");
+  writer.white(*group.gyroscope);
   writer.bias("accel", *group.accelerometer, 1, "m/s^2");
-  writer.white("accel_vrw", *group.accelerometer, 60, "m/s/sqrt(h)");
+  writer.white(*group.accelerometer);
   if (group.magnetometer) {
     const double rate = rate_of(*group.magnetometer, out.notes);
-    writer.white("mag_std", *group.magnetometer, 1e6 * std::sqrt(rate), "uT, of a sample (axis=9)");
+    writer.white(*group.magnetometer, rate);
   }
   out.text += "}\n";
   return out;
+}
+
+}  // namespace
+
+ExportTarget gnss_ins_sim_target() {
+  return {
+      "gnss-ins-sim",
+      "gnss-ins-sim",
+      "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, "
+      "m/s^2",
+      "imu_err.py",
+      ExportNeeds::gyroscope_and_accelerometer,
+      "QBK",
+      {.magnetometer = true, .gauss_markov = true},
+      write};
 }
 
 }  // namespace libchar

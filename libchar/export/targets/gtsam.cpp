@@ -3,13 +3,15 @@
 
 #include <fmt/format.h>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_gtsam(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "GTSAM", out.notes);
   out.text =
@@ -24,23 +26,35 @@ Export export_gtsam(const SensorGroup& group, const ExportOptions& options) {
         export_number(*options.gravity));
   else
     out.text += "// p: what PreintegrationCombinedParams::MakeSharedU(g) returned\n";
-  const auto line = [&](const char* key, const Figure& figure, const char* unit) {
+  const auto line = [&](const ConsumerRow& row) {
+    const Figure& figure = figure_of(f, row.sensor, row.term);
     out.text += fmt::format("p->{} = gtsam::I_3x3 * {};  // {}{}{}\n",
-                            key,
-                            export_number(*figure.value * *figure.value),
-                            unit,
+                            row.key,
+                            export_number(row_value(row, *figure.value)),
+                            file_unit(row),
                             figure.origin.empty() ? "" : "; before squaring: ",
                             figure.origin);
   };
-  line("gyroscopeCovariance", f.gyroscope_white, "(rad/s)^2/Hz");
-  line("accelerometerCovariance", f.accelerometer_white, "(m/s^2)^2/Hz");
-  line("biasOmegaCovariance", f.gyroscope_walk, "(rad/s^2)^2/Hz, combined factor only");
-  line("biasAccCovariance", f.accelerometer_walk, "(m/s^3)^2/Hz, combined factor only");
+  for (const Term term : {Term::white, Term::walk})
+    for (const char* sensor : {"gyroscope", "accelerometer"}) line(row_of("gtsam", sensor, term));
   out.text +=
       "// integrationCovariance and biasAccOmegaInt describe the integration and the first bias, "
       "not the\n"
       "// sensor's noise: they stay yours.\n";
   return out;
+}
+
+}  // namespace
+
+ExportTarget gtsam_target() {
+  return {"gtsam",
+          "GTSAM",
+          "continuous covariances: Q^2 and K^2",
+          "imu_params.cpp",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {.gravity = true},
+          write};
 }
 
 }  // namespace libchar

@@ -1,17 +1,31 @@
 // The sensor model itself as JSON, for programs without a format of their own.
 
-#include "libchar/export/detail/export_targets.hpp"
+#include "libchar/export/detail/target_list.hpp"
 #include "libchar/model/model_json.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_json(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = dump_json(models_json(group.all));
   if (options.inflate != 1 || options.axes != AxisChoice::automatic)
     out.notes.emplace_back(
         "the models are written as they are: --inflate and --axes are for the other targets");
   return out;
+}
+
+}  // namespace
+
+ExportTarget json_target() {
+  return {"json",
+          "generic JSON",
+          "the sensor model itself, every key of its file; reads back",
+          "model.json",
+          ExportNeeds::any_sensor,
+          "QBKQzR",
+          {.inflate = false, .low_pass = true},
+          write};
 }
 
 }  // namespace libchar

@@ -3,12 +3,13 @@
 // densities by sqrt(1/update_rate) itself.
 
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_kalibr(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
   out.text = commented(head_lines(group,
@@ -20,6 +21,20 @@ Export export_kalibr(const SensorGroup& group, const ExportOptions& options) {
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
   out.text += density_lines(f);
   return out;
+}
+
+}  // namespace
+
+ExportTarget kalibr_target() {
+  return {"kalibr",
+          "Kalibr",
+          "continuous densities: Q in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
+          "m/s^3/sqrt(Hz); all > 0",
+          "imu.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {.topic = true},
+          write};
 }
 
 }  // namespace libchar

@@ -4,9 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
@@ -16,15 +17,14 @@ struct Writer {
   Export& out;
 
   // ",'Key',value" or ",'Key',[x y z]", or nothing when no axis has a value.
-  std::string argument(
-      const SensorTriad& triad, Term term, const char* key, double factor, std::string& comments) {
-    const auto figures = axis_figures(triad, term, Absent::zero, options);
+  std::string argument(const SensorTriad& triad, const ConsumerRow& row, std::string& comments) {
+    const auto figures = axis_figures(triad, row.term, Absent::zero, options);
     std::array<double, 3> v{};
     for (std::size_t i = 0; i < 3; ++i) {
-      v[i] = value_or_zero(figures[i]) * factor;
+      v[i] = row_value(row, value_or_zero(figures[i]));
       const std::string origin = figures[i].origin.empty() ? "" : comment_text(figures[i].origin);
       const std::string line = fmt::format("%   {}: {}\n",
-                                           key,
+                                           row.key,
                                            triad.shared || options.axes != AxisChoice::automatic
                                                ? origin
                                                : fmt::format("{} {}", "xyz"[i], origin));
@@ -32,13 +32,13 @@ struct Writer {
     }
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) {
       out.notes.push_back(
-          fmt::format("{} of the {}: left out ({})", key, triad.kind, figures[0].origin));
+          fmt::format("{} of the {}: left out ({})", row.key, triad.kind, figures[0].origin));
       return "";
     }
     if (v[0] == v[1] && v[1] == v[2])
-      return fmt::format(", ...\n    '{}', {}", key, export_number(v[0]));
+      return fmt::format(", ...\n    '{}', {}", row.key, export_number(v[0]));
     return fmt::format(", ...\n    '{}', [{} {} {}]",
-                       key,
+                       row.key,
                        export_number(v[0]),
                        export_number(v[1]),
                        export_number(v[2]));
@@ -47,15 +47,13 @@ struct Writer {
   void block(const std::optional<SensorTriad>& triad,
              const char* name,
              const char* function,
-             double factor,
              const char* unit) {
     if (!triad) return;
     require_axes(*triad, only_axis(options));
     std::string comments;
     std::string call = fmt::format("{} = {}('NoiseType', 'double-sided'", name, function);
-    call += argument(*triad, Term::white, "NoiseDensity", factor, comments);
-    call += argument(*triad, Term::walk, "RandomWalk", factor, comments);
-    call += argument(*triad, Term::flicker, "BiasInstability", factor, comments);
+    for (const ConsumerRow* row : rows_of("matlab", triad->kind))
+      call += argument(*triad, *row, comments);
     const Figure white = scalar_figure(*triad, Term::white, Absent::zero, options);
     out.text += fmt::format(
         "% {}: NoiseDensity in ({})/sqrt(Hz), RandomWalk in ({})/s/sqrt(Hz), BiasInstability in "
@@ -68,14 +66,13 @@ struct Writer {
     out.text += fmt::format(
         "% Releases without NoiseType apply sqrt(fs/2): there NoiseDensity is sqrt(2) times as "
         "large, {}.\n",
-        export_number(1.4142135623730951 * value_or_zero(white) * factor));
+        export_number(row_value(row_of("matlab", triad->kind, Term::white),
+                                1.4142135623730951 * value_or_zero(white))));
     out.text += call + ");\n";
   }
 };
 
-}  // namespace
-
-Export export_matlab(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Writer writer{options, out};
   out.text = commented(head_lines(group,
@@ -83,10 +80,23 @@ Export export_matlab(const SensorGroup& group, const ExportOptions& options) {
                                   "NoiseDensity = white_noise, RandomWalk = random_walk, "
                                   "BiasInstability = bias_instability (two-sided densities)"),
                        "% ");
-  writer.block(group.gyroscope, "gyro", "gyroparams", 1, "rad/s");
-  writer.block(group.accelerometer, "accel", "accelparams", 1, "m/s^2");
-  writer.block(group.magnetometer, "mag", "magparams", 1e6, "uT");
+  writer.block(group.gyroscope, "gyro", "gyroparams", "rad/s");
+  writer.block(group.accelerometer, "accel", "accelparams", "m/s^2");
+  writer.block(group.magnetometer, "mag", "magparams", "uT");
   return out;
+}
+
+}  // namespace
+
+ExportTarget matlab_target() {
+  return {"matlab",
+          "MATLAB gyroparams, accelparams",
+          "two-sided densities (NoiseType double-sided): Q, K, and B itself",
+          "imu_params.m",
+          ExportNeeds::gyroscope_or_accelerometer,
+          "QBK",
+          {.magnetometer = true},
+          write};
 }
 
 }  // namespace libchar

@@ -2,8 +2,8 @@
 // model, in OpenCV's dialect of YAML, whose first line has to be %YAML:1.0.
 
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
@@ -21,9 +21,7 @@ std::string matrix(const char* key, int size, bool identity, const char* comment
   return out;
 }
 
-}  // namespace
-
-Export export_openvins(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OpenVINS", out.notes);
   out.text = "%YAML:1.0\n";
@@ -46,6 +44,19 @@ Export export_openvins(const SensorGroup& group, const ExportOptions& options) {
   out.text += matrix("Tg", 3, false, "");
   out.notes.emplace_back("intrinsics and T_i_b are ideal: a recording at rest does not show them");
   return out;
+}
+
+}  // namespace
+
+ExportTarget openvins_target() {
+  return {"openvins",
+          "OpenVINS",
+          "continuous densities: Q and K; OpenCV YAML",
+          "kalibr_imu_chain.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {.topic = true},
+          write};
 }
 
 }  // namespace libchar

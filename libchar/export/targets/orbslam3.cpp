@@ -6,13 +6,15 @@
 
 #include <cmath>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_orbslam3(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "ORB-SLAM3", out.notes);
   out.text = "%YAML:1.0\n";
@@ -24,13 +26,12 @@ Export export_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   out.text += "# Put the IMU lines into your settings file, which begins with %YAML:1.0 itself.\n";
   if (!options.older)
     out.text += "File.version: \"1.0\"  # with it IMU.Frequency has to be a real number\n";
-  const auto line = [&](const char* key, const Figure& figure, const char* unit) {
-    out.text += yaml_line(key, *figure.value, unit, figure.origin);
-  };
-  line("IMU.NoiseGyro", f.gyroscope_white, "rad/s/sqrt(Hz)");
-  line("IMU.NoiseAcc", f.accelerometer_white, "m/s^2/sqrt(Hz)");
-  line("IMU.GyroWalk", f.gyroscope_walk, "rad/s^2/sqrt(Hz)");
-  line("IMU.AccWalk", f.accelerometer_walk, "m/s^3/sqrt(Hz)");
+  for (const Term term : {Term::white, Term::walk})
+    for (const char* sensor : {"gyroscope", "accelerometer"}) {
+      const ConsumerRow& row = row_of("orbslam3", sensor, term);
+      const Figure& figure = figure_of(f, sensor, term);
+      out.text += yaml_line(row.key, row_value(row, *figure.value), file_unit(row), figure.origin);
+    }
   if (!options.older) {
     out.text += yaml_line("IMU.Frequency", f.gyroscope_rate_hz, "Hz", "");
     return out;
@@ -45,6 +46,19 @@ Export export_orbslam3(const SensorGroup& group, const ExportOptions& options) {
                     f.gyroscope_rate_hz,
                     whole));
   return out;
+}
+
+}  // namespace
+
+ExportTarget orbslam3_target() {
+  return {"orbslam3",
+          "ORB-SLAM3",
+          "continuous densities: Q and K, with the rate as a real number; OpenCV YAML",
+          "imu_orbslam3.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QK",
+          {.older = true},
+          write};
 }
 
 }  // namespace libchar

@@ -5,81 +5,58 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
 
-struct Parameter {
-  const char* px4;
-  const char* ardupilot;
-  Term term;
-  const char* unit;
-  const char* px4_default;
-};
+// PX4's own values, in the order of its rows of the table.
+constexpr std::array kGyroscopeDefaults = {"0.015", "0.001"};
+constexpr std::array kAccelerometerDefaults = {"0.35", "0.003"};
 
 void put(const SensorTriad& triad,
-         const Parameter& p,
+         const ConsumerRow& row,
+         const char* px4_default,
          const ExportOptions& options,
          Export& out,
          std::string& px4,
          std::string& ardupilot) {
-  const Figure figure = scalar_figure(triad, p.term, Absent::limit, options);
-  note_figure(out.notes, p.px4, figure);
+  const ConsumerRow& other = row_of("ardupilot", triad.kind, row.term);
+  const Figure figure = scalar_figure(triad, row.term, Absent::limit, options);
+  note_figure(out.notes, row.key, figure);
   if (!figure.value) {
-    px4 += fmt::format("# {} keeps its value: {}\n", p.px4, comment_text(figure.origin));
-    ardupilot +=
-        fmt::format("# {} keeps its value: {}\n", p.ardupilot, comment_text(figure.origin));
+    px4 += fmt::format("# {} keeps its value: {}\n", row.key, comment_text(figure.origin));
+    ardupilot += fmt::format("# {} keeps its value: {}\n", other.key, comment_text(figure.origin));
     return;
   }
-  const std::string value = export_number(*figure.value / std::sqrt(options.filter_step_s));
+  const std::string value =
+      export_number(row_value(row, *figure.value, {.filter_step_s = options.filter_step_s}));
   px4 += fmt::format("# {}, PX4's default is {}{}{}\nparam set {} {}\n",
-                     p.unit,
-                     p.px4_default,
+                     file_unit(row),
+                     px4_default,
                      figure.origin.empty() ? "" : "; before conversion: ",
                      comment_text(figure.origin),
-                     p.px4,
+                     row.key,
                      value);
-  ardupilot += fmt::format("param set {} {}\n", p.ardupilot, value);
+  ardupilot += fmt::format("param set {} {}\n", other.key, value);
 }
 
-}  // namespace
-
-Export export_px4(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   std::string px4, ardupilot;
-  if (group.gyroscope) {
-    put(*group.gyroscope,
-        {"EKF2_GYR_NOISE", "EK3_GYRO_P_NSE", Term::white, "rad/s", "0.015"},
-        options,
-        out,
-        px4,
-        ardupilot);
-    put(*group.gyroscope,
-        {"EKF2_GYR_B_NOISE", "EK3_GBIAS_P_NSE", Term::walk, "rad/s^2", "0.001"},
-        options,
-        out,
-        px4,
-        ardupilot);
-  }
-  if (group.accelerometer) {
-    put(*group.accelerometer,
-        {"EKF2_ACC_NOISE", "EK3_ACC_P_NSE", Term::white, "m/s^2", "0.35"},
-        options,
-        out,
-        px4,
-        ardupilot);
-    put(*group.accelerometer,
-        {"EKF2_ACC_B_NOISE", "EK3_ABIAS_P_NSE", Term::walk, "m/s^3", "0.003"},
-        options,
-        out,
-        px4,
-        ardupilot);
-  }
+  const auto put_all = [&](const std::optional<SensorTriad>& triad, const auto& defaults) {
+    if (!triad) return;
+    const auto rows = rows_of("px4", triad->kind);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      put(*triad, *rows[i], defaults.at(i), options, out, px4, ardupilot);
+  };
+  put_all(group.gyroscope, kGyroscopeDefaults);
+  put_all(group.accelerometer, kAccelerometerDefaults);
   out.text =
       commented(head_lines(group,
                            options,
@@ -96,6 +73,19 @@ Export export_px4(const SensorGroup& group, const ExportOptions& options) {
   out.notes.emplace_back(
       "these are the sensor's own noise at rest, a lower bound for the filter's numbers");
   return out;
+}
+
+}  // namespace
+
+ExportTarget px4_target() {
+  return {"px4",
+          "PX4 EKF2, ArduPilot EK3",
+          "per filter step dt: Q / sqrt(dt), K / sqrt(dt); a lower bound, not a tuning",
+          "ekf_params.txt",
+          ExportNeeds::gyroscope_or_accelerometer,
+          "QK",
+          {.filter_step = true},
+          write};
 }
 
 }  // namespace libchar

@@ -4,22 +4,22 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
 
 const char* const kNotProvided = "[-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]";
 
-std::string covariance(const char* key,
+std::string covariance(const char* sensor,
                        const std::optional<SensorTriad>& triad,
-                       const char* unit,
                        const ExportOptions& options,
                        Export& out) {
+  const ConsumerRow& row = row_of("ros", sensor, Term::white);
+  const std::string key(row.key);
   if (!triad) {
     out.notes.push_back(fmt::format("{}: -1 first, that is not provided; no model was given", key));
     return fmt::format("{}: {}  # not provided\n", key, kNotProvided);
@@ -31,7 +31,7 @@ std::string covariance(const char* key,
   const auto figures = axis_figures(*triad, Term::white, Absent::limit, options);
   for (std::size_t i = 0; i < 3; ++i) {
     const Figure& figure = figures[i].value ? figures[i] : largest;
-    variance[i] = *figure.value * *figure.value * rate;
+    variance[i] = row_value(row, *figure.value, {.rate_hz = rate});
     if (figure.limit) note_figure(out.notes, key, figure);
     origins[i] = figure.origin;
   }
@@ -41,15 +41,13 @@ std::string covariance(const char* key,
                      export_number(variance[0]),
                      export_number(variance[1]),
                      export_number(variance[2]),
-                     unit,
+                     file_unit(row),
                      export_number(rate),
                      comment.empty() ? "" : "; ",
                      comment);
 }
 
-}  // namespace
-
-Export export_ros(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = commented(
       head_lines(group, options, "variance of a sample = white_noise^2 f (row major, x y z)"),
@@ -58,16 +56,23 @@ Export export_ros(const SensorGroup& group, const ExportOptions& options) {
   out.text += fmt::format(
       "orientation_covariance: {}  # not provided: no attitude in this device's noise\n",
       kNotProvided);
-  out.text += covariance("angular_velocity_covariance", group.gyroscope, "(rad/s)^2", options, out);
-  out.text +=
-      covariance("linear_acceleration_covariance", group.accelerometer, "(m/s^2)^2", options, out);
-  if (group.magnetometer)
-    out.text += covariance("magnetic_field_covariance",
-                           group.magnetometer,
-                           "T^2, of sensor_msgs/MagneticField",
-                           options,
-                           out);
+  out.text += covariance("gyroscope", group.gyroscope, options, out);
+  out.text += covariance("accelerometer", group.accelerometer, options, out);
+  if (group.magnetometer) out.text += covariance("magnetometer", group.magnetometer, options, out);
   return out;
+}
+
+}  // namespace
+
+ExportTarget ros_target() {
+  return {"ros",
+          "ROS sensor_msgs",
+          "variance of a sample: Q^2 f on the diagonal, one for each axis",
+          "imu_covariance.yaml",
+          ExportNeeds::gyroscope_or_accelerometer,
+          "Q",
+          {.magnetometer = true},
+          write};
 }
 
 }  // namespace libchar

@@ -6,9 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
@@ -25,12 +26,13 @@ std::string triad_block(const SensorTriad& triad,
   const std::string name = triad.kind;
   const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
   const GaussMarkov bias = gauss_markov_scalar(triad, options);
-  note_figure(out.notes, name + "NoiseDensity", white);
+  const ConsumerRow& row = row_of("rotors", name, Term::white);
+  note_figure(out.notes, row.key, white);
   if (bias.driving == 0) out.notes.push_back(name + "RandomWalk: 0 (" + bias.origin + ")");
   std::string text = parameter(
-      name + "NoiseDensity",
-      value_or_zero(white),
-      fmt::format("{}/sqrt(Hz){}{}", unit, white.origin.empty() ? "" : "; ", white.origin));
+      std::string(row.key),
+      row_value(row, value_or_zero(white)),
+      fmt::format("{}{}{}", file_unit(row), white.origin.empty() ? "" : "; ", white.origin));
   const std::string driving = fmt::format("{}/s/sqrt(Hz); {}", unit, bias.origin);
   if (name == "gyroscope")
     text += parameter(
@@ -47,9 +49,7 @@ std::string triad_block(const SensorTriad& triad,
   return text;
 }
 
-}  // namespace
-
-Export export_rotors(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
   out.text += commented(head_lines(group,
@@ -67,6 +67,20 @@ Export export_rotors(const SensorGroup& group, const ExportOptions& options) {
   out.text += "</plugin>\n";
   out.notes.emplace_back("robotNamespace, linkName and imuTopic of the plugin stay yours");
   return out;
+}
+
+}  // namespace
+
+ExportTarget rotors_target() {
+  return {"rotors",
+          "RotorS, PX4 Gazebo classic, UUV",
+          "continuous densities: Q, and a Gauss-Markov bias by its driving density and correlation "
+          "time",
+          "imu_plugin.xml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "QBK",
+          {.gauss_markov = true},
+          write};
 }
 
 }  // namespace libchar

@@ -5,29 +5,30 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "libchar/core/error.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
 namespace {
 
-std::string noise_element(const PlacedModel& placed,
+std::string noise_element(const std::string& sensor,
+                          const PlacedModel& placed,
                           const Figure& white,
                           const GaussMarkov& bias,
                           double rate_hz,
                           const std::string& pad) {
   const SensorModel& m = *placed.model;
   std::string out = pad + "<noise type=\"gaussian\">\n";
-  const auto line = [&](const char* key, double value) {
+  const auto line = [&](std::string_view key, double value) {
     out += fmt::format("{}  <{}>{}</{}>\n", pad, key, export_number(value), key);
   };
   line("mean", m.bias.value * placed.to_si);
-  line("stddev", value_or_zero(white) * std::sqrt(rate_hz));
+  const ConsumerRow& row = row_of("sdf", sensor, Term::white);
+  line(row.key, row_value(row, value_or_zero(white), {.rate_hz = rate_hz}));
   line("bias_mean", 0);
   line("bias_stddev", m.bias.spread * placed.to_si);
   if (bias.driving > 0) {
@@ -58,7 +59,7 @@ std::string triad_element(const char* element,
       out.notes.push_back(
           fmt::format("{} {}: no dynamic bias ({})", triad.kind, "xyz"[i], bias.origin));
     text += fmt::format("        <{}>\n", "xyz"[i]);
-    text += noise_element(placed, white[i], bias, rate, "          ");
+    text += noise_element(triad.kind, placed, white[i], bias, rate, "          ");
     text += fmt::format("        </{}>\n", "xyz"[i]);
   }
   return text + fmt::format("      </{}>\n", element);
@@ -88,18 +89,19 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
   const double rate = rate_of(triad, out.notes);
   const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
   note_figure(out.notes, "barometer: stddev", white);
-  return sensor_element(
-      "air_pressure",
-      rate,
-      "    <air_pressure>\n      <pressure>\n" +
-          noise_element(
-              *triad.axis[0], white, gauss_markov(*triad.axis[0], options), rate, "        ") +
-          "      </pressure>\n    </air_pressure>\n");
+  return sensor_element("air_pressure",
+                        rate,
+                        "    <air_pressure>\n      <pressure>\n" +
+                            noise_element(triad.kind,
+                                          *triad.axis[0],
+                                          white,
+                                          gauss_markov(*triad.axis[0], options),
+                                          rate,
+                                          "        ") +
+                            "      </pressure>\n    </air_pressure>\n");
 }
 
-}  // namespace
-
-Export export_sdf(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   std::string sensors, imu;
   if (group.gyroscope) imu += triad_element("angular_velocity", *group.gyroscope, options, out);
@@ -143,6 +145,19 @@ Export export_sdf(const SensorGroup& group, const ExportOptions& options) {
       "  precision is left out: the noise of rounding is part of white_noise already.\n-->\n";
   out.text += "<link name=\"sensors_link\">\n" + sensors + "</link>\n";
   return out;
+}
+
+}  // namespace
+
+ExportTarget sdf_target() {
+  return {"sdf",
+          "SDFormat, Gazebo",
+          "stddev of a sample Q sqrt(f); a Gauss-Markov bias by its continuous driving density",
+          "imu.sdf",
+          ExportNeeds::any_sensor,
+          "QBK",
+          {.gauss_markov = true},
+          write};
 }
 
 }  // namespace libchar

@@ -8,15 +8,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
-#include "libchar/export/detail/export_targets.hpp"
 #include "libchar/export/detail/export_text.hpp"
+#include "libchar/export/detail/target_list.hpp"
 
 namespace libchar {
+namespace {
 
-Export export_vins(const SensorGroup& group, const ExportOptions& options) {
+Export write(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "VINS", out.notes);
   out.text = "%YAML:1.0\n";
@@ -36,31 +36,36 @@ Export export_vins(const SensorGroup& group, const ExportOptions& options) {
                  "hence w = K sqrt(f).",
                  "Put these lines into your configuration, which begins with %YAML:1.0 itself."},
                 "# ");
-  const auto line =
-      [&](const char* key, const Figure& figure, double factor, const char* unit, std::string how) {
-        if (!figure.origin.empty()) how += "; " + figure.origin;
-        out.text += yaml_line(key, *figure.value * factor, unit, how);
-      };
+  const auto line = [&](const char* sensor, Term term, double rate, std::string how) {
+    const ConsumerRow& row = row_of("vins", sensor, term);
+    const Figure& figure = figure_of(f, sensor, term);
+    if (!figure.origin.empty()) how += "; " + figure.origin;
+    out.text +=
+        yaml_line(row.key, row_value(row, *figure.value, {.rate_hz = rate}), file_unit(row), how);
+  };
   const double fa = f.accelerometer_rate_hz, fg = f.gyroscope_rate_hz;
   const std::string a = export_number(fa), g = export_number(fg);
-  line("acc_n",
-       f.accelerometer_white,
-       std::sqrt(2 * fa),
-       "m/s^2",
-       fmt::format("white_noise sqrt(2*{})", a));
-  line("gyr_n",
-       f.gyroscope_white,
-       std::sqrt(2 * fg),
-       "rad/s",
-       fmt::format("white_noise sqrt(2*{})", g));
-  line("acc_w",
-       f.accelerometer_walk,
-       std::sqrt(fa),
-       "m/s^3",
-       fmt::format("random_walk sqrt({})", a));
-  line("gyr_w", f.gyroscope_walk, std::sqrt(fg), "rad/s^2", fmt::format("random_walk sqrt({})", g));
+  line("accelerometer", Term::white, fa, fmt::format("white_noise sqrt(2*{})", a));
+  line("gyroscope", Term::white, fg, fmt::format("white_noise sqrt(2*{})", g));
+  line("accelerometer", Term::walk, fa, fmt::format("random_walk sqrt({})", a));
+  line("gyroscope", Term::walk, fg, fmt::format("random_walk sqrt({})", g));
   if (options.gravity) out.text += yaml_line("g_norm", *options.gravity, "m/s^2", "");
   return out;
+}
+
+}  // namespace
+
+ExportTarget vins_target() {
+  return {
+      "vins",
+      "VINS-Mono, VINS-Fusion",
+      "per sample, as its code reads them: acc_n, gyr_n = Q sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
+      "OpenCV YAML",
+      "imu_vins.yaml",
+      ExportNeeds::gyroscope_and_accelerometer,
+      "QK",
+      {.gravity = true},
+      write};
 }
 
 }  // namespace libchar

@@ -2,7 +2,7 @@
 // model's exact covariance:
 //   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
 //   fitted curve stands still
-// (accuracy.md 3-5). There is no objective behind the reweighting, so that it may swing: damped by a
+// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: damped by a
 // half after 25 rounds.
 #include "libchar/fit/detail/allan_fit.hpp"
 

@@ -47,7 +47,7 @@ std::size_t largest_term(const Mixture& theta, double m, double dt_s) {
 std::optional<Clash> worst_clash(const NoiseFit& fit, const AllanCurve& allan) {
   AllanCurve curve = allan;
   add_intervals(curve, fit.theta);
-  // Where a low-pass colours the curve the plain model is not comparable (accuracy.md 1: 1 % beyond 150 time constants).
+  // Where a low-pass colours the curve the plain model is not comparable (within 1 % only beyond 150 time constants).
   const double from_s = fit.bandwidth_hz ? 150 / (2 * std::numbers::pi * *fit.bandwidth_hz) : 0;
   std::optional<Clash> worst;
   for (const AllanPoint& point : curve.points) {

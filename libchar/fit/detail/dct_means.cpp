@@ -1,4 +1,4 @@
-// Expected squared DCT-II coefficients (derivation and checks: shared/reference/accuracy.md 1).
+// Expected squared DCT-II coefficients (what they are for: docs/theory/fit.md).
 // With a = pi k / n:
 //   white         Q^2 fs                                                    exact, uncorrelated
 //   flicker       B^2 r_k / (2 sin(a/2)),  r_k = (2/pi) Si(pi k) - (2/pi^2)(1 - (-1)^k)/k error

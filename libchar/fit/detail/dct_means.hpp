@@ -18,7 +18,7 @@ std::array<double, kTerms> dct_mean(double k, std::uint64_t n, double dt_s);
 
 /// E[c_k^2], k = 1..n-1 at [k-1], of a contrast-only process with generalised covariance g(0..n-1):
 ///   (2/n) sum_j g(j) e_j [(n-j) cos(a j) - sin(a j)/sin a],   e_0 = 1/2... as two real transforms
-///   (accuracy.md 1).
+///   (one DCT-I and one DST-I; docs/theory/fit.md).
 std::vector<double> dct_means_of_covariance(const std::vector<double>& g);
 
 /// E[c_k^2] per unit theta for the series sqrt(m) * (mean of m samples), n of them: white noise

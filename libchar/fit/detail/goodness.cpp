@@ -3,9 +3,10 @@
 // included, and sum z^2 is chi-square.
 #include "libchar/fit/detail/goodness.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+
+#include "libchar/core/chi_square.hpp"
 
 namespace libchar {
 
@@ -15,14 +16,13 @@ double normal_deviate(double energy_ratio, double dof) {
     const double spread = 2 / (9 * dof);
     return (std::cbrt(energy_ratio) - (1 - spread)) / std::sqrt(spread);
   }
-  const boost::math::chi_squared chi(dof);
   const double x = dof * energy_ratio;
   constexpr double kFar = 38;
   if (energy_ratio > 1) {
-    const double tail = cdf(complement(chi, x));
+    const double tail = chi_square_tail(x, dof);
     return tail > 1e-300 ? std::sqrt(2.0) * boost::math::erfc_inv(2 * tail) : kFar;
   }
-  const double tail = cdf(chi, x);
+  const double tail = chi_square_cdf(x, dof);
   return tail > 1e-300 ? -std::sqrt(2.0) * boost::math::erfc_inv(2 * tail) : -kFar;
 }
 

@@ -6,14 +6,15 @@
 #include "libchar/fit/detail/line_clip.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+
+#include "libchar/core/chi_square.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::uint64_t kLowest = 32;
-constexpr double kFalseAlarm = 1.54e-8;  ///< P(chi^2_1 > 32)
+constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
 
 double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -56,10 +57,9 @@ std::vector<double> local_floor(const std::vector<double>& mean,
 
 LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::uint64_t pooled) {
   const double dof = static_cast<double>(pooled);
-  const boost::math::chi_squared chi(dof);
   // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
-  const double limit = std::max(1.5, quantile(complement(chi, kFalseAlarm)) / dof);
-  const std::vector<double> floor = local_floor(mean, first, quantile(chi, 0.5) / dof);
+  const double limit = std::max(1.5, chi_square_upper_quantile(kFalseAlarm, dof) / dof);
+  const std::vector<double> floor = local_floor(mean, first, chi_square_quantile(0.5, dof) / dof);
   LineClip clip;
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const std::uint64_t k = first + i;

@@ -3,7 +3,7 @@
 //   nu (1 - u) / (2 r).
 // Parameters are ln theta of the terms that scoring left positive: no bounds, and the start is the
 // optimum to within 1e-10, so that one or two Levenberg-Marquardt steps settle the last digits.
-// (theta = c^2, or ln theta from far away, stalls: accuracy.md 5.)
+// (theta = c^2, or ln theta from far away, stalls at a bound or misses the optimum.)
 #include "libchar/fit/detail/polish.hpp"
 
 #include <ceres/ceres.h>

@@ -14,7 +14,7 @@
 // per instant.
 //
 // As published: the solution of a single instant, u_ref / u_i of centred samples, smoothed with
-// 0.999999 from one. It is a ratio of Gaussians, without a mean (thesis.md B 23): kept for
+// 0.999999 from one. It is a ratio of Gaussians, without a mean (docs/theory/fusion.md): kept for
 // comparison.
 
 #include <Eigen/LU>

@@ -1,6 +1,6 @@
 #pragma once
 // MINQUE with identity weights on exponentially forgotten moments, a threshold and a recovery time:
-// algorithms 1-3 of [RV 4, 5] with what is wrong in them mended (thesis.md B 36-42). Kept for
+// algorithms 1-3 of [RV 4, 5] with what is wrong in them mended (docs/theory/fusion.md). Kept for
 // comparison; `minque` is the one to use.
 //
 //   v = MINQUE(I) of the moments of the channels in use (pair_moments.hpp)

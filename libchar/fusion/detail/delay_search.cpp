@@ -5,15 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/lanes.hpp"
+
 namespace libchar::fusion {
 namespace {
 
 /// D_s of all starts. Lanes are separate starts, so wider registers give the same bits.
-__attribute__((target_clones("avx2", "default"))) void cityblock(const double* series,
-                                                                 std::size_t starts,
-                                                                 const double* query,
-                                                                 std::size_t dimension,
-                                                                 double* distances) {
+LIBCHAR_WIDE_LANES void cityblock(const double* series,
+                                  std::size_t starts,
+                                  const double* query,
+                                  std::size_t dimension,
+                                  double* distances) {
   for (std::size_t s = 0; s < starts; ++s) distances[s] = std::fabs(series[s] - query[0]);
   for (std::size_t j = 1; j < dimension; ++j)
     for (std::size_t s = 0; s < starts; ++s) distances[s] += std::fabs(series[s + j] - query[j]);

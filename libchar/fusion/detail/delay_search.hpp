@@ -5,7 +5,7 @@
 // among those whose d values and successor z_{s+d} are all there. The search is exact: all
 // distances (vectorised over s), then one pass that keeps the M best in order. Equal distances go
 // by the smaller start. A thousand stretches of six values fit the first cache; a tree would not
-// pay (thesis.md C: scipy's tree 20 us, brute force 13 us).
+// pay (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances 13 us).
 
 #include <span>
 #include <vector>

@@ -1,7 +1,6 @@
 #pragma once
 // Exponentially forgotten second moments of the differences between channels, D_ij: the input
-// cancels exactly, and any subset of channels can be judged from them without a transient
-// (thesis.md B 41).
+// cancels exactly, and any subset of channels can be judged from them without a transient.
 //
 //   about the running mean:  D <- g (D + (1-g) delta^2), delta = d - mean, mean <- mean + (1-g)
 //   delta     (West 1979) about zero:              S <- g S + (1-g) d^2, D = S / (1 - g^k)

@@ -10,7 +10,8 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/time/column_choice.hpp"
+#include "libchar/log/detail/channel_choice.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar {
 
@@ -34,11 +35,14 @@ class BinaryRows final : public RowSource {
         layout_(std::move(layout)),
         info_(std::move(info)),
         hash_(options.hash) {
-    std::vector<std::string> names;
-    for (const BinaryColumn& column : layout_.columns) names.push_back(column.name);
-    const ColumnChoice choice = choose_columns(names, layout_.named, options, file_->path());
+    info_.file = file_->path();
+    const TableFront table = front();
+    const auto time = find_time_column(table, options, info_);
+    TableColumns columns;
+    columns.time = time;
+    for (const BinaryColumn& column : layout_.columns) columns.names.push_back(column.name);
     std::uint64_t row_bytes = 0;
-    for (const std::size_t i : choice.values) {
+    for (const std::size_t i : choose_channels(columns, options, file_->path())) {
       const BinaryColumn& column = layout_.columns[i];
       values_.push_back({column, {}});
       info_.channels.push_back(
@@ -49,18 +53,18 @@ class BinaryRows final : public RowSource {
     }
     if (layout_.rows == 0)
       throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples", "", ""});
-    if (choice.time) {
-      time_ = layout_.columns[*choice.time];
+    if (time) {
+      time_ = layout_.columns[*time];
+      info_.time.column = time_->name;
+      nanoseconds_ = find_time_unit(table, *time, options, info_);
       row_bytes += size_of(time_->number.type);
     }
     if (!layout_.column_major) row_bytes = layout_.columns.front().stride;
     rows_per_block_ =
         std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
-    info_.file = file_->path();
     info_.bytes = file_->size();
     info_.rows = layout_.rows;
     layout_.columns.clear();
-    if (time_) settle_time_unit(options);
   }
 
   ~BinaryRows() override {
@@ -211,33 +215,29 @@ class BinaryRows final : public RowSource {
     wanted.probe = {};
   }
 
-  void settle_time_unit(const ReadOptions& options) {
-    TimeBase& time = info_.time;
-    time.column = time_->name;
-    time.unit = options.time_unit != "auto"        ? options.time_unit
-                : nanoseconds_in(time_->unit) != 0 ? time_->unit
-                                                   : time_unit_of_name(time_->name);
-    if (time.unit.empty()) {
-      const std::size_t rows = static_cast<std::size_t>(std::min<std::uint64_t>(layout_.rows, 2));
-      std::vector<double> first(rows);
-      std::vector<std::byte> bytes(static_cast<std::size_t>(time_->stride) * (rows - 1) +
-                                   size_of(time_->number.type));
-      file_->read(time_->first_byte, bytes);
-      read_numbers(bytes.data(), static_cast<std::size_t>(time_->stride), time_->number, first);
-      time.unit = guess_time_unit(
-          first.front(), first.back() - first.front(), !is_float(time_->number.type));
-      time.unit_guessed = true;
-      info_.guesses.push_back(fmt::format(
-          "time unit: {}, from the size of the stamps in {}", time.unit, printable(time.column)));
+  TableFront front() const {
+    TableFront table;
+    table.named = layout_.named;
+    for (const BinaryColumn& column : layout_.columns)
+      table.columns.push_back({column.name, column.unit});
+    table.first_values = [this](std::size_t column) {
+      return first_values(layout_.columns[column]);
+    };
+    return table;
+  }
+
+  FirstValues first_values(const BinaryColumn& column) const {
+    FirstValues first;
+    first.integers = !is_float(column.number.type);
+    std::vector<std::byte> bytes(size_of(column.number.type));
+    const std::uint64_t rows = std::min<std::uint64_t>(layout_.rows, kFirstRows);
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      double value = 0;
+      file_->read(column.first_byte + row * column.stride, bytes);
+      read_numbers(bytes.data(), bytes.size(), column.number, {&value, 1});
+      if (std::isfinite(value)) first.values.push_back(value);
     }
-    nanoseconds_ = nanoseconds_in(time.unit);
-    if (nanoseconds_ == 0)
-      throw Error({ErrorKind::usage,
-                   "E0323",
-                   file_->path(),
-                   "the time unit is none of s, ms, us, ns",
-                   time.unit,
-                   ""});
+    return first;
   }
 
   void read_stamps(RowBlock& block, Warnings& warnings) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
@@ -13,10 +12,42 @@
 #include "libchar/log/csv/header.hpp"
 #include "libchar/log/csv/number.hpp"
 #include "libchar/log/csv/sample.hpp"
-#include "libchar/log/csv/time_column.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
 namespace {
+
+// "2024-01-01…", "12:30…"
+bool calendar(std::string_view text) {
+  const auto digits = [&](std::size_t from, std::size_t n) {
+    for (std::size_t i = from; i < from + n; ++i)
+      if (i >= text.size() || !is_digit(text[i])) return false;
+    return true;
+  };
+  return (digits(0, 4) && text.size() > 7 && (text[4] == '-' || text[4] == '/') && digits(5, 2)) ||
+         (digits(0, 2) && text.size() > 5 && text[2] == ':' && digits(3, 2));
+}
+
+std::vector<std::vector<Field>> first_rows(const Dialect& dialect, const std::vector<Line>& lines) {
+  std::vector<std::vector<Field>> rows;
+  for (const Line& line : lines)
+    if (line.offset >= dialect.data_offset) rows.push_back(split(line.text, dialect.delimiter));
+  return rows;
+}
+
+FirstValues first_values(const std::vector<std::vector<Field>>& rows,
+                         std::size_t column,
+                         char decimal) {
+  FirstValues first;
+  for (const auto& row : rows) {
+    if (column >= row.size()) continue;
+    const std::string& text = row[column].text;
+    const Cell cell = read_cell(text, decimal);
+    if (cell.kind == Cell::value) first.values.push_back(cell.number);
+    first.integers = first.integers && text.find_first_of(".,eE") == std::string::npos;
+  }
+  return first;
+}
 
 // One study of one head; the steps in `understand` call each other's results.
 struct Study {
@@ -289,6 +320,36 @@ struct Study {
     return field.text;
   }
 
+  void choose_time() {
+    const auto rows = first_rows(dialect, sample);
+    TableFront table;
+    for (const Column& column : dialect.columns) table.columns.push_back({column.text, ""});
+    table.named = dialect.has_header;
+    table.text = true;
+    table.first_values = [&](std::size_t column) {
+      return first_values(rows, column, dialect.decimal);
+    };
+    const auto index = find_time_column(table, options, info);
+    if (!index) return;
+    refuse_calendar(rows, *index);
+    dialect.time_column = static_cast<int>(*index);
+    dialect.time_unit_ns = find_time_unit(table, *index, options, info);
+    const std::string& name = dialect.columns[*index].name;
+    info.time.column = name.empty() ? fmt::format("c{}", *index) : name;
+  }
+
+  void refuse_calendar(const std::vector<std::vector<Field>>& rows, std::size_t column) const {
+    if (rows.empty() || column >= rows[0].size() || !calendar(rows[0][column].text)) return;
+    throw Error(
+        {ErrorKind::input,
+         "E0321",
+         fmt::format("{}:{}:{}", info.file, dialect.first_data_line, rows[0][column].offset + 1),
+         "calendar dates and clock times are not read as stamps, a number was expected",
+         rows[0][column].text,
+         "--time-column none --rate HZ with --channel leaves the column out, or convert "
+         "it to seconds"});
+  }
+
   void run() {
     refuse_other_content(head, info.file);
     std::size_t offset = 0;
@@ -325,11 +386,7 @@ struct Study {
            "E0305",
            fmt::format("{} columns, the limit is {}", dialect.columns.size(), kMaxColumns));
     name_columns(dialect, info);
-    std::vector<std::vector<Field>> rows;
-    for (std::size_t i = 0; i < sample.size(); ++i)
-      if (sample[i].offset >= dialect.data_offset && rows.size() < kSample)
-        rows.push_back(split(sample[i].text, dialect.delimiter));
-    choose_time(dialect, rows, options, info);
+    choose_time();
     for (const Line& line : comments)
       if (!info.time.from_stamps && info.time.rate_hz == 0 && dialect.time_column < 0)
         read_rate_comment(line.text, info);

@@ -1,18 +1,12 @@
 #pragma once
-// Names and units: what the cells of a header line mean.
+// What the cells and comments around a header line mean.
 
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "libchar/log/csv/dialect.hpp"
 
 namespace libchar::csv {
-
-/// "gyro_x [deg/s]", "Time (s)", "t_ns" → name and unit; a suffix behind '_' counts only when it is
-/// a known unit.
-std::pair<std::string, std::string> name_and_unit(std::string_view header_cell);
 
 /// Fills names and units of dialect.columns from their header texts; duplicates are an error,
 /// strange names a warning.

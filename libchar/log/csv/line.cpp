@@ -23,12 +23,6 @@ Line line_at(std::string_view head, std::size_t offset, std::uint64_t number) {
   return line;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 std::string at(const std::string& file,
                std::uint64_t line,
                std::uint64_t column,

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/log/detail/column_name.hpp"
+
 namespace libchar::csv {
 
 enum class LineEnd : std::uint8_t { none, lf, crlf, cr };
@@ -23,9 +25,6 @@ struct Line {
 /// The physical line at `offset`. A line that reaches the end of a head that is not the whole file
 /// is cut.
 Line line_at(std::string_view head, std::size_t offset, std::uint64_t number);
-
-/// Without blanks and tabs at its ends.
-std::string_view trimmed(std::string_view text);
 
 /// One cell of a line: its text without quotes and outer blanks, and where it begins in the line.
 struct Field {

@@ -236,7 +236,7 @@ struct Cell {
   const char* reason = "";       ///< bad: in words
 };
 
-/// Reads a trimmed cell with all the rules (formats.md 7.1): the whole cell is one finite number, a
+/// Reads a trimmed cell with all the rules of docs/formats.md: the whole cell is one finite number, a
 /// word for "missing", an infinity (kept out like a missing sample), or wrong.
 Cell read_cell(std::string_view text, char point);
 

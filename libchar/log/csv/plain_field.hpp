@@ -11,7 +11,7 @@
 
 #include "libchar/core/sha256_blocks.hpp"
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 
 namespace libchar::plain {
 

@@ -4,7 +4,7 @@
 
 #include "libchar/log/csv/plain_field.hpp"
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 
 namespace libchar::plain {
 

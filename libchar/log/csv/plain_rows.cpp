@@ -17,7 +17,7 @@
 
 namespace libchar {
 
-#if defined(__x86_64__)
+#if defined(LIBCHAR_X86_64)
 
 using namespace plain;
 

@@ -2,7 +2,7 @@
 // unit) and factors of time behind it: "/√Hz", "/√h", "·√s", "/s". With every base written as
 //   factor * quantity * s^e
 // the term's unit has the exponent of the channel's unit plus 1/2 (white noise), 0 (bias
-// instability), -1/2 (random walk), 1 (quantization), -1 (ramp) (design.md 2).
+// instability), -1/2 (random walk), 1 (quantization), -1 (ramp): docs/models.md.
 #include "libchar/model/detail/noise_units.hpp"
 
 #include <algorithm>

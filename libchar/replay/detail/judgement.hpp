@@ -1,7 +1,7 @@
 #pragma once
 // What follows from the scores of all algorithms of one replay together.
 //   regret          RMSE / RMSE of the best fixed weights taught on the run, known faults left
-//                   out, - 1   (design.md 1)
+//                   out, - 1
 //   as good as best the 95 % interval of RMSE / RMSE of the best method holds 1
 //   weight distance root mean square over time of |w - w of the best fixed weights|
 //   variance error  root mean square over time and sensors of ln(variance / mean square error)

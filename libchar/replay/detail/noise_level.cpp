@@ -10,7 +10,7 @@
 //       floor(m M), M = hold * R, so that a sample is sum_m g_m(t) v_m with
 //       g_m(t) = a^(t - min(t, e_m)) - a^(t - e_{m-1});  averaged over the phases at which samples
 //       are taken
-// (design.md 2 for the terms, docs/theory/simulation.md for the spectra and the variogram of
+// (docs/theory/allan.md for the terms, docs/theory/simulation.md for the spectra and the variogram of
 // flicker, (4/pi) sum_{k<=n} 1/(2k - 1).)
 #include "libchar/replay/detail/noise_level.hpp"
 

@@ -49,7 +49,7 @@ Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, dou
       static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
   std::vector<double> times, rms;
   // Sums over each window of their own: a difference of running sums would keep the traces of a
-  // large error for ever (thesis.md C, window RMS).
+  // large error for ever.
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::size_t from = c > half ? c - half : 0, to = std::min(cells.size(), c + half + 1);
     double sum = 0, n = 0;

@@ -19,7 +19,7 @@ Timeline thinned(std::span<const double> time_s,
                  std::size_t bins);
 
 /// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV]
-/// takes the same window and loses the ends (thesis.md B 44). Computed on the meter's cells: the
+/// takes the same window and loses the ends. Computed on the meter's cells: the
 /// window is rounded to a whole number of them.
 Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, double window_s);
 

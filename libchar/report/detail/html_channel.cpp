@@ -262,13 +262,13 @@ std::string quality(const ChannelResult& c) {
 }
 
 std::string consumers(const ChannelResult& c, double rate_hz) {
-  const auto rows = c.fit && rate_hz > 0 ? consumer_rows(c.fit->term, c.channel.unit, rate_hz)
-                                         : std::vector<ConsumerRow>{};
+  const auto rows = c.fit && rate_hz > 0 ? consumer_numbers(c.fit->term, c.channel.unit, rate_hz)
+                                         : std::vector<ConsumerNumber>{};
   if (rows.empty()) return "";
   std::string out = "<h3>Which number goes where</h3>\n<div class=\"wide\"><table>\n" +
                     table_head({"For", "Name there", "Formula", "Value", "Unit"});
   const std::string* before = nullptr;
-  for (const ConsumerRow& row : rows) {
+  for (const ConsumerNumber& row : rows) {
     const bool repeated = before != nullptr && *before == row.consumer;
     out += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"u\">{}</td><td class=\"n\">{}</td><td "

@@ -9,8 +9,8 @@
 #include <cassert>
 #include <string>
 
-#include "libchar/allan/lanes.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/lanes.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/spectrum/fft.hpp"
 
@@ -41,12 +41,12 @@ std::size_t good_size(std::size_t least) {
 }
 
 /// Sum of a[i] b[i] in eight lanes, the same with and without AVX.
-LIBCHAR_CLONES double dot(const double* a, const double* b, std::size_t count) {
+LIBCHAR_WIDE_LANES double dot(const double* a, const double* b, std::size_t count) {
   Four low = {}, high = {};
   std::size_t i = 0;
   for (; i + 8 <= count; i += 8) {
-    low += LIBCHAR_FOUR_AT(a + i) * LIBCHAR_FOUR_AT(b + i);
-    high += LIBCHAR_FOUR_AT(a + i + 4) * LIBCHAR_FOUR_AT(b + i + 4);
+    low += LIBCHAR_FOUR(a + i) * LIBCHAR_FOUR(b + i);
+    high += LIBCHAR_FOUR(a + i + 4) * LIBCHAR_FOUR(b + i + 4);
   }
   double rest = 0;
   for (; i < count; ++i) rest += a[i] * b[i];

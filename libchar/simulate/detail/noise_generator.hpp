@@ -1,6 +1,6 @@
 #pragma once
 // The noise of one sensor, block by block, in constant memory: white, flicker, random walk,
-// quantization noise and ramp with given coefficients (design.md 2; docs/theory/simulation.md).
+// quantization noise and ramp with given coefficients (docs/theory/simulation.md).
 
 #include <cstdint>
 #include <memory>

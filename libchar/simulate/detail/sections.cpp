@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "libchar/allan/lanes.hpp"
+#include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
@@ -25,9 +25,9 @@ inline __attribute__((always_inline)) void pass(const double* loss,
                                                 std::size_t count) {
   Four x[V], q[V], w[V];
   for (std::size_t v = 0; v < V; ++v) {
-    x[v] = LIBCHAR_FOUR_AT(state + 4 * v);
-    q[v] = LIBCHAR_FOUR_AT(loss + 4 * v);
-    w[v] = LIBCHAR_FOUR_AT(weight + 4 * v);
+    x[v] = LIBCHAR_FOUR(state + 4 * v);
+    q[v] = LIBCHAR_FOUR(loss + 4 * v);
+    w[v] = LIBCHAR_FOUR(weight + 4 * v);
   }
   for (std::size_t t = 0; t < count; ++t) {
     const double value = values[t];
@@ -42,7 +42,7 @@ inline __attribute__((always_inline)) void pass(const double* loss,
     else
       sums[t] += sum;
   }
-  for (std::size_t v = 0; v < V; ++v) *reinterpret_cast<FourInMemory*>(state + 4 * v) = x[v];
+  for (std::size_t v = 0; v < V; ++v) LIBCHAR_FOUR_TO(state + 4 * v) = x[v];
 }
 
 template <bool First>
@@ -71,13 +71,13 @@ inline __attribute__((always_inline)) void pass_of(std::size_t vectors,
   }
 }
 
-LIBCHAR_CLONES void run_block(const double* loss,
-                              const double* weight,
-                              double* state,
-                              std::size_t vectors,
-                              double level,
-                              double* values,
-                              std::size_t count) {
+LIBCHAR_WIDE_LANES void run_block(const double* loss,
+                                  const double* weight,
+                                  double* state,
+                                  std::size_t vectors,
+                                  double level,
+                                  double* values,
+                                  std::size_t count) {
   std::array<Four, kBlock> sums;
   std::size_t passes = (vectors + kMostVectors - 1) / kMostVectors, done = 0;
   for (bool first = true; done < vectors; first = false, --passes) {

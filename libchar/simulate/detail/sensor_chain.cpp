@@ -1,9 +1,9 @@
 // y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))  [RV 2.2-2.6],
 // with
 //   alpha = N(alpha0, s_a) (1 + tc1 dT + tc2 dT^2)        beta = N(beta0, s_b) + tc1 dT + tc2 dT^2
-//   c1 = quadratic (1 + tc dT), c2 = cubic (1 + tc dT), both of the raw x (design.md 4)
+//   c1 = quadratic (1 + tc dT), c2 = cubic (1 + tc dT), both of the raw x (docs/models.md)
 //   low_pass: y_k = a y_{k-1} + (1 - a) u_k, a = exp(-2 pi bandwidth / rate)
-// Oracle: fusion/sensor_model.csv, block by block.
+// Known answers, block by block: fixtures/known/fusion/sensor_model.csv.
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 #include <algorithm>

@@ -16,20 +16,12 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/lanes.hpp"
 
 namespace libchar::welch_detail {
 namespace {
 
-constexpr std::size_t kLanes = 8;
-
-// The compiler may widen these loops to the machine: lanes are spelled out, so that every machine
-// gives the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define LIBCHAR_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define LIBCHAR_WIDE
-#endif
+constexpr std::size_t kLanes = 8;  // spelled out, so that every vector width gives the same bits
 
 struct Trend {
   double first = 0;  // subtracted before anything else: it carries the offset
@@ -43,7 +35,7 @@ double folded(const double* lanes) {
 }
 
 // sum of d_t = x_t - first
-LIBCHAR_WIDE double sum_about(const double* x, std::size_t n, double first) {
+LIBCHAR_WIDE_LANES double sum_about(const double* x, std::size_t n, double first) {
   double lanes[kLanes] = {};
   std::size_t t = 0;
   for (; t + kLanes <= n; t += kLanes)
@@ -53,7 +45,7 @@ LIBCHAR_WIDE double sum_about(const double* x, std::size_t n, double first) {
 }
 
 // sum of (t - middle) d_t
-LIBCHAR_WIDE double slope_sum_about(const double* x, std::size_t n, double first) {
+LIBCHAR_WIDE_LANES double slope_sum_about(const double* x, std::size_t n, double first) {
   double lanes[kLanes] = {}, position[kLanes];
   const double middle = static_cast<double>(n - 1) / 2;
   for (std::size_t lane = 0; lane < kLanes; ++lane)
@@ -68,12 +60,12 @@ LIBCHAR_WIDE double slope_sum_about(const double* x, std::size_t n, double first
   return folded(lanes);
 }
 
-LIBCHAR_WIDE void subtract_and_window(
+LIBCHAR_WIDE_LANES void subtract_and_window(
     const double* x, const double* w, std::size_t n, double first, double mean, double* out) {
   for (std::size_t t = 0; t < n; ++t) out[t] = ((x[t] - first) - mean) * w[t];
 }
 
-LIBCHAR_WIDE void subtract_line_and_window(
+LIBCHAR_WIDE_LANES void subtract_line_and_window(
     const double* x, const double* w, std::size_t n, const Trend& trend, double* out) {
   const double first = trend.first, slope = trend.slope;
   const double start = trend.mean - slope * (static_cast<double>(n - 1) / 2);
@@ -84,12 +76,12 @@ LIBCHAR_WIDE void subtract_line_and_window(
 }
 
 // interleaved real and imaginary parts
-LIBCHAR_WIDE void add_power(const double* bins, std::size_t n, double* power) {
+LIBCHAR_WIDE_LANES void add_power(const double* bins, std::size_t n, double* power) {
   for (std::size_t k = 0; k < n; ++k)
     power[k] += bins[2 * k] * bins[2 * k] + bins[2 * k + 1] * bins[2 * k + 1];
 }
 
-LIBCHAR_WIDE void add(const double* from, std::size_t n, double* to) {
+LIBCHAR_WIDE_LANES void add(const double* from, std::size_t n, double* to) {
   for (std::size_t k = 0; k < n; ++k) to[k] += from[k];
 }
 

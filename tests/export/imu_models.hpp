@@ -61,7 +61,7 @@ inline std::vector<libchar::SensorModel> imu(const Levels& gyroscope,
   return out;
 }
 
-/// The numbers of the EuRoC data sets: shared/reference/exports.md 4.
+/// The numbers of the EuRoC data sets (ADIS16448; Burri et al. 2016).
 inline std::vector<libchar::SensorModel> euroc_imu() {
   return imu({known(1.6968e-4), at_most(2e-5), known(1.9393e-5)},
              {known(2.0e-3), at_most(2e-4), known(3.0e-3)});

@@ -87,3 +87,12 @@ TEST_CASE("intervals hold the deviation, shrink with edf and stay finite") {
   CHECK(chi_square_interval(1, 1, 0.95).low == Approx(1 / 2.241402727604947).epsilon(1e-12));
   CHECK(chi_square_interval(0, 10, 0.95).high == 0);
 }
+
+TEST_CASE("chi-square density, on both sides of where the expansion begins") {
+  CHECK(chi_square_density(0, 3) == 0);
+  CHECK(chi_square_density(2, 2) == Approx(std::exp(-1.0) / 2).epsilon(1e-14));
+  // x^(a-1) exp(-x/2) / (2^a Gamma(a)) in 60 digits
+  CHECK(chi_square_density(1099999.34, 1.1e6) == Approx(2.6896692457730428e-4).epsilon(1e-13));
+  CHECK(chi_square_density(1e11 - 0.66, 1e11) == Approx(8.9206205807981496e-7).epsilon(1e-13));
+  CHECK(chi_square_density(1e6, 1e6) == Approx(chi_square_density(1e6 + 1, 1e6 + 1)).epsilon(1e-6));
+}

@@ -11,7 +11,7 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "tests/model/imu_models.hpp"
+#include "tests/export/imu_models.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -356,7 +356,7 @@ TEST_CASE(
     CHECK(vins_belief(n, 0, 1 / f, 200).first == Approx(truth.first).epsilon(0.02));
     CHECK(vins_belief(n, w, 1 / f, 200).second == Approx(truth.second).epsilon(0.02));
   }
-  // What users tried (issues 102, 167, 233, 280, 327): the figures of exports.md, trap 3.
+  // What users tried (issues 102, 167, 233, 280, 327): docs/exports.md has the rule.
   CHECK(vins_belief(q, 0, 1 / f, 200).first == Approx(1.0e-4).epsilon(0.01));
   CHECK(vins_belief(q * std::sqrt(f), 0, 1 / f, 200).first == Approx(1.414e-3).epsilon(0.01));
   CHECK(vins_belief(0, k / std::sqrt(f), 1 / f, 200).second == Approx(5e-6).epsilon(0.01));

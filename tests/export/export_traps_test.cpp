@@ -1,4 +1,4 @@
-// One test for each trap of shared/reference/exports.md 3, and for those found since.
+// One test for each trap of the consumers' conventions (docs/exports.md).
 
 #include <yaml-cpp/yaml.h>
 
@@ -11,7 +11,7 @@
 #include "libchar/core/json.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "tests/model/imu_models.hpp"
+#include "tests/export/imu_models.hpp"
 
 using namespace libchar;
 using Catch::Contains;

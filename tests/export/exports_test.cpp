@@ -1,4 +1,4 @@
-// Exports: the known answers of shared/reference/exports.md 4, the table, groups of models, what
+// Exports: known answers (the numbers that EuRoC's files carry), the table, groups of models, what
 // stands for an absent term. Traps, simulations and strict readers: the files beside.
 
 #include <yaml-cpp/yaml.h>
@@ -15,7 +15,7 @@
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "tests/model/imu_models.hpp"
+#include "tests/export/imu_models.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/shared.hpp"
 
@@ -123,7 +123,7 @@ TEST_CASE("known answers: AirSim") {
   // K = 3e-3 m/s^3/sqrt(Hz): 3e-3 sqrt(800) / 9.80665e-6 ug.
   CHECK(imu["AccelBiasStability"].get<double>() == Approx(8652.579).epsilon(1e-6));
   ExportOptions options;
-  options.airsim_tau_s = 125;
+  options.bias_tau_s = 125;
   const Json other = parse_json(exported("airsim", test::euroc_imu(), options).text,
                                 "settings.json")["DefaultSensors"]["Imu"];
   CHECK(other["GyroBiasStability"].get<double>() == Approx(89.445 / 2).epsilon(1e-5));

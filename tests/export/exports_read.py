@@ -1,5 +1,5 @@
 """Reads what `sensorchar model --to` writes with parsers that are not ours: PyYAML (YAML 1.1, as Kalibr), a check of YAML 1.2
-numbers, python's XML, JSON and Python parsers, xmllint and OpenCV. Figures: shared/reference/exports.md 4."""
+numbers, python's XML, JSON and Python parsers, xmllint and OpenCV."""
 import ast
 import json
 import math

@@ -1,0 +1,100 @@
+#include "libchar/log/detail/channel_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+std::vector<std::size_t> all_but_time(const TableColumns& table) {
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+    if (i != table.time) columns.push_back(i);
+  return columns;
+}
+
+std::optional<std::size_t> find_column(const TableColumns& table, const std::string& wanted) {
+  const std::vector<std::size_t> values = all_but_time(table);
+  for (const std::size_t i : values)
+    if (table.names[i] == wanted) return i;
+  for (const std::size_t i : values)
+    if (i < table.texts.size() && table.texts[i] == wanted) return i;
+  if (!table.positions_skip_time) return position_in(wanted, table.names.size());
+  const auto k = position_in(wanted, values.size());
+  return k ? std::optional(values[*k]) : std::nullopt;
+}
+
+std::size_t column_of(const TableColumns& table,
+                      const std::string& wanted,
+                      const ReadOptions& options,
+                      const std::string& file) {
+  const auto column = find_column(table, wanted);
+  if (column && column != table.time) return *column;
+  if (table.time && (column || table.names[*table.time] == wanted))
+    throw Error({ErrorKind::usage,
+                 "E0320",
+                 file,
+                 "this is the time column, not a channel",
+                 wanted,
+                 "--time-column none reads it as a channel"});
+  std::vector<std::string> names;
+  for (const std::size_t i : all_but_time(table)) names.push_back(table.names[i]);
+  throw Error({ErrorKind::usage,
+               "E0320",
+               file,
+               "there is no channel of this name",
+               wanted,
+               channel_hint(wanted, names, options)});
+}
+
+}  // namespace
+
+std::optional<std::size_t> position_in(std::string_view word, std::size_t count) {
+  if (word.size() < 2 || word[0] != 'c') return std::nullopt;
+  std::size_t index = 0;
+  const char* const end = word.data() + word.size();
+  const auto read = std::from_chars(word.data() + 1, end, index);
+  const bool whole = read.ec == std::errc() && read.ptr == end;
+  return whole && index < count ? std::optional(index) : std::nullopt;
+}
+
+std::string channel_hint(const std::string& wanted,
+                         const std::vector<std::string>& names,
+                         const ReadOptions& options) {
+  const std::size_t shown = std::min<std::size_t>(names.size(), 12);
+  const std::string all = fmt::format(
+      "{}{}",
+      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      shown < names.size() ? ", …" : "");
+  if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
+    return "-c chooses by the names in the log, " + all + ", and --names then name what was chosen";
+  const auto near = nearest(wanted, names);
+  return near ? fmt::format("did you mean {}?", *near) : "it has " + all;
+}
+
+std::vector<std::size_t> choose_channels(const TableColumns& table,
+                                         const ReadOptions& options,
+                                         const std::string& file) {
+  std::vector<std::size_t> chosen = all_but_time(table);
+  if (chosen.empty())
+    throw Error({ErrorKind::input,
+                 "E0310",
+                 file,
+                 "there is a time column and nothing else",
+                 "",
+                 "--time-column none reads it as a channel"});
+  if (options.channels.empty()) return chosen;
+  chosen.clear();
+  for (const std::string& name : options.channels)
+    chosen.push_back(column_of(table, name, options, file));
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  return chosen;
+}
+
+}  // namespace libchar

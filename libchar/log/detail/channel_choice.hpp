@@ -1,0 +1,36 @@
+#pragma once
+// Which columns of a log the options ask for: by name, or by position c0, c1…
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/log/read.hpp"
+
+namespace libchar {
+
+struct TableColumns {
+  std::vector<std::string> names;
+  std::vector<std::string> texts;   ///< as written, where that differs from the names; else empty
+  std::optional<std::size_t> time;  ///< the time column, which is no channel
+  bool positions_skip_time = false;  ///< c0, c1… count the columns that are not the time (else all)
+};
+
+/// The columns of options.channels, or all but the time, in file order. Throws Error(usage) for an unknown name, with the nearest
+/// known one, and Error(input) when nothing is left.
+std::vector<std::size_t> choose_channels(const TableColumns& table,
+                                         const ReadOptions& options,
+                                         const std::string& file);
+
+/// What to say of a channel that is not in the log: the nearest of its names, or all of them; that --names give new names to
+/// what -c chooses, when the word is one of those.
+std::string channel_hint(const std::string& wanted,
+                         const std::vector<std::string>& names,
+                         const ReadOptions& options);
+
+/// k of a word "ck" with k < count.
+std::optional<std::size_t> position_in(std::string_view word, std::size_t count);
+
+}  // namespace libchar

@@ -1,0 +1,54 @@
+#pragma once
+// Which column of a table is the time, and in which unit: one rule for all formats. A name says time ("t", "elapsed", "time_us"),
+// a unit stands in brackets, behind '_' or apart; what neither says is guessed from the size and the step of the first stamps, and
+// every guess is put down as one.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/log/read.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar {
+
+struct ColumnLabel {
+  std::string name;  ///< as it stands in the file, "" when the file names no columns
+  std::string
+      unit;  ///< said apart from the name (by a sidecar); "" when it can only be in the name
+};
+
+/// The first finite values of a column.
+struct FirstValues {
+  std::vector<double> values;
+  bool integers = true;  ///< all of them stored as integers
+};
+
+inline constexpr std::size_t kFirstRows = 100;  ///< that the rule looks at
+
+/// What the rule looks at.
+struct TableFront {
+  std::vector<ColumnLabel> columns;
+  bool named = false;  ///< the names come from the file, and one of them may say time
+  bool text =
+      false;  ///< a text table without names has its stamps in front, as a rule; an array is all channels
+  std::function<FirstValues(std::size_t column)> first_values;
+};
+
+/// The column that options.time_column names (by name or position c0, c1… among all columns), or that says time by its name or,
+/// without names, by how it rises. Nothing when there is none. Throws Error(usage) for a name that is not there.
+std::optional<std::size_t> find_time_column(const TableFront& table,
+                                            const ReadOptions& options,
+                                            LogInfo& info);
+
+/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to info.time.
+/// Throws Error(usage) for an unknown options.time_unit.
+std::int64_t find_time_unit(const TableFront& table,
+                            std::size_t column,
+                            const ReadOptions& options,
+                            LogInfo& info);
+
+}  // namespace libchar
