@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
-#include "numbers.hpp"
 
 namespace sensorchar {
 namespace {
@@ -141,7 +141,7 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
           "--threads",
           "N",
           [&options](const std::string& text) {
-            options.threads = static_cast<int>(parse_count(text, 0, 4096));
+            options.threads = static_cast<int>(libchar::parse_count(text, 0, 4096));
           },
           "threads for reading; the result does not depend on it (default: 0 = all cores)")
       .group("Reading");

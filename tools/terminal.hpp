@@ -57,10 +57,4 @@ class Terminal : public libchar::Progress {
   Clock::time_point start_, drawn_;
 };
 
-/// A table for people: columns aligned by width in characters, the first (and the last, if it holds
-/// words) to the left and the others to the right.
-std::string table(const std::vector<std::vector<std::string>>& rows,
-                  std::string_view indent = "  ",
-                  bool words_last = false);
-
 }  // namespace sensorchar

@@ -37,19 +37,18 @@ constexpr std::uint64_t kPiece = 65536;
 
 struct TypeFacts {
   DeviationType type;
-  std::string_view name;
   int order;    // of the difference
   bool of_sum;  // of W instead of x
   bool overlapping;
   double divisor;  // sum of squares / (divisor tau^2 n)
 };
-constexpr TypeFacts kTypes[] = {{DeviationType::adev, "adev", 2, false, false, 2},
-                                {DeviationType::oadev, "oadev", 2, false, true, 2},
-                                {DeviationType::mdev, "mdev", 3, true, true, 2},
-                                {DeviationType::tdev, "tdev", 3, true, true, 2},
-                                {DeviationType::hdev, "hdev", 3, false, false, 6},
-                                {DeviationType::ohdev, "ohdev", 3, false, true, 6},
-                                {DeviationType::totdev, "totdev", 2, false, true, 2}};
+constexpr TypeFacts kTypes[] = {{DeviationType::adev, 2, false, false, 2},
+                                {DeviationType::oadev, 2, false, true, 2},
+                                {DeviationType::mdev, 3, true, true, 2},
+                                {DeviationType::tdev, 3, true, true, 2},
+                                {DeviationType::hdev, 3, false, false, 6},
+                                {DeviationType::ohdev, 3, false, true, 6},
+                                {DeviationType::totdev, 2, false, true, 2}};
 
 const TypeFacts& facts(DeviationType type) {
   return kTypes[static_cast<std::size_t>(type)];
@@ -162,7 +161,7 @@ AllanPoint point_of(const Totals& total,
   throw Error({ErrorKind::numeric,
                "",
                "",
-               std::string(f.name) + " needs at least " + std::to_string(needed) +
+               std::string(name_of(f.type)) + " needs at least " + std::to_string(needed) +
                    " consecutive samples; none of its terms fits the " + std::to_string(samples) +
                    " of this record",
                "",
@@ -236,16 +235,6 @@ AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summe
 }
 
 }  // namespace
-
-std::string_view name_of(DeviationType type) {
-  return facts(type).name;
-}
-
-std::optional<DeviationType> deviation_type(std::string_view name) {
-  for (const TypeFacts& f : kTypes)
-    if (f.name == name) return f.type;
-  return std::nullopt;
-}
 
 AllanCurve allan_deviation(std::span<const double> record,
                            double dt_s,

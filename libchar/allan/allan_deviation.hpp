@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 
@@ -25,8 +26,20 @@ enum class TauGrid {
   list
 };  ///< m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); given
 
-std::string_view name_of(DeviationType type);  ///< "oadev"
-std::optional<DeviationType> deviation_type(std::string_view name);
+template <>
+inline constexpr auto enum_table<DeviationType> =
+    enum_words<DeviationType>({{DeviationType::adev, "adev"},
+                               {DeviationType::oadev, "oadev"},
+                               {DeviationType::mdev, "mdev"},
+                               {DeviationType::tdev, "tdev"},
+                               {DeviationType::hdev, "hdev"},
+                               {DeviationType::ohdev, "ohdev"},
+                               {DeviationType::totdev, "totdev"}});
+template <>
+inline constexpr auto enum_table<TauGrid> = enum_words<TauGrid>({{TauGrid::octave, "octave"},
+                                                                 {TauGrid::decade, "decade"},
+                                                                 {TauGrid::dense, "dense"},
+                                                                 {TauGrid::list, "list"}});
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor

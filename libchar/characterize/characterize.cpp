@@ -16,8 +16,9 @@ constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
 
 class Stages : public BlockSink {
  public:
-  explicit Stages(const CharacterizeOptions& options) : options_(options) {
-    const bool whole_record_needed = options.wanted.spectrum && options.spectrum.segment == 0;
+  explicit Stages(CharacterizeOptions& options) : options_(options) {
+    const bool whole_record_needed =
+        options.wanted.spectrum && options.spectrum.segment == 0 && !(options.segment_s > 0);
     budget_ = whole_record_needed || options.full_overlap
                   ? options.memory_bytes
                   : std::min(options.memory_bytes, kSmallLogBytes);
@@ -25,6 +26,8 @@ class Stages : public BlockSink {
 
   void begin(const LogInfo& so_far) override {
     const std::size_t channels = so_far.channels.size();
+    if (options_.wanted.spectrum && options_.spectrum.segment == 0 && options_.segment_s > 0)
+      options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
     for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_);
     arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
     if (surely_too_long(so_far)) {
@@ -107,7 +110,7 @@ class Stages : public BlockSink {
            bytes > kDoubt * static_cast<double>(budget_);
   }
 
-  const CharacterizeOptions& options_;
+  CharacterizeOptions& options_;
   std::uint64_t budget_ = 0, kept_bytes_ = 0;
   tbb::task_arena arena_;
   std::vector<ChannelStage> stages_;

@@ -25,13 +25,7 @@ const std::vector<std::string> kStatuses = {
     "detected", "not_detected", "undetermined", "given", "not_fitted"};
 
 Status status_of(const std::string& word) {
-  for (const Status status : {Status::detected,
-                              Status::not_detected,
-                              Status::undetermined,
-                              Status::given,
-                              Status::not_fitted})
-    if (name_of(status) == word) return status;
-  return Status::given;
+  return find_enum<Status>(word).value_or(Status::given);
 }
 
 std::vector<std::string> model_keys() {

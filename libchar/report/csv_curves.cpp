@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"

@@ -328,7 +328,7 @@ class SceneReader {
   SensorFault fault(const MapReader& at) const {
     SensorFault fault;
     fault.sensor = sensor_index(at, "sensor");
-    fault.kind = fault_kind(at.word("kind", fault_kinds()));
+    fault.kind = *find_enum<FaultKind>(at.word("kind", words_of<FaultKind>()));
     const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
     if (valueless && at.has("value"))
       refuse_scene("E0739",

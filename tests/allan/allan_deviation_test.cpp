@@ -94,8 +94,8 @@ void check_same_bits(const AllanCurve& a, const AllanCurve& b, double factor) {
 }  // namespace
 
 TEST_CASE("names and types") {
-  for (const DeviationType type : kAll) CHECK(deviation_type(name_of(type)) == type);
-  CHECK_FALSE(deviation_type("allan"));
+  for (const DeviationType type : kAll) CHECK(find_enum<DeviationType>(name_of(type)) == type);
+  CHECK_FALSE(find_enum<DeviationType>("allan"));
 }
 
 TEST_CASE("numbers of terms follow the formulas") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "libchar/core/csv_cell.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -7,16 +7,16 @@
 #include <set>
 
 #include "analysis_options.hpp"
-#include "fit_table.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/report/fit_text.hpp"
 #include "libchar/report/outputs.hpp"
-#include "output_files.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -68,7 +68,7 @@ std::string text_for_people(const Characterization& result) {
                                  log.time.gaps,
                                  log.time.gaps == 1 ? "" : "s");
   for (const ChannelResult& c : result.channels) {
-    text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
     if (c.verification)
       for (const std::string& sentence : c.verification->sentences)
         text += fmt::format("  {}\n", printable(sentence));
@@ -156,7 +156,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   add_reading_options(options, session, verb->analysis.options.reading);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);
-  add_spectrum_options(options, verb->analysis);
+  add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);
   add_fit_options(options, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }

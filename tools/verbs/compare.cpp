@@ -8,6 +8,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
@@ -71,7 +72,7 @@ std::string text_for_people(const Comparison& c) {
                     bytes(row.b),
                     where.empty() ? std::string(name_of(row.difference)) : where});
   }
-  return out + "\n" + table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
+  return out + "\n" + text_table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
 }
 
 Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {

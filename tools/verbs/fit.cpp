@@ -8,15 +8,16 @@
 #include <set>
 
 #include "analysis_options.hpp"
-#include "fit_table.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/report/fit_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -118,7 +119,7 @@ std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInf
   for (std::size_t c = 0; c < table.curves.size(); ++c) {
     DigitisedCurve& curve = table.curves[c];
     curve.is_allan = verb.curve == "allan";
-    curve.sides = verb.analysis.sides == "two" ? Sides::two : Sides::one;
+    curve.sides = verb.analysis.options.spectrum.sides;
     if (verb.quantity != "auto") curve.root = verb.quantity == "root";
     const std::vector<std::string>& units = options.reading.units;
     if (named && !units.empty()) table.channels[c].unit = units[std::min(c, units.size() - 1)];
@@ -137,26 +138,15 @@ std::string obtained_from(const FitVerb& verb) {
 
 // One sensor model a channel; all are written before the first gets its name.
 void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
-  std::error_code problem;
-  std::filesystem::create_directories(verb.models, problem);
-  if (problem)
-    throw Error({ErrorKind::output,
-                 "E0505",
-                 verb.models,
-                 "cannot make this folder: " + problem.message(),
-                 "",
-                 ""});
-  std::vector<WholeFile> files;
+  std::vector<OutputFile> models;
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
-    const std::string name = unused_file_name_for(c.channel.name, taken);
-    const std::string path =
-        (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
-    refuse_same_file(verb.input, path);
-    files.emplace_back(path, verb.force)
-        .write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
+    const std::string name = unused_file_name_for(c.channel.name, taken) + ".sensor.yaml";
+    models.push_back(
+        {(std::filesystem::path(verb.models) / name).string(),
+         model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log))});
   }
-  for (WholeFile& file : files) file.commit();
+  write_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
 void run_fit(Session& session, const FitVerb& verb) {
@@ -184,7 +174,7 @@ void run_fit(Session& session, const FitVerb& verb) {
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits)
-      text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
+      text += (text.empty() ? "" : "\n") + fit_text(c.channel, c.fit);
   }
   if (verb.output.empty()) {
     print(text);
@@ -218,7 +208,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
       verb->curve,
       {"none", "allan", "psd"},
       "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  options.add_choice("--sides", verb->analysis.sides, {"one", "two"}, "of a --curve psd (one)");
+  options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
   options.add_choice(
       "--quantity",
       verb->quantity,

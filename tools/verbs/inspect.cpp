@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/log/inspection.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -60,7 +61,7 @@ std::string channel_table(const libchar::Inspection& inspection) {
                                                  "kurtosis of differences"}};
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
-  return table(rows);
+  return libchar::text_table(rows);
 }
 
 std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {

@@ -9,12 +9,12 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "numbers.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -24,7 +24,7 @@ using namespace libchar;
 
 struct ModelVerb {
   std::vector<std::string> files, places;
-  std::string target, output, axes = "auto";
+  std::string target, output;
   ExportOptions options;
   bool list = false, force = false, json = false;
 };
@@ -49,17 +49,6 @@ ReadModels read_all(const ModelVerb& verb) {
     read.files.push_back(std::move(info));
   }
   return read;
-}
-
-AxisChoice axis_choice(const std::string& word) {
-  static constexpr std::pair<std::string_view, AxisChoice> kWords[] = {{"max", AxisChoice::max},
-                                                                       {"rms", AxisChoice::rms},
-                                                                       {"x", AxisChoice::x},
-                                                                       {"y", AxisChoice::y},
-                                                                       {"z", AxisChoice::z}};
-  for (const auto& [name, choice] : kWords)
-    if (name == word) return choice;
-  return AxisChoice::automatic;
 }
 
 AxisOverrides overrides(const std::vector<std::string>& places) {
@@ -124,7 +113,7 @@ std::string summary(const SensorModel& m) {
     if (m.noise[t].status == Status::not_fitted && !m.noise[t].value) continue;
     rows.push_back(term_row(m.noise[t], t, m.unit));
   }
-  text += rows.size() > 1 ? table(rows, "  ", true) : "  no noise\n";
+  text += rows.size() > 1 ? text_table(rows, "  ", true) : "  no noise\n";
   text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
   if (m.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz\n", significant(*m.bandwidth_hz, 4));
@@ -215,7 +204,6 @@ void run_model(Session& session, ModelVerb& verb) {
                  "FILE is required",
                  "",
                  "sensorchar model --list names the targets"});
-  verb.options.axes = axis_choice(verb.axes);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);
   run_export(session, verb);
@@ -224,10 +212,9 @@ void run_model(Session& session, ModelVerb& verb) {
 void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
-  sub.add_choice(
+  sub.add_enum(
       "--axes",
-      verb.axes,
-      {"auto", "max", "rms", "x", "y", "z"},
+      options.axes,
       "one number for three axes: the largest, their root mean square, or one axis (auto: each "
       "its own where the consumer takes three, else max)");
   sub.add_texts(

@@ -9,21 +9,23 @@
 #include <memory>
 #include <set>
 
-#include "fault_words.hpp"
+#include "fault_help.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_reader.hpp"
+#include "libchar/scene/fault_text.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "libchar/scene/scene_paths.hpp"
 #include "libchar/scene/scene_signal.hpp"
 #include "libchar/scene/scene_writer.hpp"
+#include "libchar/scene/simulated_scene.hpp"
 #include "libchar/simulate/sensor_array.hpp"
-#include "numbers.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -182,7 +184,7 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
   std::vector<std::string> names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   for (const std::string& fault : verb.faults)
-    simulation.faults.push_back(fault_from_words(fault, names));
+    simulation.faults.push_back(parse_fault(fault, names));
   const auto recorded = [&](SignalSpec& spec, const std::string& option) {
     if (spec.kind != "recording") return;
     for (const std::string& output : {verb.output, verb.scene_path})
@@ -200,78 +202,6 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
                                simulation.sensors[fault.sensor].name,
                                significant(fault.from_s, 6),
                                significant(end_s, 6)));
-}
-
-std::string output_unit(const SensorModel& model) {
-  return model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
-}
-
-LogInfo log_info(const ArraySimulation& simulation, const std::string& path, bool with_truth) {
-  LogInfo info;
-  info.file = path;
-  info.samples = info.rows = simulation.samples;
-  info.time.rate_hz = simulation.rate_hz;
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    info.channels.push_back({sensor.name, output_unit(sensor.model), false});
-  if (!with_truth) return info;
-  for (const std::string& name : simulation.truth_names)
-    info.channels.push_back(
-        {name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
-  if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
-  return info;
-}
-
-std::vector<double> rows_of(const SceneReference& reference,
-                            const std::vector<double>& h,
-                            const ArraySimulation& simulation) {
-  std::vector<double> row;
-  const auto& names = simulation.truth_names;
-  for (const std::string& channel : reference.channels)
-    row.push_back(h[std::find(names.begin(), names.end(), channel) - names.begin()]);
-  return row;
-}
-
-// The scene that replays the recording: its channels by name, the models inline, the truth as
-// reference.
-// What the simulated scene wanted of its replay is kept.
-Scene replay_scene(const ArraySimulation& simulation,
-                   const LogInfo& info,
-                   const SimulateVerb& verb,
-                   const Scene& given) {
-  Scene scene;
-  scene.learning = given.learning;
-  scene.evaluation = given.evaluation;
-  scene.rest = given.rest;
-  scene.fault_free_s = given.fault_free_s;
-  scene.tilt = given.tilt;
-  scene.algorithms = given.algorithms;
-  scene.file = verb.scene_path;
-  scene.name = fs::path(verb.output).stem().string();
-  scene.recording = verb.output;
-  const std::string format = format_to_write(verb.output, verb.writing);
-  if (format == "npy") {
-    scene.reading.rate_hz = simulation.rate_hz;
-    for (const Channel& channel : info.channels) {
-      scene.reading.names.push_back(channel.name);
-      scene.reading.units.push_back(channel.unit.empty() ? "1" : channel.unit);
-    }
-  } else if (format == "csv" && verb.no_time_column) {
-    scene.reading.rate_hz = simulation.rate_hz;
-    scene.reading.time_column = "none";
-  }
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    scene.sensors.push_back({sensor.name, sensor.name, sensor.model, sensor.h});
-  for (std::size_t i = 0; i < given.sensors.size(); ++i)
-    scene.sensors[i].noise = given.sensors[i].noise;
-  if (!verb.no_truth) {
-    scene.reference =
-        given.reference.value_or(SceneReference{simulation.truth_names, false, {}, {}, 0, false});
-    // Rows of the matrix have a weight for each input that the reference names.
-    for (SceneSensor& sensor : scene.sensors)
-      sensor.h = rows_of(*scene.reference, sensor.h, simulation);
-  }
-  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults, simulation.oversampling};
-  return scene;
 }
 
 void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
@@ -354,12 +284,13 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   session.terminal.warn(warnings, "simulate");
   check(simulation);
   check_names(simulation, verb);
-  const LogInfo info = log_info(simulation, verb.output, !verb.no_truth);
+  const SimulatedRecording recording{verb.output, verb.scene_path, verb.writing, !verb.no_truth};
+  const LogInfo info = log_info(simulation, recording);
   const auto writer = open_log_writer(verb.output, info, verb.writing);
   std::optional<WholeFile> scene_file;
   if (!verb.no_scene) {
     scene_file.emplace(verb.scene_path, verb.writing.overwrite);
-    scene_file->write(scene_yaml(replay_scene(simulation, info, verb, scene)));
+    scene_file->write(scene_yaml(replay_scene(simulation, recording, scene)));
   }
   stream(session, verb, simulation, *writer);
   session.terminal.clear();
