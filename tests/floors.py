@@ -1,5 +1,6 @@
 """Fails on any #include that looks up, and on any that looks into a folder inside another floor: the order of the floors lives here
-and nowhere else. A header directly in a floor is public and installed; one in a folder inside a floor belongs to that floor."""
+and nowhere else. A header directly in a floor is public and installed; one in a folder inside a floor belongs to that floor. So a
+header that nobody outside its floor gets to see (another floor, a verb, an example, the front door libchar.hpp) has to be in a folder."""
 import pathlib
 import re
 import sys
@@ -14,6 +15,8 @@ root = pathlib.Path(sys.argv[1])
 faults = []
 for path in sorted((root / "libchar").rglob("*.[ch]pp")):
     floor = path.relative_to(root / "libchar").parts[0]
+    if floor == path.name:  # the front door
+        continue
     for number, line in enumerate(path.read_text().splitlines(), 1):
         own = re.match(r'\s*#include "libchar/(\w+)/(\w+/)?', line)
         if own and own[1] != floor and ORDER[own[1]] >= ORDER[floor]:
@@ -23,5 +26,24 @@ for path in sorted((root / "libchar").rglob("*.[ch]pp")):
         for library, floors in KEPT.items():
             if re.match(rf"\s*#include <{re.escape(library)}", line) and floor not in floors:
                 faults.append(f"{path}:{number}: {library} is not to be used in {floor}")
+
+
+def includes(path):
+    return set(re.findall(r'#include "(libchar/[^"]+)"', path.read_text()))
+
+
+public = {path.relative_to(root).as_posix() for path in (root / "libchar").glob("*/*.hpp")}
+seen = set()  # from outside, directly or through a public header
+wanted = set().union(*(includes(path) for folder in ("tools", "docs/examples") for path in (root / folder).glob("*.[ch]pp")))
+for path in (root / "libchar").rglob("*.[ch]pp"):
+    floor = path.relative_to(root / "libchar").parts[0]
+    wanted |= {name for name in includes(path) if name.split("/")[1] != floor}
+while wanted:
+    name = wanted.pop()
+    if name in public - seen:
+        seen.add(name)
+        wanted |= includes(root / name)
+for name in sorted(public - seen):
+    faults.append(f"{name}: nobody outside its floor sees it: it belongs into detail/")
 print("\n".join(faults) or "floors: every include looks down")
 sys.exit(bool(faults))

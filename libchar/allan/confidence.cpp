@@ -3,7 +3,7 @@
 #include "libchar/allan/confidence.hpp"
 
 #include "libchar/allan/allan_covariance.hpp"
-#include "libchar/allan/equivalent_dof.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/text.hpp"
 

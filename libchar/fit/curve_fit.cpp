@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
@@ -123,8 +123,7 @@ Eigen::MatrixXd whitening_for(const DigitisedCurve& curve, const Mixture& theta)
   // Points read off a graph are a percent off; neighbours a fraction of an octave apart would be
   // singular without that.
   covariance.diagonal().array() += 1e-4 + 0.01 * covariance.diagonal().array();
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  return factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
+  return inverse_cholesky_factor(covariance);
 }
 
 enum class Scatter { stated, from_duration, estimated };

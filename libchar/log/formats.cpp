@@ -1,14 +1,105 @@
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/formats.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/core/text.hpp"
+#include "libchar/log/detail/format.hpp"
+
+// The log formats, the most specific first. A line both declares the row that NAME's file exports and lists it:
+// Format NAME_format().
+#define LIBCHAR_LOG_FORMATS(FORMAT) \
+  FORMAT(npy)                       \
+  FORMAT(raw)                       \
+  FORMAT(csv)
+
+// A build may bring formats of its own, which are asked first: -D'LIBCHAR_MORE_LOG_FORMATS(FORMAT)=FORMAT(mine)'.
+#ifndef LIBCHAR_MORE_LOG_FORMATS
+#define LIBCHAR_MORE_LOG_FORMATS(FORMAT)
+#endif
 
 namespace libchar {
 
+#define LIBCHAR_DECLARE(name) Format name##_format();
+LIBCHAR_MORE_LOG_FORMATS(LIBCHAR_DECLARE)
+LIBCHAR_LOG_FORMATS(LIBCHAR_DECLARE)
+#undef LIBCHAR_DECLARE
+
 const std::vector<Format>& formats() {
-  static const std::vector<Format> table = {
-      {"npy", ".npy", sniff_npy, open_npy},
-      {"raw", ".f64 .f32 .i16 .i32 .bin .raw", sniff_raw, open_raw},
-      {"csv", ".csv .tsv .txt .dat", sniff_csv, open_csv},
-  };
+#define LIBCHAR_ROW(name) name##_format(),
+  static const std::vector<Format> table = {LIBCHAR_MORE_LOG_FORMATS(LIBCHAR_ROW)
+                                                LIBCHAR_LOG_FORMATS(LIBCHAR_ROW)};
+#undef LIBCHAR_ROW
   return table;
+}
+
+namespace {
+
+bool ends_in(std::string_view path, const std::vector<std::string_view>& suffixes) {
+  return std::any_of(suffixes.begin(), suffixes.end(), [&](std::string_view suffix) {
+    return path.size() > suffix.size() &&
+           ascii_lower(path.substr(path.size() - suffix.size())) == suffix;
+  });
+}
+
+// In alphabetical order of their names.
+std::vector<const Format*> by_name() {
+  std::vector<const Format*> rows;
+  for (const Format& format : formats()) rows.push_back(&format);
+  std::sort(rows.begin(), rows.end(), [](const Format* a, const Format* b) {
+    return a->about.name < b->about.name;
+  });
+  return rows;
+}
+
+}  // namespace
+
+const Format* find_format(std::string_view name) {
+  for (const Format& format : formats())
+    if (format.about.name == name) return &format;
+  return nullptr;
+}
+
+const Format* format_by_suffix(const std::string& path) {
+  for (const Format& format : formats())
+    if (ends_in(path, format.about.suffixes)) return &format;
+  return nullptr;
+}
+
+const Format* written_format_by_suffix(const std::string& path) {
+  for (const Format& format : formats())
+    if (format.write && ends_in(path, format.about.written_suffixes)) return &format;
+  return nullptr;
+}
+
+std::vector<LogFormat> log_formats() {
+  std::vector<LogFormat> descriptions;
+  for (const Format& format : formats()) descriptions.push_back(format.about);
+  return descriptions;
+}
+
+std::vector<std::string> format_words() {
+  std::vector<std::string> words = {"auto"};
+  for (const Format* format : by_name()) words.emplace_back(format->about.name);
+  return words;
+}
+
+std::vector<std::string> written_format_words() {
+  std::vector<std::string> words = {"auto"};
+  for (const Format* format : by_name())
+    if (format->write) words.emplace_back(format->about.name);
+  return words;
+}
+
+std::string written_suffixes() {
+  std::vector<std::string_view> suffixes;
+  for (const Format* format : by_name())
+    if (format->write)
+      suffixes.insert(suffixes.end(),
+                      format->about.written_suffixes.begin(),
+                      format->about.written_suffixes.end());
+  return fmt::format("{}", fmt::join(suffixes, ", "));
 }
 
 }  // namespace libchar

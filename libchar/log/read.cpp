@@ -15,7 +15,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/time/time_base.hpp"
 
@@ -45,53 +45,37 @@ std::string front_of(const std::string& path) {
   return bytes;
 }
 
-bool has_suffix(std::string_view path, std::string_view suffixes) {
-  while (!suffixes.empty()) {
-    const std::size_t blank = suffixes.find(' ');
-    const std::string_view suffix = suffixes.substr(0, blank);
-    if (path.size() > suffix.size()) {
-      const std::string_view end = path.substr(path.size() - suffix.size());
-      if (std::equal(end.begin(), end.end(), suffix.begin(), [](char a, char b) {
-            return a == b || (a >= 'A' && a <= 'Z' && a - 'A' + 'a' == b);
-          }))
-        return true;
-    }
-    if (blank == std::string_view::npos) break;
-    suffixes.remove_prefix(blank + 1);
-  }
-  return false;
-}
-
 // The name decides before the content: a .csv that holds something else is told so by the CSV
 // reader.
 const Format& format_of(const std::string& path, const ReadOptions& options) {
-  const auto& table = formats();
-  const auto named = [&](std::string_view name) -> const Format* {
-    const auto found =
-        std::find_if(table.begin(), table.end(), [&](const Format& f) { return f.name == name; });
-    return found == table.end() ? nullptr : &*found;
-  };
   if (options.format != "auto") {
-    if (const Format* format = named(options.format)) return *format;
-    throw Error({ErrorKind::usage,
-                 "",
-                 path,
-                 "unknown log format",
-                 options.format,
-                 "use auto, csv, npy or raw"});
+    if (const Format* format = find_format(options.format)) return *format;
+    const auto words = format_words();
+    throw Error(
+        {ErrorKind::usage,
+         "",
+         path,
+         "unknown log format",
+         options.format,
+         fmt::format(
+             "use {} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back())});
   }
-  if (read_once(path)) return *named("csv");  // nobody looks into a pipe without taking from it
+  if (read_once(path)) {  // nobody looks into a pipe without taking from it
+    for (const Format& format : formats())
+      if (format.about.from_pipes) return format;
+  }
   const std::string front = front_of(path);
-  for (const Format& format : table)
-    if (has_suffix(path, format.suffixes)) return format;
-  for (const Format& format : table)
+  if (const Format* format = format_by_suffix(path)) return *format;
+  for (const Format& format : formats())
     if (format.sniff(path, front)) return format;
+  const auto words = format_words();
   throw Error({ErrorKind::input,
                "E0102",
                path,
                "neither text nor an array file, and no sidecar describes it",
                "",
-               "--format csv|npy|raw, or write FILE.json (docs: raw binary)"});
+               fmt::format("--format {}, or write FILE.json (docs: raw binary)",
+                           fmt::join(words.begin() + 1, words.end(), "|"))});
 }
 
 // What the user knows of the channels and the log does not say.

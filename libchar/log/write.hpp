@@ -1,6 +1,5 @@
 #pragma once
-// Writing logs, streaming: the three formats that read.hpp reads. What is written reads back to the
-// same bits.
+// Writing logs, streaming, in the formats of formats.hpp. What is written reads back to the same bits.
 
 #include <cstdint>
 #include <memory>
@@ -14,7 +13,7 @@
 namespace libchar {
 
 struct WriteOptions {
-  std::string format = "auto";  ///< "auto" (by suffix), "csv", "npy", "raw"
+  std::string format = "auto";  ///< "auto" (by suffix) or a name of formats.hpp
   std::string dtype = "f64";    ///< npy, raw: "f64" or "f32"
   std::string order =
       "interleaved";  ///< raw: "interleaved" or "planar" (npy: C order or Fortran order)
@@ -49,7 +48,7 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const LogInfo& info,
                                            const WriteOptions& options = {});
 
-/// The format that `path` and `options` ask for: "csv", "npy" or "raw".
+/// The name of the format that `path` and `options` ask for.
 std::string format_to_write(const std::string& path, const WriteOptions& options);
 
 }  // namespace libchar

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/text.hpp"
+#include "libchar/replay/ranking.hpp"
 
 namespace libchar {
 namespace {
@@ -142,32 +143,6 @@ std::string people_bytes(const std::optional<std::uint64_t>& bytes) {
 std::string people_error(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "–";
   return significant(value, 4) + (unit.empty() ? "" : " " + unit);
-}
-
-std::vector<const AlgorithmResult*> ranked(const ReplayResult& result) {
-  std::vector<const AlgorithmResult*> out;
-  for (const AlgorithmResult& a : result.algorithms)
-    if (a.ran) out.push_back(&a);
-  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
-    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
-  });
-  return out;
-}
-
-std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
-  std::vector<SkippedAlgorithms> out;
-  for (const AlgorithmResult& a : result.algorithms) {
-    if (a.ran) continue;
-    const std::string front = std::string(a.card->name) + " ";
-    const std::string reason = a.why.starts_with(front) ? a.why.substr(front.size()) : a.why;
-    const auto known = std::find_if(
-        out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
-    if (known == out.end())
-      out.push_back({reason, {a.label}});
-    else
-      known->labels.push_back(a.label);
-  }
-  return out;
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/replay/ranking.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
@@ -14,16 +15,6 @@ namespace libchar {
 std::vector<std::string> verdict_sentences(const ReplayResult& result, bool costs);
 /// All of them in a row.
 std::string replay_verdict(const ReplayResult& result, bool costs = true);
-
-/// Why algorithms did not run: a reason and the labels it holds for.
-struct SkippedAlgorithms {
-  std::string reason;
-  std::vector<std::string> labels;
-};
-std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result);
-
-/// Those that ran, best first; those without a score behind.
-std::vector<const AlgorithmResult*> ranked(const ReplayResult& result);
 
 /// What the optimum of this scene is: "fixed weights", "tilt filters".
 std::string optimum_of(const ReplayResult& result);

@@ -3,14 +3,13 @@
 #include "libchar/report/replay_html.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
-#include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
@@ -22,17 +21,14 @@
 namespace libchar {
 namespace {
 
-std::string name_of_scene(const ReplayResult& r) {
-  return r.scene.name.empty() ? r.scene.file : r.scene.name;
-}
-
-std::string facts(const ReplayResult& r) {
+std::string facts(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::string out = fmt::format(
       "<p class=\"facts\"><b>{}</b> sensors · <b>{}</b> instants at <b>{}</b> Hz · <b>{}</b>",
       r.sensors.size(),
       people_count(r.instants),
       significant(r.rate_hz, 6),
-      html_text(people_seconds(static_cast<double>(r.instants) / r.rate_hz)));
+      html_text(people_seconds(view.duration_s)));
   if (r.has_reference) {
     out += " · reference: " + html_text(r.reference_use);
     for (const InputResult& input : r.inputs)
@@ -50,8 +46,8 @@ std::string facts(const ReplayResult& r) {
 }
 
 // What the columns mean.
-std::string scores_note(const ReplayResult& r) {
-  if (!r.has_reference)
+std::string scores_note(const ReplayView& view) {
+  if (!view.result->has_reference)
     return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
            "(the "
            "estimate from all other sensors) − (the sensor left out), over all sensors; it holds "
@@ -60,7 +56,7 @@ std::string scores_note(const ReplayResult& r) {
   return "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
          "Regret: "
          "RMSE ÷ RMSE of the optimum of " +
-         optimum_of(r) +
+         view.optimum +
          " on this run, minus 1; beyond 100 % the ratio itself. “× best”: interval of the ratio of "
          "RMSEs on the same resampled stretches; when it holds 1 the difference is not resolved. "
          "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
@@ -68,57 +64,45 @@ std::string scores_note(const ReplayResult& r) {
          "head sorts by it.</p>\n";
 }
 
-std::string overview(const ReplayResult& r) {
+std::string overview(const ReplayView& view) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
-  for (const std::string& sentence : verdict_sentences(r, true))
-    out += "<p>" + html_text(sentence) + "</p>\n";
-  out += "</div>\n" + facts(r) + ranking_table(r);
-  return out + scores_note(r) + inputs_table(r) + "</section>\n";
+  for (const std::string& sentence : view.verdict) out += "<p>" + html_text(sentence) + "</p>\n";
+  out += "</div>\n" + facts(view) + ranking_table(view);
+  return out + scores_note(view) + inputs_table(view) + "</section>\n";
 }
 
-std::string skipped(const ReplayResult& r) {
-  const auto all = skipped_algorithms(r);
+std::string skipped(const ReplayView& view) {
   std::string out = "<section class=\"part\" id=\"needs\">\n<h2>What each algorithm needs</h2>\n";
-  if (!all.empty()) {
-    std::vector<std::string> items;
-    for (const auto& [reason, labels] : all)
-      items.push_back(fmt::format("Skipped {}: {}", fmt::join(labels, ", "), reason));
-    out += bullet_list(items, "plain");
-  }
-  return out + "<details><summary>Needs, cost and source of all</summary>\n" + needs_table(r) +
+  std::vector<std::string> items;
+  for (const auto& [reason, labels] : view.skipped)
+    items.push_back(fmt::format("Skipped {}: {}", fmt::join(labels, ", "), reason));
+  return out + bullet_list(items, "plain") +
+         "<details><summary>Needs, cost and source of all</summary>\n" + needs_table(view) +
          "</details>\n</section>\n";
 }
 
-bool any(const ReplayResult& r, bool (*has)(const AlgorithmResult& a)) {
-  return std::any_of(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
-    return a.ran && has(a);
-  });
-}
-
-std::string cost_plots(const ReplayResult& r) {
-  if (!any(r, [](const AlgorithmResult& a) { return a.rmse > 0; })) return "";
-  const std::string name = name_of_scene(r), unit = score_unit(r);
+std::string cost_plots(const ReplayView& view) {
+  const std::string name = score_name(*view.result), unit = score_unit(*view.result);
   std::string plots;
-  if (any(r, [](const AlgorithmResult& a) { return a.rmse > 0 && a.ns_per_sample > 0; }))
+  if (view.figures.error_over_time)
     plots += plot_figure(
         "cost-time",
         0,
         {"Error against run time",
-         score_name(r),
+         name,
          unit,
          "Lower and further left is better. Dashed: the Pareto front, on which no method is "
          "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
          "methods."},
-        name);
-  if (any(r,
-          [](const AlgorithmResult& a) { return a.rmse > 0 && a.peak_bytes && *a.peak_bytes > 0; }))
+        view.title);
+  if (view.figures.error_over_memory)
     plots += plot_figure("cost-memory",
                          0,
                          {"Error against memory",
-                          score_name(r),
+                          name,
                           unit,
                           "Peak of the memory held from the heap, over learning and run."},
-                         name);
+                         view.title);
   return plots.empty() ? ""
                        : "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n<div "
                          "class=\"plots cost\">\n" +
@@ -129,13 +113,11 @@ std::string of_input(const ReplayResult& r, std::size_t j) {
   return r.inputs.size() > 1 && j < r.inputs.size() ? " of " + r.inputs[j].name : "";
 }
 
-std::string window_plots(const ReplayResult& r) {
+std::string window_plots(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::string out;
-  for (std::size_t j = 0; j < r.inputs.size(); ++j) {
-    bool some = false;
-    for (const AlgorithmResult& a : r.algorithms)
-      some = some || (j < a.inputs.size() && !a.inputs[j].window_rms.empty());
-    if (some)
+  for (std::size_t j = 0; j < view.inputs.size(); ++j)
+    if (view.inputs[j].has_window_rms)
       out += plot_figure(
           "window",
           j,
@@ -145,8 +127,23 @@ std::string window_plots(const ReplayResult& r) {
            fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
                        "in each bin of the plot.",
                        people_seconds(r.window_s))},
-          name_of_scene(r));
-  }
+          view.title);
+  return out;
+}
+
+std::string allan_plots(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  std::string out;
+  for (std::size_t j = 0; j < view.inputs.size(); ++j)
+    if (view.inputs[j].has_allan)
+      out += plot_figure(
+          "error-allan",
+          j,
+          {"Allan deviation of the error" + of_input(r, j),
+           "overlapping Allan deviation",
+           usual_unit(r.inputs[j].unit),
+           "What averaging would remove falls with τ; what stays level or rises is drift."},
+          view.title);
   return out;
 }
 
@@ -164,14 +161,15 @@ std::string lines_drawn(const ReplayResult& r, const char* which) {
                    which);
 }
 
-std::string track_plots(const ReplayResult& r) {
-  const std::string name = name_of_scene(r);
+std::string track_plots(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  const std::string& name = view.title;
   const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
   std::string out;
-  if (any(r, [](const AlgorithmResult& a) { return a.weights && a.weights->cols() == 1; }))
+  if (view.figures.weights)
     out += plot_figure(
         "weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
-  if (any(r, [](const AlgorithmResult& a) { return a.variances.has_value(); }))
+  if (view.figures.variances)
     out += plot_figure(
         "variances",
         0,
@@ -183,7 +181,7 @@ std::string track_plots(const ReplayResult& r) {
                   ? " Dotted: mean square error of the sensor over the run, its bias included."
                   : "")},
         name);
-  if (!r.faults.empty() || any(r, [](const AlgorithmResult& a) { return !a.faults.empty(); }))
+  if (view.figures.faults)
     out += plot_figure(
         "faults",
         0,
@@ -195,54 +193,33 @@ std::string track_plots(const ReplayResult& r) {
   return out;
 }
 
-std::string time_plots(const ReplayResult& r) {
-  std::string plots = window_plots(r) + track_plots(r);
-  std::string allan;
-  for (std::size_t j = 0; j < r.inputs.size(); ++j) {
-    bool some = false;
-    for (const AlgorithmResult& a : r.algorithms)
-      some = some || (j < a.inputs.size() && !a.inputs[j].allan.points.empty());
-    if (some)
-      allan += plot_figure(
-          "error-allan",
-          j,
-          {"Allan deviation of the error" + of_input(r, j),
-           "overlapping Allan deviation",
-           usual_unit(r.inputs[j].unit),
-           "What averaging would remove falls with τ; what stays level or rises is drift."},
-          name_of_scene(r));
-  }
+std::string time_plots(const ReplayView& view) {
+  const std::string plots = window_plots(view) + track_plots(view), allan = allan_plots(view);
   if (plots.empty() && allan.empty()) return "";
   std::string out =
       "<section class=\"part\" id=\"time\">\n<h2>Over time</h2>\n<div "
       "id=\"stretch-place\"></div>\n";
-  if (r.has_reference) out += "<div id=\"shown-place\"></div>\n";
+  if (view.result->has_reference) out += "<div id=\"shown-place\"></div>\n";
   out += "<div class=\"plots over-time\">\n" + plots + "</div>\n";
   if (!plots.empty())
     out +=
         "<p class=\"note\">Drag across a plot to look at a stretch; a double click shows the whole "
         "run.</p>\n";
   if (!allan.empty()) out += "<div class=\"plots\">\n" + allan + "</div>\n";
-  return out + weights_table(r) + "</section>\n";
+  return out + weights_table(view) + "</section>\n";
 }
 
-std::string faults(const ReplayResult& r) {
-  const std::string table = faults_table(r);
+std::string faults(const ReplayView& view) {
+  const std::string table = faults_table(view);
   return table.empty()
              ? ""
              : "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + table + "</section>\n";
 }
 
 // Each sensor beside what fusing them gives: is it worth it?
-std::string sensor_plot(const ReplayResult& r) {
-  const bool some = std::any_of(
-      r.sensors.begin(), r.sensors.end(), [](const SensorResult& s) { return s.error.rmse > 0; });
-  // Sensors in different units have no axis in common.
-  const bool alike = std::all_of(r.sensors.begin(), r.sensors.end(), [&](const SensorResult& s) {
-    return s.unit == r.sensors[0].unit;
-  });
-  if (!some || !alike) return "";
-  const std::string unit = usual_unit(r.sensors[0].unit);
+std::string sensor_plot(const ReplayView& view) {
+  if (!view.figures.sensors) return "";
+  const std::string unit = usual_unit(view.result->sensors[0].unit);
   return "<div class=\"plots\">\n" +
          plot_figure("sensors",
                      0,
@@ -252,32 +229,26 @@ std::string sensor_plot(const ReplayResult& r) {
                       "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: "
                       "noise of a sample as the algorithms were told. A sensor far above its noise "
                       "failed, saturated or is not calibrated."},
-                     name_of_scene(r)) +
+                     view.title) +
          "</div>\n";
 }
 
-std::string sensors(const ReplayResult& r) {
-  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensor_plot(r) +
-         sensors_table(r) + blind_table(r) + "</section>\n";
+std::string sensors(const ReplayView& view) {
+  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensor_plot(view) +
+         sensors_table(view) + blind_table(view) + "</section>\n";
 }
 
-Warnings all_warnings(const ReplayResult& r) {
-  Warnings out = r.warnings;
-  for (const LogInfo& log : r.logs) out.merge(log.warnings);
-  return out;
-}
-
-std::string remarks(const ReplayResult& r) {
+std::string remarks(const ReplayView& view) {
   std::vector<std::string> items;
-  for (const AlgorithmResult& a : r.algorithms)
-    for (const Warning& w : a.remarks.list())
-      items.push_back((w.message.starts_with(a.label) ? "" : a.label + ": ") + w.message +
-                      (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
+  for (const AlgorithmRemark& remark : view.remarks)
+    items.push_back((remark.label.empty() ? "" : remark.label + ": ") + remark.message +
+                    (remark.count > 1 ? fmt::format(" ({} ×)", remark.count) : ""));
   return items.empty() ? ""
                        : "<h3>What the algorithms remark</h3>\n" + bullet_list(items, "cautions");
 }
 
-std::string inputs(const ReplayResult& r) {
+std::string inputs(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::string out = "<h3>Input</h3>\n<table class=\"facts\"><tbody>\n";
   out += table_row({"Scene", r.scene.file});
   if (r.scene.simulate)
@@ -291,19 +262,18 @@ std::string inputs(const ReplayResult& r) {
   }
   if (r.learning)
     out += table_row({"Learning window", people_stretch(r.learning->from_s, r.learning->to_s)});
-  out += table_row(
-      {"Evaluation",
-       people_stretch(r.start_s, r.start_s + static_cast<double>(r.instants) / r.rate_hz)});
+  out += table_row({"Evaluation", people_stretch(r.start_s, view.end_s)});
   out += table_row({"Tool", "sensorchar " + std::string(version())});
   return out + "<tr><th scope=\"row\">Command</th><td><code>" + html_text(command_line(r.command)) +
          "</code></td></tr>\n</tbody></table>\n";
 }
 
-std::string provenance(const ReplayResult& r) {
+std::string provenance(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"halves\">\n<div>\n" +
-      inputs(r) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(all_warnings(r)) +
-      "</div>\n" + remarks(r) + "</div>\n</div>\n";
+      inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) +
+      "</div>\n" + remarks(view) + "</div>\n</div>\n";
   if (!r.plan.empty())
     out += "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
            bullet_list(r.plan, "plain") +
@@ -323,16 +293,20 @@ std::string provenance(const ReplayResult& r) {
 
 }  // namespace
 
-std::string replay_html(const ReplayResult& r) {
-  Json document = replay_json(r);
+std::string replay_html(const ReplayView& view) {
+  Json document = replay_json(view);
   document.erase("measured");
   return html_page({"Sensor fusion",
-                    name_of_scene(r),
+                    view.title,
                     std::string(replay_page_js()),
                     std::string(page_css()) + std::string(replay_page_css())},
-                   overview(r) + cost_plots(r) + time_plots(r) + faults(r) + sensors(r) +
-                       skipped(r) + provenance(r),
+                   overview(view) + cost_plots(view) + time_plots(view) + faults(view) +
+                       sensors(view) + skipped(view) + provenance(view),
                    json_in_script(document));
+}
+
+std::string replay_html(const ReplayResult& result) {
+  return replay_html(replay_view(result));
 }
 
 }  // namespace libchar

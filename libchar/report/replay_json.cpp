@@ -1,16 +1,13 @@
 #include "libchar/report/replay_json.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 
-#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/replay/verdict.hpp"
-#include "libchar/report/detail/replay_timeline.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
-#include "libchar/report/replay_words.hpp"
-#include "libchar/scene/scene_writer.hpp"
 
 namespace libchar {
 namespace {
@@ -161,8 +158,8 @@ Json warnings_json(const Warnings& warnings) {
   return out;
 }
 
-// `merged`: neighbouring bins of the tracks that become one, for the size of the page.
-Json algorithm_json(const ReplayResult& result, const AlgorithmResult& a, std::size_t merged) {
+Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
+  const AlgorithmResult& a = *view.result;
   // Without a reference there is no error to take the mean square of: see without_reference.
   const bool errors = result.has_reference;
   Json out = {{"name", std::string(a.card->name)},
@@ -189,17 +186,18 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmResult& a, std::s
               {"variance_error", json_number(a.variance_error)},
               {"inputs", inputs_json(result, a)},
               {"without_reference", blind_json(a.blind)},
-              {"weight_track", timeline_json(merged_bins(a.weight_track, merged))},
-              {"variance_track", timeline_json(merged_bins(a.variance_track, merged))},
+              {"weight_track", timeline_json(view.weight_track)},
+              {"variance_track", timeline_json(view.variance_track)},
               {"remarks", warnings_json(a.remarks)},
               {"options", options_json(a.settings)}};
   out["card"] = {{"title", std::string(a.card->title)},
                  {"source", std::string(a.card->source)},
-                 {"needs", texts(needs_in_words(*a.card))},
-                 {"learns_from_reference", a.card->needs.reference},
+                 {"needs", texts(view.needs)},
+                 {"learns_from_reference", view.learns},
                  {"accepts_missing", a.card->needs.accepts_missing},
                  {"complexity", std::string(a.card->complexity)},
                  {"learning_complexity", std::string(a.card->learning_complexity)}};
+  out["on_front"] = {{"time", view.on_time_front}, {"memory", view.on_memory_front}};
   return out;
 }
 
@@ -221,24 +219,20 @@ Json sensors_json(const ReplayResult& result) {
   return out;
 }
 
-Json scene_json(const ReplayResult& result) {
-  const Scene& scene = result.scene;
+Json scene_json(const ReplayView& view) {
+  const Scene& scene = view.result->scene;
   Json out = {{"name", json_text(scene.name)},
               {"file", json_text(scene.file)},
               {"simulated", scene.simulate.has_value()}};
   if (scene.simulate) {
-    // What was simulated, whoever was asked to fuse it.
-    Scene identity = scene;
-    identity.algorithms.clear();
-    identity.learning.reset();
-    identity.evaluation.reset();
-    identity.name.clear();
-    Sha256 hash;
-    hash.update(scene_yaml(identity));
     out["seed"] = scene.simulate->seed;
-    out["identity"] = hash.finish();
+    out["identity"] = view.simulation_identity;
   }
   return out;
+}
+
+Json paragraph(const std::vector<std::string>& sentences) {
+  return json_text(fmt::format("{}", fmt::join(sentences, " ")));
 }
 
 Json known_faults_json(const ReplayResult& result) {
@@ -251,10 +245,6 @@ Json known_faults_json(const ReplayResult& result) {
                    {"to_s", json_number(fault.to_s)}});
   return out;
 }
-
-}  // namespace
-
-namespace {
 
 Json reference_json(const ReplayResult& result) {
   if (!result.has_reference) return nullptr;
@@ -290,8 +280,8 @@ void add_run(Json& out, const ReplayResult& result) {
 
 }  // namespace
 
-Json replay_json_without_times(const ReplayResult& result) {
-  Json out = replay_json(result);
+Json replay_json_without_times(const ReplayView& view) {
+  Json out = replay_json(view);
   for (const char* key : {"measured", "command", "verdict_with_costs"}) out.erase(key);
   for (Json& algorithm : out["algorithms"])
     for (const char* key : {"ns_per_sample", "learning_s", "peak_bytes", "on_front"})
@@ -299,34 +289,38 @@ Json replay_json_without_times(const ReplayResult& result) {
   return out;
 }
 
-Json replay_json(const ReplayResult& result) {
+Json replay_json(const ReplayView& view) {
+  const ReplayResult& result = *view.result;
   Json out = {{"format", "replay-report"}, {"version", 1}};
   add_provenance(out, result.command, result.logs);
   for (const Json& warning : warnings_json(result.warnings)) out["warnings"].push_back(warning);
   out["config"] = result.settings.is_null() ? Json::object() : result.settings;
-  out["scene"] = scene_json(result);
-  out["verdict"] = json_text(replay_verdict(result, false));
-  out["verdict_with_costs"] = json_text(replay_verdict(result, true));
+  out["scene"] = scene_json(view);
+  out["verdict"] = paragraph(view.steady_verdict);
+  out["verdict_with_costs"] = paragraph(view.verdict);
   out["plan"] = texts(result.plan);
   add_run(out, result);
   out["sensors"] = sensors_json(result);
   out["faults"] = known_faults_json(result);
   out["best"] =
       result.best ? Json(json_text(result.algorithms[*result.best].label)) : Json(nullptr);
-  const std::size_t merged = track_divisor(result);
-  const ParetoFront front = pareto_front(result);
   out["algorithms"] = Json::array();
-  for (std::size_t i = 0; i < result.algorithms.size(); ++i) {
-    Json algorithm = algorithm_json(result, result.algorithms[i], merged);
-    algorithm["on_front"] = {{"time", bool(front.time[i])}, {"memory", bool(front.memory[i])}};
-    out["algorithms"].push_back(std::move(algorithm));
-  }
+  for (const AlgorithmView& algorithm : view.algorithms)
+    out["algorithms"].push_back(algorithm_json(result, algorithm));
   out["measured"] = {{"seconds", json_number(result.seconds)},
                      {"passes", result.work.passes},
                      {"instants_learnt", result.work.learnt},
                      {"instants_fused", result.work.steps},
                      {"instants_without_reference", result.work.blind_steps}};
   return out;
+}
+
+Json replay_json(const ReplayResult& result) {
+  return replay_json(replay_view(result));
+}
+
+Json replay_json_without_times(const ReplayResult& result) {
+  return replay_json_without_times(replay_view(result));
 }
 
 }  // namespace libchar

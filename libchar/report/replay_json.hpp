@@ -2,16 +2,19 @@
 // report.json of a replay; the keys of docs/json.md, which may grow and never change.
 
 #include "libchar/core/json.hpp"
-#include "libchar/replay/replay_result.hpp"
+#include "libchar/replay/replay_view.hpp"
 
 namespace libchar {
 
 /// {"format":"replay-report","version":1,…}. What a clock or the heap measured stands at
 /// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
+Json replay_json(const ReplayView& view);
+/// The same with a view made for it alone.
 Json replay_json(const ReplayResult& result);
 
 /// The same without those keys, the fronts and the verdict that follow from them, and the command:
 /// the same bytes for the same scene and options.
+Json replay_json_without_times(const ReplayView& view);
 Json replay_json_without_times(const ReplayResult& result);
 
 }  // namespace libchar

@@ -26,11 +26,12 @@ std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.2f} %", 100 * share) : "–";
 }
 
-std::string with_reference(const ReplayResult& r) {
+std::string with_reference(const ReplayView& view) {
   std::string out =
       "| algorithm | RMSE | 95 % | regret | bias | maximum | availability | a sample | memory |\n"
       "|---|---|---|---|---|---|---|---|---|\n";
-  for (const AlgorithmResult* a : ranked(r)) {
+  for (const AlgorithmView* v : view.ranked) {
+    const AlgorithmResult* a = v->result;
     const bool scored = !a->inputs.empty();
     out += fmt::format("| {}{}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(a->label),
@@ -48,12 +49,13 @@ std::string with_reference(const ReplayResult& r) {
   return out;
 }
 
-std::string without_reference(const ReplayResult& r) {
+std::string without_reference(const ReplayView& view) {
   std::string out =
       "| algorithm | leave-one-out RMS | 95 % | split-array RMS | availability | a sample | memory "
       "|\n"
       "|---|---|---|---|---|---|---|\n";
-  for (const AlgorithmResult* a : ranked(r))
+  for (const AlgorithmView* v : view.ranked) {
+    const AlgorithmResult* a = v->result;
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(a->label),
                        a->as_good_as_best ? " \\*" : "",
@@ -63,10 +65,12 @@ std::string without_reference(const ReplayResult& r) {
                        percent(a->availability),
                        people_nanoseconds(a->ns_per_sample),
                        people_bytes(a->peak_bytes));
+  }
   return out;
 }
 
-std::string several_inputs(const ReplayResult& r) {
+std::string several_inputs(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   if (r.inputs.size() < 2 || !r.has_reference) return "";
   std::string out;
   for (std::size_t j = 0; j < r.inputs.size(); ++j) {
@@ -75,7 +79,8 @@ std::string several_inputs(const ReplayResult& r) {
         "|\n|---|---|---|---|\n",
         markdown_text(r.inputs[j].name),
         people_error(r.inputs[j].optimum_rmse, markdown_text(r.inputs[j].unit)));
-    for (const AlgorithmResult* a : ranked(r)) {
+    for (const AlgorithmView* v : view.ranked) {
+      const AlgorithmResult* a = v->result;
       if (j >= a->inputs.size()) continue;
       out += fmt::format("| {} | {} | {} | {} |\n",
                          markdown_text(a->label),
@@ -87,11 +92,13 @@ std::string several_inputs(const ReplayResult& r) {
   return out;
 }
 
-std::string sensors(const ReplayResult& r) {
+std::string sensors(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::string out =
       "\n## Sensors\n\n| sensor | unit | RMSE | bias | missing | noise of a sample | from "
       "|\n|---|---|---|---|---|---|---|\n";
-  for (const SensorResult& s : r.sensors)
+  for (std::size_t i = 0; i < r.sensors.size(); ++i) {
+    const SensorResult& s = r.sensors[i];
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(s.name),
                        s.constant ? " (constant)" : "",
@@ -99,8 +106,9 @@ std::string sensors(const ReplayResult& r) {
                        number(s.error.rmse),
                        number(s.error.bias, 2),
                        percent(s.missing),
-                       s.noise_variance ? number(std::sqrt(*s.noise_variance)) : "–",
+                       view.noise_sd[i] ? number(*view.noise_sd[i]) : "–",
                        s.noise_source.empty() ? "–" : markdown_text(s.noise_source));
+  }
   return out;
 }
 
@@ -108,91 +116,99 @@ std::string delay(const std::optional<double>& seconds) {
   return seconds ? significant(*seconds, 3) + " s" : "never";
 }
 
-std::string faults(const ReplayResult& r) {
-  if (r.faults.empty()) return "";
-  std::string out = "\n## Faults\n\n| fault |";
-  std::string line = "\n|---|", rows;
-  std::vector<const AlgorithmResult*> watching;
-  for (const AlgorithmResult& a : r.algorithms)
-    if (a.ran && a.watches_faults) {
-      watching.push_back(&a);
-      out += fmt::format(" {}: found after | used again after |", markdown_text(a.label));
-      line += "---|---|";
-    }
-  for (std::size_t f = 0; f < r.faults.size(); ++f) {
-    const SensorFault& fault = r.faults[f];
-    rows += fmt::format(
-        "| {} {} {} from {} s{} |",
-        markdown_text(r.sensors[fault.sensor].name),
-        name_of(fault.kind),
-        fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout ? ""
-                                                                           : number(fault.value),
-        significant(fault.from_s, 6),
-        std::isfinite(fault.to_s) ? fmt::format(" to {} s", significant(fault.to_s, 6)) : "");
-    for (const AlgorithmResult* a : watching) {
-      const FaultAnswer* answer = nullptr;
-      for (const FaultAnswer& candidate : a->answers)
-        if (candidate.fault == f) answer = &candidate;
-      rows += fmt::format(
-          " {} | {} |",
-          answer != nullptr ? delay(answer->found_s) : "–",
-          answer != nullptr && std::isfinite(fault.to_s) ? delay(answer->returned_s) : "–");
-    }
-    rows += "\n";
-  }
-  return out + line + "\n" + rows;
+std::string fault_words(const ReplayResult& r, const SensorFault& fault) {
+  const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
+  return fmt::format(
+      "| {} {} {} from {} s{} |",
+      markdown_text(r.sensors[fault.sensor].name),
+      name_of(fault.kind),
+      valueless ? "" : number(fault.value),
+      significant(fault.from_s, 6),
+      std::isfinite(fault.to_s) ? fmt::format(" to {} s", significant(fault.to_s, 6)) : "");
 }
 
-std::string remarks(const ReplayResult& r) {
-  std::string out;
-  const auto add = [&](const Warnings& list, const std::string& of) {
-    for (const Warning& w : list.list())
-      out += fmt::format("- {}{}{}\n",
-                         of.empty() ? "" : markdown_text(of) + ": ",
-                         markdown_text(w.message),
-                         w.count > 1 ? fmt::format(" ({} ×)", w.count) : "");
-  };
-  add(r.warnings, "");
-  for (const LogInfo& log : r.logs) add(log.warnings, log.file);
-  for (const AlgorithmResult& a : r.algorithms)
-    for (const Warning& w : a.remarks.list()) {
-      Warnings one;
-      one.add(w.code, w.message, "", w.count);
-      add(one, w.message.starts_with(a.label) ? "" : a.label);
+std::string faults(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  if (r.faults.empty()) return "";
+  std::string out = "\n## Faults\n\n| fault |", line = "\n|---|";
+  for (const AlgorithmView* a : view.watching) {
+    out += fmt::format(" {}: found after | used again after |", markdown_text(a->result->label));
+    line += "---|---|";
+  }
+  out += line + "\n";
+  for (std::size_t f = 0; f < r.faults.size(); ++f) {
+    out += fault_words(r, r.faults[f]);
+    for (const AlgorithmView* a : view.watching) {
+      const FaultAnswer* answer = a->answers[f];
+      const bool ends = std::isfinite(r.faults[f].to_s);
+      out += fmt::format(" {} | {} |",
+                         answer != nullptr ? delay(answer->found_s) : "–",
+                         answer != nullptr && ends ? delay(answer->returned_s) : "–");
     }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string remarks(const ReplayView& view) {
+  std::string out;
+  const auto add = [&](const std::string& of, const std::string& message, std::uint64_t count) {
+    out += fmt::format("- {}{}{}\n",
+                       of.empty() ? "" : markdown_text(of) + ": ",
+                       markdown_text(message),
+                       count > 1 ? fmt::format(" ({} ×)", count) : "");
+  };
+  for (const Warning& w : view.result->warnings.list()) add("", w.message, w.count);
+  for (const LogInfo& log : view.result->logs)
+    for (const Warning& w : log.warnings.list()) add(log.file, w.message, w.count);
+  for (const AlgorithmRemark& remark : view.remarks)
+    add(remark.label, remark.message, remark.count);
   return out.empty() ? "" : "\n## Warnings\n\n" + out;
 }
 
-}  // namespace
-
-std::string replay_markdown(const ReplayResult& r) {
-  std::string out = fmt::format("# {}\n\n{}\n\n",
-                                markdown_text(r.scene.name.empty() ? r.scene.file : r.scene.name),
-                                markdown_text(replay_verdict(r)));
-  out += fmt::format("{} sensors, {} instants at {} Hz from {} s.",
-                     r.sensors.size(),
-                     r.instants,
-                     significant(r.rate_hz, 6),
-                     significant(r.start_s, 6));
+std::string run_facts(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  std::string out = fmt::format("{} sensors, {} instants at {} Hz from {} s.",
+                                r.sensors.size(),
+                                r.instants,
+                                significant(r.rate_hz, 6),
+                                significant(r.start_s, 6));
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     out += fmt::format(" Optimum of {}: RMSE {}.",
-                       optimum_of(r),
+                       view.optimum,
                        people_error(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
   if (r.lag_estimated)
     out +=
         fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
-  out += "\n\n" + (r.has_reference ? with_reference(r) : without_reference(r));
+  return out;
+}
+
+std::string skipped(const ReplayView& view) {
+  if (view.skipped.empty()) return "";
+  std::string out = "\n## Skipped\n\n";
+  for (const SkippedAlgorithms& s : view.skipped)
+    out += fmt::format("- {}: {}\n",
+                       markdown_text(fmt::format("{}", fmt::join(s.labels, ", "))),
+                       markdown_text(s.reason));
+  return out;
+}
+
+}  // namespace
+
+std::string replay_markdown(const ReplayView& view) {
+  std::string out = fmt::format("# {}\n\n{}\n\n",
+                                markdown_text(view.title),
+                                markdown_text(fmt::format("{}", fmt::join(view.verdict, " "))));
+  out += run_facts(view) + "\n\n" +
+         (view.result->has_reference ? with_reference(view) : without_reference(view));
   out +=
       "\n\\* the best method, and those whose difference from it is not resolved; bounds look at "
       "the reference of the run itself.\n";
-  if (const auto skipped = skipped_algorithms(r); !skipped.empty()) {
-    out += "\n## Skipped\n\n";
-    for (const SkippedAlgorithms& s : skipped)
-      out += fmt::format("- {}: {}\n",
-                         markdown_text(fmt::format("{}", fmt::join(s.labels, ", "))),
-                         markdown_text(s.reason));
-  }
-  return out + several_inputs(r) + sensors(r) + faults(r) + remarks(r);
+  return out + skipped(view) + several_inputs(view) + sensors(view) + faults(view) + remarks(view);
+}
+
+std::string replay_markdown(const ReplayResult& result) {
+  return replay_markdown(replay_view(result));
 }
 
 }  // namespace libchar

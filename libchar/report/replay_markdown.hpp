@@ -3,10 +3,12 @@
 
 #include <string>
 
-#include "libchar/replay/replay_result.hpp"
+#include "libchar/replay/replay_view.hpp"
 
 namespace libchar {
 
+std::string replay_markdown(const ReplayView& view);
+/// The same with a view made for it alone.
 std::string replay_markdown(const ReplayResult& result);
 
 }  // namespace libchar

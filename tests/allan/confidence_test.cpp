@@ -9,7 +9,7 @@
 #include <random>
 
 #include "libchar/allan/allan_covariance.hpp"
-#include "libchar/allan/equivalent_dof.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/shared.hpp"
@@ -103,9 +103,8 @@ TEST_CASE("edf identities: white 2M/3, walk M at m = 1; one term has one degree 
 }
 
 TEST_CASE("edf of the overlapping Allan deviation against the exact table") {
-  NEEDS_SHARED("oracle/allan/edf_oadev_discrete.csv");
   int rows = 0;
-  for (const auto& row : test::table(test::shared("oracle/allan/edf_oadev_discrete.csv"))) {
+  for (const auto& row : test::table(test::known("allan/edf_oadev_discrete.csv"))) {
     if (row[0] == "N") continue;
     const Mixture& theta = row[1] == "0" ? kWhite : row[1] == "-1" ? kFlicker : kWalk;
     const double got = equivalent_dof(
@@ -122,7 +121,6 @@ TEST_CASE("edf of the overlapping Allan deviation against the exact table") {
 // Python, gives 0.462889 for white m = 1, 2 where the table has 0.46287; we agree with the sum to
 // 1e-9.
 TEST_CASE("correlation of octaves against the tables") {
-  NEEDS_SHARED("oracle/allan/corr_octave_alpha0_N16384.csv");
   const Eigen::MatrixXd white = allan_covariance(octaves(16384), kWhite);
   CHECK(white(0, 1) / std::sqrt(white(0, 0) * white(1, 1)) ==
         Approx(0.46288919397005934).epsilon(1e-9));
@@ -134,8 +132,8 @@ TEST_CASE("correlation of octaves against the tables") {
   const AllanCovariance prepared(octaves(16384));
   for (const auto& [alpha, theta] : sets) {
     const Eigen::MatrixXd cov = prepared.at(theta);
-    const auto rows = test::table(
-        test::shared(std::string("oracle/allan/corr_octave_alpha") + alpha + "_N16384.csv"));
+    const auto rows =
+        test::table(test::known(std::string("allan/corr_octave_alpha") + alpha + "_N16384.csv"));
     REQUIRE(rows.size() == 12);
     for (Eigen::Index i = 0; i < 12; ++i)
       for (Eigen::Index j = 0; j < 12; ++j) {

@@ -1,4 +1,4 @@
-// Deviations of published and exact sets (oracle/README.md): values and numbers of terms.
+// Deviations of published and exact sets (fixtures/README.md): values and numbers of terms.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -42,7 +42,7 @@ std::vector<double> phase_of(const std::vector<double>& rate) {
 }
 
 Json read(const std::string& name) {
-  return Json::parse(test::slurp(test::shared(name)));
+  return Json::parse(test::slurp(test::known(name)));
 }
 
 void check_against(const Json& table, const std::vector<double>& rate, double limit) {
@@ -66,14 +66,12 @@ void check_against(const Json& table, const std::vector<double>& rate, double li
 }  // namespace
 
 TEST_CASE("NBS nine points and NIST 1000 points to 24 digits") {
-  NEEDS_SHARED("oracle/allan/nbs9_exact.json");
-  check_against(read("oracle/allan/nbs9_exact.json")["devs"], kNbs9, 1e-13);
-  check_against(read("oracle/allan/nist1000_exact.json")["devs"], nist1000(), 1e-13);
+  check_against(read("allan/nbs9_exact.json")["devs"], kNbs9, 1e-13);
+  check_against(read("allan/nist1000_exact.json")["devs"], nist1000(), 1e-13);
 }
 
 TEST_CASE("SP 1065 1000-point suite, second computation") {
-  NEEDS_SHARED("oracle/allan/sp1065_1000pt_devs.json");
-  const Json sets = read("oracle/allan/sp1065_1000pt_devs.json")["dev"];
+  const Json sets = read("allan/sp1065_1000pt_devs.json")["dev"];
   const auto rate = nist1000();
   int checked = 0;
   for (const auto& [name, rows] : sets.items()) {
@@ -91,17 +89,6 @@ TEST_CASE("SP 1065 1000-point suite, second computation") {
     }
   }
   CHECK(checked == 70);
-}
-
-TEST_CASE("NBS nine points without the shared folder") {
-  const auto at = [&](DeviationType type, double m) {
-    return allan_deviation(kNbs9, 1, asking(type, m)).points.at(0).deviation;
-  };
-  CHECK(at(DeviationType::adev, 1) == Approx(91.229449740749834251929347).epsilon(1e-14));
-  CHECK(at(DeviationType::oadev, 2) == Approx(85.952869837681006503830981).epsilon(1e-14));
-  CHECK(at(DeviationType::mdev, 2) == Approx(74.788493433147856130641212).epsilon(1e-14));
-  CHECK(at(DeviationType::hdev, 1) == Approx(70.806073185850378720054399).epsilon(1e-14));
-  CHECK(at(DeviationType::totdev, 2) == Approx(93.903790525196585378335351).epsilon(1e-14));
 }
 
 TEST_CASE("Stable32 tables of PHASE.DAT, every averaging time") {
@@ -226,12 +213,11 @@ TEST_CASE("all 108 published values of the ADIS16405 run") {
   CHECK(worst <= 1e-5);
 }
 
-TEST_CASE("Allan vectors of the fusion oracle to double precision") {
-  NEEDS_SHARED("oracle/fusion/adev.csv");
+TEST_CASE("50-digit Allan vectors to double precision") {
   std::vector<double> y;
-  for (const auto& row : test::table(test::shared("oracle/fusion/adev_input.csv")))
+  for (const auto& row : test::table(test::known("fusion/adev_input.csv")))
     if (row[0] != "k") y.push_back(std::stod(row[1]));
-  for (const auto& row : test::table(test::shared("oracle/fusion/adev.csv"))) {
+  for (const auto& row : test::table(test::known("fusion/adev.csv"))) {
     if (row[0] == "m") continue;
     const double m = std::stod(row[0]);
     const AllanPoint plain = allan_deviation(y, 1, asking(DeviationType::adev, m)).points.at(0);

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 #include "libchar/log/write.hpp"
 
 namespace {
@@ -54,7 +54,7 @@ double plain_read(const std::string& path) {
 
 double stream(const std::string& path, const libchar::ReadOptions& options) {
   const auto start = Clock::now();
-  const auto source = libchar::open_npy(path, options);
+  const auto source = libchar::find_format("npy")->open(path, options);
   libchar::RowBlock block;
   libchar::Warnings warnings;
   while (source->next(block, warnings)) {

@@ -24,7 +24,7 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/equivalent_dof.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/fit/detail/dct_means.hpp"

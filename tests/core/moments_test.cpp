@@ -16,7 +16,7 @@ namespace {
 
 // The numbers behind the line of dashes of a NIST StRD file.
 std::vector<double> strd(const std::string& name) {
-  std::ifstream in(test::shared("oracle/strd/" + name + ".dat"));
+  std::ifstream in(test::known("strd/" + name + ".dat"));
   std::vector<double> y;
   bool data = false;
   for (std::string line; std::getline(in, line);) {
@@ -48,7 +48,6 @@ std::vector<double> gaussian(std::size_t n, double offset) {
 }  // namespace
 
 TEST_CASE("NIST StRD univariate sets within half a digit of what binary64 input allows") {
-  NEEDS_SHARED("oracle/strd/Lew.dat");
   struct Row {
     const char* name;
     std::size_t n;

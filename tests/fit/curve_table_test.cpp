@@ -93,6 +93,9 @@ TEST_CASE("relative and absolute errors are read, whatever they are called") {
   CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") ==
         std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,\n").empty());  // not for every point: for none
+}
+
+TEST_CASE("the relative errors of a published table are read") {
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
   const auto table =
       read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);

@@ -1,4 +1,4 @@
-// Mean, inverse-variance and median against oracle/fusion and by hand.
+// Mean, inverse-variance and median against fixtures/known/fusion and by hand.
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
@@ -10,7 +10,6 @@
 using namespace libchar::fusion;
 
 TEST_CASE("mean: 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/average.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("average.csv");
   auto mean = test::make("mean", test::given(5));
   CHECK(test::worst(test::run(*mean, inputs.block("c", 5)).x,
@@ -22,7 +21,6 @@ TEST_CASE("mean: 50-digit vectors") {
 }
 
 TEST_CASE("inverse-variance: weights and error of the known answers") {
-  NEEDS_SHARED("oracle/fusion/kat.json");
   const auto answer = test::answers()["weighted_average"];
   const test::Vectors inputs("fusion_inputs.csv");
   Given given = test::given(5);

@@ -20,7 +20,6 @@ Eigen::VectorXd vector(const nlohmann::json& list) {
 }  // namespace
 
 TEST_CASE("blind calibration on the Gram matrix: two gauges") {
-  NEEDS_SHARED("oracle/fusion/kat.json");
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd u = inputs.block("u", 5);
   struct Case {
@@ -45,7 +44,6 @@ TEST_CASE("blind calibration on the Gram matrix: two gauges") {
 }
 
 TEST_CASE("blind-calibration-published: 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/blind_thesis_ref1.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("blind_thesis_ref1.csv");
   BlindCalibrationPublished blind(test::given(5),
                                   test::settings("blind-calibration-published", {}));

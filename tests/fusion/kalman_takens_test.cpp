@@ -1,4 +1,4 @@
-// Kalman-Takens against oracle/fusion/kalman_takens.csv; the search against sorting; its limits.
+// Kalman-Takens against fixtures/known/fusion/kalman_takens.csv; the search against sorting; its limits.
 
 #include "libchar/fusion/algorithms/kalman_takens.hpp"
 
@@ -68,7 +68,6 @@ TEST_CASE("delay search: what sorting finds, ties to the earlier") {
 }
 
 TEST_CASE("kalman-takens-published: 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/kalman_takens.csv");
   const test::Vectors inputs("fusion_inputs.csv"), file("kalman_takens.csv");
   const auto answer = test::answers()["kalman_takens"];
   Eigen::VectorXd variances(5);

@@ -34,7 +34,6 @@ double rms_501_2000(const std::string& name,
 }  // namespace
 
 TEST_CASE("least squares: calibration and weights of the known answers") {
-  NEEDS_SHARED("oracle/fusion/kat.json");
   const auto answer = test::answers()["lsq"];
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd u = inputs.block("u", 5), c = inputs.block("c", 5);

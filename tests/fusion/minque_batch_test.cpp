@@ -32,7 +32,6 @@ Eigen::MatrixXd covariance(const Eigen::MatrixXd& y) {
 }  // namespace
 
 TEST_CASE("MINQUE and REML of a record") {
-  NEEDS_SHARED("oracle/fusion/kat.json");
   const auto answers = test::answers();
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(5, 1),
@@ -50,7 +49,6 @@ TEST_CASE("MINQUE and REML of a record") {
 }
 
 TEST_CASE("two inputs: variances, gain, estimates") {
-  NEEDS_SHARED("oracle/fusion/minque_r2_gls.csv");
   const auto answer = test::answers()["minque_r2"];
   const test::Vectors inputs("minque_r2_inputs.csv"), expected("minque_r2_gls.csv");
   const Eigen::MatrixXd h = matrix(answer["H"]), y = inputs.block("y", 6);

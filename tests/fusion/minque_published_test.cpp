@@ -7,7 +7,6 @@
 using namespace libchar::fusion;
 
 TEST_CASE("minque-published: 50-digit vector about the running mean") {
-  NEEDS_SHARED("oracle/fusion/minque_ewma_g0.99.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("minque_ewma_g0.99.csv");
   auto minque =
       test::make("minque-published", test::given(5), {{"gamma", 0.99}, {"about_zero", 0}});
@@ -33,9 +32,8 @@ TEST_CASE("minque-published: 50-digit vector about the running mean") {
 }
 
 TEST_CASE("minque-published: the flags of three faults") {
-  NEEDS_SHARED("oracle/fusion/faults_expected.json");
   const auto answer =
-      nlohmann::json::parse(test::slurp(test::shared("oracle/fusion/faults_expected.json")));
+      nlohmann::json::parse(test::slurp(test::known("fusion/faults_expected.json")));
   const auto& pairs = answer["pairs (differences, consistent state, common threshold)"];
   const test::Vectors inputs("faults_input.csv");
   Given given = test::given(6);
@@ -72,7 +70,6 @@ TEST_CASE("minque-published: the flags of three faults") {
 }
 
 TEST_CASE("minque-published: about zero a lasting bias stays visible, about the mean it does not") {
-  NEEDS_SHARED("oracle/fusion/faults_input.csv");
   const test::Vectors inputs("faults_input.csv");
   Eigen::MatrixXd y = inputs.block("y", 6).leftCols(3000);
   // Healthy samples over and over, then channel 2 with 0.4 (5.7 sigma) for good.

@@ -23,7 +23,6 @@ const test::Values kLiteral{{"gamma", 0.99},
 }  // namespace
 
 TEST_CASE("minque: 50-digit vector of the recursion") {
-  NEEDS_SHARED("oracle/fusion/rminque_g0.99.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("rminque_g0.99.csv");
   auto minque = test::make("minque", test::given(5), kLiteral);
   const Eigen::MatrixXd y = inputs.block("c", 5), v = expected.block("var", 5);
@@ -41,7 +40,6 @@ TEST_CASE("minque: 50-digit vector of the recursion") {
 }
 
 TEST_CASE("minque: faults are found, kept out and let in again") {
-  NEEDS_SHARED("oracle/fusion/faults_input.csv");
   const test::Vectors inputs("faults_input.csv");
   Given given = test::given(6);
   given.fault_free_samples = 2000;

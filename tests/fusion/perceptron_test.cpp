@@ -1,4 +1,4 @@
-// The tanh network against oracle/fusion/mlp.csv; its training: what it reaches and what it
+// The tanh network against fixtures/known/fusion/mlp.csv; its training: what it reaches and what it
 // refuses.
 
 #include "libchar/fusion/algorithms/perceptron.hpp"
@@ -60,7 +60,6 @@ std::string code_of(const std::function<void()>& action) {
 }  // namespace
 
 TEST_CASE("tanh network: 50-digit outputs and Jacobian") {
-  NEEDS_SHARED("oracle/fusion/mlp.csv");
   const test::Vectors file("mlp.csv");
   const std::vector<double> p = test::answers()["mlp"]["params"];
   const TanhNetwork network{5, 3};

@@ -9,7 +9,6 @@
 using namespace libchar::fusion;
 
 TEST_CASE("random-weighting-published: 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/random_weighting.csv");
   const test::Vectors inputs("fusion_inputs.csv"), expected("random_weighting.csv");
   auto fusion = test::make("random-weighting-published", test::given(5));
   const Eigen::MatrixXd y = inputs.block("c", 5), v = expected.block("var", 5);
@@ -31,7 +30,6 @@ TEST_CASE("random-weighting-published: 50-digit vectors") {
 }
 
 TEST_CASE("random-weighting: the variances of the whole record, whatever the offset") {
-  NEEDS_SHARED("oracle/fusion/fusion_inputs.csv");
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd y = inputs.block("c", 5), one = Eigen::MatrixXd::Ones(5, 1),
                         r = residuals(y, one);

@@ -1,4 +1,4 @@
-// Tilt filters against oracle/fusion/tilt.csv, and what must hold for any tilt.
+// Tilt filters against fixtures/known/fusion/tilt.csv, and what must hold for any tilt.
 
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
@@ -45,7 +45,6 @@ Eigen::MatrixXd turning(Eigen::Index instants, double noise = 0.05, double bias 
 }  // namespace
 
 TEST_CASE("tilt: 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/tilt.csv");
   const test::Vectors file("tilt.csv");
   const auto answer = test::answers()["tilt"];
   const Given given = tilt_given(1 / answer["dt"].get<double>());
@@ -72,7 +71,6 @@ TEST_CASE("tilt: 50-digit vectors") {
 }
 
 TEST_CASE("tilt-kalman: bias and covariance of the 50-digit vectors") {
-  NEEDS_SHARED("oracle/fusion/tilt.csv");
   const test::Vectors file("tilt.csv");
   const auto answer = test::answers()["tilt"];
   const Eigen::MatrixXd y = samples_of(file);

@@ -1,5 +1,5 @@
 #pragma once
-// The 50-digit vectors of oracle/fusion, and algorithms run on them in one or several blocks.
+// The 50-digit vectors of fixtures/known/fusion, and algorithms run on them in one or several blocks.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -20,7 +20,7 @@ struct Vectors {
   Eigen::MatrixXd values;  ///< a row a line of the file
 
   explicit Vectors(const std::string& file) {
-    const auto rows = table(shared("oracle/fusion/" + file));
+    const auto rows = table(known("fusion/" + file));
     names = rows.at(0);
     values.resize(static_cast<Eigen::Index>(rows.size()) - 1,
                   static_cast<Eigen::Index>(names.size()));
@@ -42,7 +42,7 @@ struct Vectors {
 };
 
 inline nlohmann::json answers() {
-  return nlohmann::json::parse(slurp(shared("oracle/fusion/kat.json")));
+  return nlohmann::json::parse(slurp(known("fusion/kat.json")));
 }
 
 struct Run {

@@ -3,7 +3,7 @@
 // counts, warnings and errors must agree. The reader itself throws std::logic_error when its
 // account of bytes and cells does not balance.
 //   csv_fuzz -max_total_time=60 -max_len=4096 -timeout=5 -rss_limit_mb=1024 corpus
-//   oracle/badinputs/csv
+//   fixtures/known/badinputs/csv
 #include <sys/mman.h>
 #include <unistd.h>
 

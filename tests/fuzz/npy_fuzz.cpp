@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 #include "tests/support/memory_log.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ Sum read(const std::string& path, std::size_t block_bytes) {
   libchar::ReadOptions options;
   options.block_bytes = block_bytes;
   options.hash = false;
-  const auto source = libchar::open_npy(path, options);
+  const auto source = libchar::find_format("npy")->open(path, options);
   libchar::RowBlock block;
   libchar::Warnings warnings;
   Sum sum;

@@ -11,7 +11,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/sidecar.hpp"
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 
 namespace {
 
@@ -32,7 +32,7 @@ std::uint64_t read(std::size_t block_bytes) {
   libchar::ReadOptions options;
   options.block_bytes = block_bytes;
   options.hash = false;
-  const auto source = libchar::open_raw(base(), options);
+  const auto source = libchar::find_format("raw")->open(base(), options);
   libchar::RowBlock block;
   libchar::Warnings warnings;
   std::uint64_t sum = 0;

@@ -19,7 +19,7 @@ struct Case {
 };
 
 std::vector<Case> cases(const std::string& folder) {
-  std::ifstream in(test::shared("oracle/badinputs/EXPECT.tsv"));
+  std::ifstream in(test::known("badinputs/EXPECT.tsv"));
   std::vector<Case> all;
   for (std::string line; std::getline(in, line);) {
     std::istringstream cells(line);
@@ -36,9 +36,8 @@ std::vector<Case> cases(const std::string& folder) {
 // What happened: "ok", "warn", or the message of the error.
 std::string outcome(const std::string& format, const std::string& file) {
   try {
-    return test::read_rows(format, test::shared("oracle/badinputs/" + file)).warnings.empty()
-               ? "ok"
-               : "warn";
+    return test::read_rows(format, test::known("badinputs/" + file)).warnings.empty() ? "ok"
+                                                                                      : "warn";
   } catch (const Error& error) {
     CHECK(error.problem().kind == ErrorKind::input);
     CHECK(std::string(error.what()).find('\n') == std::string::npos);
@@ -50,7 +49,6 @@ std::string outcome(const std::string& format, const std::string& file) {
 }  // namespace
 
 TEST_CASE("bad .npy files get the verdict of the table") {
-  NEEDS_SHARED("oracle/badinputs");
   // "or read by name" and "half or clear error" leave the choice: both are read.
   const std::map<std::string, std::string> chosen = {{"npy/033_structured.npy", "ok"},
                                                      {"npy/046_nan_payload.npy", "warn"}};
@@ -71,7 +69,6 @@ TEST_CASE("bad .npy files get the verdict of the table") {
 }
 
 TEST_CASE("bad raw files and sidecars get the verdict of the table") {
-  NEEDS_SHARED("oracle/badinputs");
   std::size_t count = 0;
   for (const Case& c : cases("raw")) {
     const std::string got = outcome("raw", c.file);
@@ -86,7 +83,6 @@ TEST_CASE("bad raw files and sidecars get the verdict of the table") {
 }
 
 TEST_CASE("messages about bad binary files name place, numbers and remedy") {
-  NEEDS_SHARED("oracle/badinputs");
   const auto says =
       [](const std::string& format, const std::string& file, const std::string& part) {
         const std::string got = outcome(format, file);

@@ -1,4 +1,4 @@
-// Every CSV case of oracle/badinputs: verdict, place and one line of reason as EXPECT.tsv says.
+// Every CSV case of fixtures/known/badinputs: verdict, place and one line of reason as EXPECT.tsv says.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -20,7 +20,7 @@ struct Expected {
 
 std::vector<Expected> table() {
   std::vector<Expected> rows;
-  std::istringstream in(test::slurp(test::shared("oracle/badinputs/EXPECT.tsv")));
+  std::istringstream in(test::slurp(test::known("badinputs/EXPECT.tsv")));
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("csv/", 0) != 0) continue;
     std::istringstream cells(line);
@@ -97,11 +97,10 @@ std::string as_place(const std::string& text) {
 }  // namespace
 
 TEST_CASE("every bad CSV input gets its verdict, place and reason") {
-  NEEDS_SHARED("oracle/badinputs/EXPECT.tsv");
   const auto rows = table();
   REQUIRE(rows.size() == 54);
   for (const Expected& row : rows) {
-    const std::string path = test::shared("oracle/badinputs/" + row.file).string();
+    const std::string path = test::known("badinputs/" + row.file).string();
     const std::string place = kRecounted.count(row.file) > 0 ? kRecounted.at(row.file) : row.place;
     const std::string reason = kReason.count(row.file) > 0 ? kReason.at(row.file) : "";
     INFO(row.file << " " << row.verdict << " " << place);

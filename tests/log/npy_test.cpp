@@ -176,7 +176,7 @@ TEST_CASE("block size and hashing never change what is read") {
 }
 
 TEST_CASE("a reading that is given up does not wait for the rest") {
-  const auto source = open_npy(test::fixture("npy/c_order.npy").string(), {});
+  const auto source = find_format("npy")->open(test::fixture("npy/c_order.npy").string(), {});
   RowBlock block;
   Warnings warnings;
   CHECK(source->next(block, warnings));
@@ -225,12 +225,15 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
 
 TEST_CASE("what is no regular file is said so at once") {
   const test::TemporaryFolder folder;
-  CHECK_THROWS_WITH(open_npy(folder.path().string(), {}), Catch::Contains("is a folder"));
-  CHECK_THROWS_WITH(open_npy((folder / "none.npy").string(), {}), Catch::Contains("No such file"));
-  CHECK_THROWS_WITH(open_npy("/dev/zero", {}), Catch::Contains("not a regular file"));
+  CHECK_THROWS_WITH(find_format("npy")->open(folder.path().string(), {}),
+                    Catch::Contains("is a folder"));
+  CHECK_THROWS_WITH(find_format("npy")->open((folder / "none.npy").string(), {}),
+                    Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(find_format("npy")->open("/dev/zero", {}),
+                    Catch::Contains("not a regular file"));
   std::ofstream(folder / "empty.npy")
       << npy("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }", "");
-  CHECK_THROWS_WITH(open_npy((folder / "empty.npy").string(), {}),
+  CHECK_THROWS_WITH(find_format("npy")->open((folder / "empty.npy").string(), {}),
                     Catch::Contains("holds no samples"));
 }
 

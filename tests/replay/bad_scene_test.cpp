@@ -1,4 +1,4 @@
-// Every class of oracle/badinputs/{yaml,json,manifest} as a scene: verdict as EXPECT.tsv says, with
+// Every class of fixtures/known/badinputs/{yaml,json,manifest} as a scene: verdict as EXPECT.tsv says, with
 // the place, code and words that it must name.
 #include <sys/stat.h>
 
@@ -173,7 +173,7 @@ void check_case(const test::SceneBench& bench, const std::string& file, const Ca
 
 std::map<std::string, std::string> expected(const std::string& folder) {
   std::map<std::string, std::string> rows;
-  std::istringstream in(test::slurp(test::shared("oracle/badinputs/EXPECT.tsv")));
+  std::istringstream in(test::slurp(test::known("badinputs/EXPECT.tsv")));
   for (std::string line; std::getline(in, line);) {
     if (line.rfind(folder + "/", 0) != 0) continue;
     const std::size_t tab = line.find('\t'), dot = line.rfind('.', tab);
@@ -267,7 +267,6 @@ TEST_CASE("bad scenes: names of sensors and outputs") {
 }
 
 TEST_CASE("bad scenes: every class has its case, with the verdict of EXPECT.tsv") {
-  NEEDS_SHARED("oracle/badinputs/EXPECT.tsv");
   for (const auto& [folder, cases] :
        {std::pair{"yaml", &yaml_cases()}, std::pair{"json", &json_cases()}}) {
     const auto rows = expected(folder);

@@ -4,9 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/replay/verdict.hpp"
-#include "libchar/report/detail/replay_timeline.hpp"
-#include "libchar/report/replay_words.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;
@@ -89,50 +86,4 @@ TEST_CASE("replay json: without times nothing of a clock or heap is left") {
   }
   CHECK(replay_json(a) != replay_json(b));
   CHECK(dump_json(replay_json_without_times(a)) == dump_json(replay_json_without_times(b)));
-}
-
-TEST_CASE("replay json: tracks of any number of algorithms fit a page, and keep their extremes") {
-  ReplayResult r = test::synthetic_replay(12);
-  r.algorithms[3].weight_track.high[4][123] = 7.5;
-  const std::size_t divisor = track_divisor(r);
-  CHECK(divisor > 1);
-  const Timeline merged = merged_bins(r.algorithms[3].weight_track, divisor);
-  CHECK(merged.time_s.size() == (400 + divisor - 1) / divisor);
-  CHECK(*std::max_element(merged.high[4].begin(), merged.high[4].end()) == 7.5);
-  CHECK(dump_json(replay_json(r)).size() < 4'000'000);
-}
-
-TEST_CASE("replay: the front holds exactly what no method beats in both") {
-  const ReplayResult r = test::synthetic_replay();
-  const ParetoFront front = pareto_front(r);
-  for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
-    const AlgorithmResult& a = r.algorithms[i];
-    bool beaten = !a.ran || a.bound;
-    for (const AlgorithmResult& b : r.algorithms)
-      beaten =
-          beaten || (b.ran && !b.bound && b.rmse < a.rmse && b.ns_per_sample < a.ns_per_sample);
-    INFO(a.label);
-    CHECK(front.time[i] == !beaten);
-  }
-}
-
-TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not told apart") {
-  ReplayResult r = test::synthetic_replay();
-  CHECK_THAT(replay_verdict(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
-  CHECK_THAT(replay_verdict(r, true), Contains("3 ns a sample"));
-  CHECK_THAT(replay_verdict(r, false), !Contains("ns a sample"));
-  // A taught method wins: the best untaught one is named as well.
-  for (AlgorithmResult& a : r.algorithms)
-    if (a.label == "least-squares") a.rmse = 0.02;
-  test::judge(r);
-  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
-  CHECK_THAT(replay_verdict(r), Contains("of the methods that need none mean is best"));
-  CHECK_THAT(replay_verdict(r), Contains("Every other method is worse"));
-  // A bound is never recommended, however good.
-  for (AlgorithmResult& a : r.algorithms)
-    if (a.bound) a.rmse = 0.001;
-  test::judge(r);
-  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
-  CHECK_THAT(replay_verdict(test::without_reference()), Contains("all sensors share"));
-  CHECK_THAT(replay_verdict(test::nothing_scored()), Contains("No algorithm has a score"));
 }

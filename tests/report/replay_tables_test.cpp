@@ -11,6 +11,16 @@ using namespace libchar;
 
 namespace {
 
+std::string ranking_of(const ReplayResult& r) {
+  return ranking_table(replay_view(r));
+}
+std::string inputs_of(const ReplayResult& r) {
+  return inputs_table(replay_view(r));
+}
+std::string needs_of(const ReplayResult& r) {
+  return needs_table(replay_view(r));
+}
+
 std::size_t count(const std::string& text, const std::string& word) {
   std::size_t n = 0;
   for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
@@ -37,7 +47,7 @@ const std::vector<std::string>& kinds() {
 
 TEST_CASE("replay page: bounds stand behind all methods, in a body of their own") {
   const ReplayResult r = test::synthetic_replay();
-  const std::string table = ranking_table(r);
+  const std::string table = ranking_of(r);
   const std::size_t bounds = table.find("<tbody class=\"bounds\">");
   REQUIRE(bounds != std::string::npos);
   CHECK(count(table.substr(0, bounds), "<tr class=\"bound\">") == 0);
@@ -49,7 +59,7 @@ TEST_CASE("replay page: bounds stand behind all methods, in a body of their own"
 }
 
 TEST_CASE("replay page: methods stand in the order of their score") {
-  const std::string table = ranking_table(test::synthetic_replay());
+  const std::string table = ranking_of(test::synthetic_replay());
   const std::string methods = table.substr(0, table.find("<tbody class=\"bounds\">"));
   static const std::regex score("</th><td class=\"n\" data-value=\"([^\"]+)\"");
   double last = 0;
@@ -66,15 +76,15 @@ TEST_CASE("replay page: methods stand in the order of their score") {
 TEST_CASE("replay page: a large regret is a multiple of the optimum, a small one a percentage") {
   ReplayResult r = test::synthetic_replay();
   for (AlgorithmResult& a : r.algorithms) a.regret = 16.013;
-  CHECK(count(ranking_table(r), "17.0 × optimum") > 5);
+  CHECK(count(ranking_of(r), "17.0 × optimum") > 5);
   for (AlgorithmResult& a : r.algorithms) a.regret = 0.0034;
-  CHECK(count(ranking_table(r), ">0.34 %<") > 5);
+  CHECK(count(ranking_of(r), ">0.34 %<") > 5);
 }
 
 TEST_CASE("replay page: a table for each input when there are several, none for one") {
-  CHECK(inputs_table(test::synthetic_replay()).empty());
+  CHECK(inputs_of(test::synthetic_replay()).empty());
   const ReplayResult r = test::synthetic_replay(6, 2);
-  const std::string tables = inputs_table(r);
+  const std::string tables = inputs_of(r);
   CHECK(count(tables, "<table") == 2);
   CHECK(count(tables, "<h3>Input axis_0</h3>") == 1);
   CHECK(count(tables, "<h3>Input axis_1</h3>") == 1);
@@ -88,7 +98,7 @@ TEST_CASE("replay page: a table for each input when there are several, none for 
       break;
     }
   CHECK(count(tables, "<th scope=\"row\">") == 2 * ran);
-  CHECK(count(inputs_table(fewer), "<th scope=\"row\">") == 2 * ran - 1);
+  CHECK(count(inputs_of(fewer), "<th scope=\"row\">") == 2 * ran - 1);
 }
 
 TEST_CASE("replay page: without a reference the scores have their own names and their limit") {
@@ -112,7 +122,7 @@ TEST_CASE("replay page: what could not be computed leaves a dash, never a name o
 
 TEST_CASE("replay page: every algorithm has a row, and who was skipped a sentence") {
   const ReplayResult r = test::synthetic_replay();
-  const std::string body = body_of(r), needs = needs_table(r);
+  const std::string body = body_of(r), needs = needs_of(r);
   std::size_t skipped = 0;
   for (const AlgorithmResult& a : r.algorithms) {
     INFO(a.label);

@@ -21,7 +21,7 @@ const std::vector<double> kGammas = {0.5, 1, 1.5, 2};
 
 /// Known answers of column `column` below the header.
 std::vector<double> column(const std::string& name, std::size_t column) {
-  const auto rows = test::table(test::shared(name));
+  const auto rows = test::table(test::known(name));
   std::vector<double> values;
   for (std::size_t i = 1; i < rows.size(); ++i) values.push_back(std::stod(rows[i].at(column)));
   return values;
@@ -47,10 +47,9 @@ double truncated_power(std::size_t taps, double nu) {
 // double_precision.txt: a double implementation reaches 1.11e-15 (h) and 9.12e-16 (b) relative; ten
 // times that is asked for.
 TEST_CASE("coefficients agree with the 50-digit known answers") {
-  NEEDS_SHARED("oracle/fusion/kasdin.csv");
   for (std::size_t g = 0; g < kGammas.size(); ++g) {
-    const std::vector<double> h = column("oracle/fusion/kasdin.csv", 1 + 2 * g);
-    const std::vector<double> b = column("oracle/fusion/kasdin.csv", 2 + 2 * g);
+    const std::vector<double> h = column("fusion/kasdin.csv", 1 + 2 * g);
+    const std::vector<double> b = column("fusion/kasdin.csv", 2 + 2 * g);
     REQUIRE(h.size() == 200);
     const std::vector<double> got_h = kasdin_response(kGammas[g], 200);
     const std::vector<double> got_b = kasdin_recursion(kGammas[g], 200);
@@ -62,11 +61,10 @@ TEST_CASE("coefficients agree with the 50-digit known answers") {
 }
 
 TEST_CASE("filtered records agree with the 50-digit known answers") {
-  NEEDS_SHARED("oracle/fusion/kasdin_filter.csv");
-  const std::vector<double> w = column("oracle/fusion/kasdin_filter.csv", 1);
+  const std::vector<double> w = column("fusion/kasdin_filter.csv", 1);
   REQUIRE(w.size() >= 100);
   for (std::size_t g = 0; g < kGammas.size(); ++g) {
-    const std::vector<double> x = column("oracle/fusion/kasdin_filter.csv", 2 + g);
+    const std::vector<double> x = column("fusion/kasdin_filter.csv", 2 + g);
     const std::vector<double> exact = kasdin_filter(kGammas[g], w);
     std::vector<double> recursive = w;
     TruncatedKasdin(kGammas[g], w.size()).run(recursive);  // long enough: nothing is truncated

@@ -40,8 +40,7 @@ std::vector<double> run(const SensorModel& m,
 }  // namespace
 
 TEST_CASE("sensor chain: every block against 50 digits") {
-  NEEDS_SHARED("oracle/fusion/sensor_model.csv");
-  const auto rows = test::table(test::shared("oracle/fusion/sensor_model.csv"));
+  const auto rows = test::table(test::known("fusion/sensor_model.csv"));
   std::vector<double> x;
   for (std::size_t i = 1; i < rows.size(); ++i) x.push_back(std::stod(rows[i][1]));
   REQUIRE(x.size() > 100);

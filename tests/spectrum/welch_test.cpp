@@ -85,9 +85,8 @@ std::vector<double> slow_welch(const std::vector<double>& x,
 }  // namespace
 
 TEST_CASE("Welch's spectrum of the known vector, in 50 digits, is met to double precision") {
-  NEEDS_SHARED("oracle/fusion/psd_input.csv");
-  const auto input = columns(test::shared("oracle/fusion/psd_input.csv"));
-  const auto wanted = columns(test::shared("oracle/fusion/psd_welch.csv"));
+  const auto input = columns(test::known("fusion/psd_input.csv"));
+  const auto wanted = columns(test::known("fusion/psd_welch.csv"));
   WelchOptions options = segments_of(512);
   options.window = Window::hann_nonzero;
   options.detrend = Detrend::none;

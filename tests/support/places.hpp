@@ -7,7 +7,7 @@
 
 namespace test {
 
-std::filesystem::path shared_folder();    ///< the oracle and the recordings beside the checkout
+std::filesystem::path shared_folder();    ///< the recordings beside the checkout
 std::filesystem::path fixtures_folder();  ///< of this repository
 std::filesystem::path source_folder();    ///< this repository
 std::string program();                    ///< the sensorchar that was built with the tests

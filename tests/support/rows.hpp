@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 
 namespace test {
 
@@ -22,24 +22,21 @@ struct Rows {
 inline Rows read_rows(const std::string& format,
                       const std::filesystem::path& path,
                       const libchar::ReadOptions& options = {}) {
-  for (const libchar::Format& candidate : libchar::formats()) {
-    if (candidate.name != format) continue;
-    Rows all;
-    const auto source = candidate.open(path.string(), options);
-    libchar::RowBlock block;
-    while (source->next(block, all.warnings)) {
-      ++all.blocks;
-      all.columns.resize(block.columns.size());
-      for (std::size_t c = 0; c < block.columns.size(); ++c)
-        all.columns[c].insert(
-            all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
-      all.time_ns.insert(all.time_ns.end(), block.time_ns.begin(), block.time_ns.end());
-    }
-    all.info = source->info();
-    all.sha256 = source->sha256();
-    return all;
+  const libchar::Format* const row = libchar::find_format(format);
+  if (row == nullptr) throw std::runtime_error("no such format");
+  Rows all;
+  const auto source = row->open(path.string(), options);
+  libchar::RowBlock block;
+  while (source->next(block, all.warnings)) {
+    ++all.blocks;
+    all.columns.resize(block.columns.size());
+    for (std::size_t c = 0; c < block.columns.size(); ++c)
+      all.columns[c].insert(all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
+    all.time_ns.insert(all.time_ns.end(), block.time_ns.begin(), block.time_ns.end());
   }
-  throw std::runtime_error("no such format");
+  all.info = source->info();
+  all.sha256 = source->sha256();
+  return all;
 }
 
 }  // namespace test

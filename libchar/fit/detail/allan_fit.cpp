@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/dense.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/nonnegative.hpp"
@@ -59,10 +59,10 @@ std::optional<Solution> solve(const AllanCurve& curve,
   Solution solution{start, TermMatrix::Zero(), 0, false};
   constexpr int kMost = 50, kDampAfter = 25;
   for (int round = 0; round < kMost && !solution.settled; ++round) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(covariance.at(solution.theta));
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    const Eigen::MatrixXd whitened = factor.matrixL().solve(design);
-    const Eigen::VectorXd target = factor.matrixL().solve(variance);
+    const std::optional<Eigen::MatrixXd> factor = cholesky_factor(covariance.at(solution.theta));
+    if (!factor) return std::nullopt;
+    const Eigen::MatrixXd whitened = solve_lower(*factor, design);
+    const Eigen::VectorXd target = solve_lower(*factor, variance);
     const TermMatrix gram = whitened.transpose() * whitened;
     const Eigen::VectorXd product = whitened.transpose() * target;
     Mixture right{};

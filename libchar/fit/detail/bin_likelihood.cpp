@@ -1,9 +1,9 @@
 #include "libchar/fit/detail/bin_likelihood.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/power_bins.hpp"
@@ -82,7 +82,7 @@ TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms) {
     for (Eigen::Index b = 0; b < n; ++b)
       block(a, b) = information(in[a], in[b]) * scale[a] * scale[b];
   }
-  const Eigen::MatrixXd inverse = block.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd inverse = cholesky_inverse(block);
   TermMatrix result = TermMatrix::Zero();
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) result(in[a], in[b]) = inverse(a, b) * scale[a] * scale[b];

@@ -1,10 +1,10 @@
 #include "libchar/fusion/algorithms/least_squares.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
@@ -44,12 +44,13 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
     cannot("the reference does not move in the learning window: no gain can be learnt",
            "set calibrate to 0, or learn elsewhere");
   const Eigen::Vector2d length = a.colwise().norm().transpose();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a * length.cwiseInverse().asDiagonal());
+  const Eigen::MatrixXd lines =
+      least_squares(a * length.cwiseInverse().asDiagonal(), upper.middleCols(1, n_));
   const double mean_x = origin_ + upper(0, n_ + 1) / upper(0, 0);
   Eigen::MatrixXd error(upper.rows(), n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
     const Eigen::VectorXd d = upper.col(1 + i);
-    const Eigen::Vector2d line = (qr.solve(d).array() / length.array()).matrix();
+    const Eigen::Vector2d line = (lines.col(i).array() / length.array()).matrix();
     error.col(i) = d - a * line;
     const double gain = 1 + line[1];
     const double deviation =

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::fusion {
@@ -92,7 +93,7 @@ double GeneralizedLeastSquares::predicted_variance(Eigen::Index i) const {
 }
 
 Eigen::MatrixXd GeneralizedLeastSquares::gain() const {
-  Eigen::MatrixXd gain = inverse_.triangularView<Eigen::Upper>() * q_.topRows(m_).transpose();
+  Eigen::MatrixXd gain = upper_times_transposed(inverse_, q_, m_);
   for (int k = 0; k < m_; ++k) gain.col(k) *= root_[k];
   return gain;
 }

@@ -1,12 +1,10 @@
 #include "libchar/fusion/detail/minque_batch.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/detail/generalized_least_squares.hpp"
@@ -14,15 +12,9 @@
 namespace libchar::fusion {
 namespace {
 
-/// Orthonormal basis of the columns of H; H may be of less than full rank.
-Eigen::MatrixXd basis(const Eigen::MatrixXd& h) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(h);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(h.rows(), qr.rank());
-}
-
+/// H may be of less than full rank.
 Eigen::MatrixXd residual_projector(const Eigen::MatrixXd& h) {
-  const Eigen::MatrixXd q = basis(h);
-  return Eigen::MatrixXd::Identity(h.rows(), h.rows()) - q * q.transpose();
+  return complement_projector(column_basis(h));
 }
 
 void require_identifiable(const Eigen::MatrixXd& h) {
@@ -44,14 +36,12 @@ struct Scoring {
 
 Scoring scoring(const Eigen::MatrixXd& c, const Eigen::MatrixXd& h, const Eigen::VectorXd& v) {
   const Eigen::VectorXd root = v.cwiseSqrt().cwiseInverse();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * h);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(h.rows(), h.cols());
-  const Eigen::MatrixXd m = Eigen::MatrixXd::Identity(h.rows(), h.rows()) - q * q.transpose();
+  const ThinQr qr = thin_qr(root.asDiagonal() * h);
+  const Eigen::MatrixXd m = complement_projector(qr.q);
   const Eigen::MatrixXd scaled = root.asDiagonal() * c * root.asDiagonal();
-  const Eigen::MatrixXd residual = m * scaled * m;
+  const Eigen::MatrixXd residual = projected(m, scaled);
   double log_determinant = 0;
-  for (Eigen::Index j = 0; j < h.cols(); ++j)
-    log_determinant += 2 * std::log(std::abs(qr.matrixQR()(j, j)));
+  for (const double pivot : qr.r_diagonal) log_determinant += 2 * std::log(std::abs(pivot));
   return {residual.diagonal() - m.diagonal(),
           m.cwiseAbs2(),
           v.array().log().sum() + log_determinant + residual.trace()};
@@ -70,9 +60,9 @@ std::string not_identifiable(const Eigen::MatrixXd& h) {
   if (mixtures < n)
     return "the noise variances of " + counts + " cannot be told apart: their differences give " +
            std::to_string(mixtures) + " second moments for " + std::to_string(n) + " variances";
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.cwiseAbs2());
-  if (eigen.eigenvalues()[0] > 1e-10) return "";
-  const Eigen::VectorXd direction = eigen.eigenvectors().col(0);
+  const SymmetricEigen eigen = symmetric_eigen(p.cwiseAbs2());
+  if (eigen.values[0] > 1e-10) return "";
+  const Eigen::VectorXd direction = eigen.vectors.col(0);
   std::string names;
   for (Eigen::Index i = 0; i < n; ++i)
     if (std::abs(direction[i]) > 0.1) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
@@ -81,15 +71,13 @@ std::string not_identifiable(const Eigen::MatrixXd& h) {
 }
 
 Eigen::MatrixXd residuals(const Eigen::MatrixXd& y, const Eigen::MatrixXd& h) {
-  const Eigen::MatrixXd q = basis(h);
-  return y - q * (q.transpose() * y);
+  return without_columns_of(column_basis(h), y);
 }
 
 Eigen::VectorXd minque(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& h) {
   require_identifiable(h);
   const Eigen::MatrixXd p = residual_projector(h);
-  const Eigen::VectorXd moments = (p * covariance * p).diagonal();
-  return p.cwiseAbs2().llt().solve(moments);
+  return cholesky_solve(p.cwiseAbs2(), projected_diagonal(p, covariance));
 }
 
 Eigen::VectorXd minque(const Eigen::VectorXd& second_moments) {
@@ -100,7 +88,7 @@ Eigen::VectorXd minque(const Eigen::VectorXd& second_moments) {
 Eigen::VectorXd reml(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& h) {
   require_identifiable(h);
   const Eigen::MatrixXd p = residual_projector(h);
-  const Eigen::MatrixXd c = p * covariance * p;
+  const Eigen::MatrixXd c = projected(p, covariance);
   const Eigen::Index n = h.rows();
   Eigen::VectorXd v = Eigen::VectorXd::Constant(n, c.trace() / p.trace());
   if (!(v[0] > 0))
@@ -112,7 +100,7 @@ Eigen::VectorXd reml(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& h
                  ""});
   Scoring now = scoring(c, h, v);
   for (int round = 0; round < 500; ++round) {
-    const Eigen::VectorXd step = now.information.ldlt().solve(now.right);
+    const Eigen::VectorXd step = ldlt_solve(now.information, now.right);
     double length = std::min(1.0, 2 / step.cwiseAbs().maxCoeff());
     Eigen::VectorXd next = v;
     Scoring there;

@@ -2,9 +2,10 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
+
+#include "libchar/core/dense.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -111,7 +112,7 @@ std::vector<double> start_of(const TanhNetwork& network, const TrainingRows& row
     hidden(k, columns - 1) = 1;
     target[k] = z[network.inputs];
   }
-  const Eigen::VectorXd above = hidden.colPivHouseholderQr().solve(target);
+  const Eigen::VectorXd above = pivoted_least_squares(hidden, target).x;
   std::copy(above.begin(), above.end(), p.begin() + static_cast<std::ptrdiff_t>(network.v()));
   return p;
 }

@@ -1,9 +1,10 @@
 #include "libchar/fusion/detail/reweighted_variances.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <numeric>
+
+#include "libchar/core/dense.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -240,9 +241,9 @@ double ReweightedVariances::blindness(std::vector<double>& direction) const {
   const Eigen::VectorXd p = inverse / inverse.sum();
   Eigen::MatrixXd information = p * p.transpose();
   information.diagonal() += (1 - 2 * p.array()).matrix();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  direction.assign(eigen.eigenvectors().col(0).data(), eigen.eigenvectors().col(0).data() + n);
-  return std::sqrt((1 - options_.gamma) / std::max(eigen.eigenvalues()[0], 1e-300));
+  const SymmetricEigen eigen = symmetric_eigen(information);
+  direction.assign(eigen.vectors.col(0).data(), eigen.vectors.col(0).data() + n);
+  return std::sqrt((1 - options_.gamma) / std::max(eigen.values[0], 1e-300));
 }
 
 }  // namespace libchar::fusion

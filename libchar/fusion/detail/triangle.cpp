@@ -1,6 +1,6 @@
 #include "libchar/fusion/detail/triangle.hpp"
 
-#include <Eigen/QR>
+#include "libchar/core/dense.hpp"
 
 namespace libchar::fusion {
 
@@ -17,8 +17,7 @@ void Triangle::fold() {
   if (filled_ == 0) return;
   Eigen::MatrixXd stacked(upper_.rows() + filled_, upper_.cols());
   stacked << upper_, pending_.topRows(filled_);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  upper_ = qr.matrixQR().topRows(upper_.rows()).triangularView<Eigen::Upper>();
+  upper_ = qr_triangle(stacked);
   filled_ = 0;
 }
 
@@ -34,12 +33,9 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
   for (double& l : length)
     if (!(l > 0)) l = 1;
   const Eigen::MatrixXd a = upper.leftCols(unknowns) * length.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-  qr.setThreshold(1e-13);
-  dependent = unknowns - qr.rank();
-  // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
-  if (qr.rank() == 0) return Eigen::VectorXd::Zero(unknowns);
-  return (qr.solve(upper.col(unknowns)).array() / length.array()).matrix();
+  const PivotedSolution scaled = pivoted_least_squares(a, upper.col(unknowns), 1e-13);
+  dependent = unknowns - scaled.rank;
+  return (scaled.x.array() / length.array()).matrix();
 }
 
 }  // namespace libchar::fusion

@@ -1,11 +1,14 @@
 // The .npy format: 1-D, 2-D (rows × channels, C or Fortran order) and structured arrays of plain
 // numbers.
 
+#include "libchar/log/write/npy.hpp"
+
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/binary_rows.hpp"
 #include "libchar/log/binary/npy_header.hpp"
+#include "libchar/log/detail/format.hpp"
 
 namespace libchar {
 namespace {
@@ -110,8 +113,6 @@ std::string describe(const NpyHeader& header, std::uint64_t columns) {
                      header.fortran_order ? ", Fortran order" : "");
 }
 
-}  // namespace
-
 std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const NpyHeader header = parse_npy_header(file->head(12 + kMaxNpyHeader), file->size(), path);
@@ -140,7 +141,25 @@ std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& 
 
 bool sniff_npy(const std::string& path, std::string_view first_bytes) {
   return first_bytes.starts_with("\x93NUMPY") || first_bytes.starts_with("PK\x03\x04") ||
-         path.ends_with(".npy") || path.ends_with(".npz");
+         path.ends_with(".npz");
+}
+
+}  // namespace
+
+Format npy_format() {
+  Format row;
+  row.about.name = "npy";
+  row.about.title = "NumPy";
+  row.about.suffixes = {".npy"};
+  row.about.names = "structured arrays";
+  row.about.units = "no";
+  row.about.rate = "by a time field";
+  row.about.start = "by a time field";
+  row.about.written_suffixes = {".npy"};
+  row.sniff = sniff_npy;
+  row.open = open_npy;
+  row.write = write_npy;
+  return row;
 }
 
 }  // namespace libchar

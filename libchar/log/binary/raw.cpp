@@ -1,13 +1,14 @@
 // The raw format: numbers of one type without a header, interleaved or planar, described by a
 // sidecar.
 
-#include <fmt/format.h>
+#include "libchar/log/write/raw.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/binary_rows.hpp"
 #include "libchar/log/binary/sidecar.hpp"
+#include "libchar/log/detail/format.hpp"
 
 namespace libchar {
 namespace {
@@ -53,8 +54,6 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warning
   return rows;
 }
 
-}  // namespace
-
 std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const std::string beside = find_sidecar(path);
@@ -92,25 +91,29 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
+// Whatever stands beside a sidecar.
 bool sniff_raw(const std::string& path, std::string_view) {
-  const auto ends = [&](std::initializer_list<std::string_view> suffixes) {
-    return std::any_of(
-        suffixes.begin(), suffixes.end(), [&](std::string_view s) { return path.ends_with(s); });
-  };
-  if (ends({".f64",
-            ".f32",
-            ".i8",
-            ".i16",
-            ".i32",
-            ".i64",
-            ".u8",
-            ".u16",
-            ".u32",
-            ".u64",
-            ".bin",
-            ".raw"}))
-    return true;
-  return !ends({".csv", ".tsv", ".txt", ".npy"}) && !find_sidecar(path).empty();
+  return !find_sidecar(path).empty();
+}
+
+}  // namespace
+
+Format raw_format() {
+  Format row;
+  row.about.name = "raw";
+  row.about.title = "raw binary + sidecar";
+  row.about.suffixes = {
+      ".f64", ".f32", ".i16", ".i32", ".i8", ".i64", ".u8", ".u16", ".u32", ".u64", ".bin", ".raw"};
+  row.about.otherwise = "any with a sidecar";
+  row.about.names = "yes";
+  row.about.units = "yes";
+  row.about.rate = "yes";
+  row.about.start = "yes";
+  row.about.written_suffixes = {".f64", ".f32", ".bin", ".raw"};
+  row.sniff = sniff_raw;
+  row.open = open_raw;
+  row.write = write_raw;
+  return row;
 }
 
 }  // namespace libchar

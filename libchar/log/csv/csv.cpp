@@ -2,6 +2,8 @@
 // parsed side by side, hashed in order behind the parsing, and handed out in order. With one thread
 // everything happens inside next().
 
+#include "libchar/log/write/csv.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +24,7 @@
 #include "libchar/log/csv/header.hpp"
 #include "libchar/log/csv/plan.hpp"
 #include "libchar/log/csv/rows.hpp"
-#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/detail/format.hpp"
 
 namespace libchar {
 namespace csv {
@@ -408,22 +410,37 @@ class CsvSource final : public RowSource {
   bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, goes_along_ = false;
 };
 
-}  // namespace
-}  // namespace csv
-
-std::unique_ptr<RowSource> open_csv(const std::string& path, const ReadOptions& options) {
-  return std::make_unique<csv::CsvSource>(path, options);
+std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<CsvSource>(path, options);
 }
 
-// Text is what CSV may be: no NUL byte in front, and a line end or nothing but printable bytes.
-bool sniff_csv(const std::string& path, std::string_view first_bytes) {
-  for (const std::string_view suffix : {".csv", ".tsv", ".txt", ".dat", ".CSV", ".TXT", ".DAT"})
-    if (path.size() > suffix.size() && path.substr(path.size() - suffix.size()) == suffix)
-      return true;
+// Text is what CSV may be: no control characters in front.
+bool sniff(const std::string&, std::string_view first_bytes) {
   const std::string_view front = first_bytes.substr(0, 4096);
   return !front.empty() && std::none_of(front.begin(), front.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f';
   });
+}
+
+}  // namespace
+}  // namespace csv
+
+Format csv_format() {
+  Format row;
+  row.about.name = "csv";
+  row.about.title = "CSV";
+  row.about.suffixes = {".csv", ".tsv", ".txt", ".dat"};
+  row.about.otherwise = "`-`";
+  row.about.names = "yes";
+  row.about.units = "yes";
+  row.about.rate = "by stamps";
+  row.about.start = "yes";
+  row.about.written_suffixes = {".csv"};
+  row.about.from_pipes = true;
+  row.sniff = csv::sniff;
+  row.open = csv::open;
+  row.write = write_csv;
+  return row;
 }
 
 }  // namespace libchar

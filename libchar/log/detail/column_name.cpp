@@ -1,5 +1,7 @@
 #include "libchar/log/detail/column_name.hpp"
 
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "libchar/core/text.hpp"
@@ -60,6 +62,12 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
       return {std::string(cell.substr(0, low)), *unit};
   }
   return {std::string(cell), ""};
+}
+
+bool unnamed(const std::vector<Channel>& channels) {
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    if (channels[i].name != fmt::format("c{}", i)) return false;
+  return true;
 }
 
 }  // namespace libchar

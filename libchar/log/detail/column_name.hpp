@@ -4,6 +4,9 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
+
+#include "libchar/log/recording.hpp"
 
 namespace libchar {
 
@@ -13,5 +16,8 @@ std::string_view trimmed(std::string_view text);
 /// "gyro_x [deg/s]", "Time (s)", "t_ns" → name and unit ("" when there is none); a suffix behind '_' counts only when it is a
 /// known unit.
 std::pair<std::string, std::string> name_and_unit(std::string_view column);
+
+/// Are the channels called c0, c1… in this order, as a reader calls channels without names?
+bool unnamed(const std::vector<Channel>& channels);
 
 }  // namespace libchar

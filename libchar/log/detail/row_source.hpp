@@ -1,12 +1,10 @@
 #pragma once
-// The contract between a format (one file each, listed in formats.cpp) and the common part of reading (time base, channel
+// The contract between a format (detail/format.hpp) and the common part of reading (time base, channel
 // selection, repairs, grid): a format delivers rows as the file has them, in blocks of columns.
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "libchar/core/progress.hpp"
@@ -52,24 +50,5 @@ class RowSource {
   /// After the last block: SHA-256 of the file when asked for.
   virtual std::string sha256() = 0;
 };
-
-struct Format {
-  std::string_view name;      ///< "csv"
-  std::string_view suffixes;  ///< ".csv .tsv .txt .dat"
-  bool (*sniff)(const std::string& path,
-                std::string_view first_bytes);  ///< does this file look like mine?
-  std::unique_ptr<RowSource> (*open)(const std::string& path, const ReadOptions& options);
-};
-
-/// The table of formats, most specific first: the only place to touch when one is added.
-const std::vector<Format>& formats();
-
-// One per format file:
-std::unique_ptr<RowSource> open_csv(const std::string& path, const ReadOptions& options);
-std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& options);
-std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& options);
-bool sniff_csv(const std::string& path, std::string_view first_bytes);
-bool sniff_npy(const std::string& path, std::string_view first_bytes);
-bool sniff_raw(const std::string& path, std::string_view first_bytes);
 
 }  // namespace libchar

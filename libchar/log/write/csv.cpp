@@ -1,11 +1,12 @@
 // CSV as this project writes it: comma, point, one header line NAME[UNIT], shortest numbers that
 // read back to the same bits.
 
+#include "libchar/log/write/csv.hpp"
+
 #include <charconv>
 #include <cmath>
 
-#include "libchar/core/text.hpp"
-#include "libchar/log/write/log_writers.hpp"
+#include "libchar/core/whole_file.hpp"
 
 namespace libchar {
 namespace {

@@ -1,11 +1,14 @@
 // .npy: a structured array with one field a channel when the channels have names of their own, else
 // a plain 2-D array.
 
+#include "libchar/log/write/npy.hpp"
+
 #include <fmt/format.h>
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/npy_header.hpp"
-#include "libchar/log/write/log_writers.hpp"
+#include "libchar/log/detail/column_name.hpp"
+#include "libchar/log/write/value_writer.hpp"
 
 namespace libchar {
 namespace {

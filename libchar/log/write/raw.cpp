@@ -1,12 +1,15 @@
 // Raw binary with a JSON sidecar: the format that keeps everything (names, units, rate, start).
 
+#include "libchar/log/write/raw.hpp"
+
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/sidecar.hpp"
-#include "libchar/log/write/log_writers.hpp"
+#include "libchar/log/detail/column_name.hpp"
+#include "libchar/log/write/value_writer.hpp"
 
 namespace libchar {
 namespace {

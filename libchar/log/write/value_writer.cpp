@@ -1,3 +1,5 @@
+#include "libchar/log/write/value_writer.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,7 +13,6 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/write/log_writers.hpp"
 
 namespace libchar {
 namespace {

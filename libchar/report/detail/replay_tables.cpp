@@ -1,6 +1,7 @@
 #include "libchar/report/detail/replay_tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,30 +29,34 @@ std::string cell(const std::string& shown, double value, const std::string& belo
                      below.empty() ? "" : "<span class=\"ci\">" + html_text(below) + "</span>");
 }
 
-std::string name_cell(const ReplayResult& r, std::size_t index) {
-  const AlgorithmResult& a = r.algorithms[index];
-  const ParetoFront front = pareto_front(r);
-  std::string chips;
+std::string chips_of(const AlgorithmView& v) {
+  const AlgorithmResult& a = *v.result;
+  std::string out;
   const auto chip = [&](const char* css, const char* text) {
-    chips += fmt::format(" <span class=\"chip {}\">{}</span>", css, text);
+    out += fmt::format(" <span class=\"chip {}\">{}</span>", css, text);
   };
-  if (r.best == index) chip("detected", "best");
+  if (v.best) chip("detected", "best");
   if (a.bound) chip("", "bound");
-  if (!a.bound && r.best != index && a.as_good_as_best)
-    chip("unsure", "not resolved from the best");
-  if (!a.bound && a.card != nullptr && a.card->needs.reference) chip("", "learns from a reference");
-  if (front.time[index] || front.memory[index])
-    chip("",
-         front.time[index] && front.memory[index] ? "fronts: time, memory"
-         : front.time[index]                      ? "front: time"
-                                                  : "front: memory");
-  const std::string settings = settings_in_words(a.settings);
-  return "<th scope=\"row\">" + html_text(a.label) + chips +
-         (a.card != nullptr
-              ? "<span class=\"ci dim\">" + html_text(std::string(a.card->title)) + "</span>"
-              : "") +
-         (settings.empty() ? "" : "<span class=\"ci dim\">" + html_text(settings) + "</span>") +
-         "</th>";
+  if (!a.bound && !v.best && a.as_good_as_best) chip("unsure", "not resolved from the best");
+  if (!a.bound && v.learns) chip("", "learns from a reference");
+  if (v.on_time_front && v.on_memory_front)
+    chip("", "fronts: time, memory");
+  else if (v.on_time_front || v.on_memory_front)
+    chip("", v.on_time_front ? "front: time" : "front: memory");
+  return out;
+}
+
+std::string name_cell(const AlgorithmView& v) {
+  const AlgorithmResult& a = *v.result;
+  const auto below = [](const std::string& text) {
+    return text.empty() ? "" : "<span class=\"ci dim\">" + html_text(text) + "</span>";
+  };
+  return "<th scope=\"row\">" + html_text(a.label) + chips_of(v) +
+         (a.card != nullptr ? below(std::string(a.card->title)) : "") + below(v.settings) + "</th>";
+}
+
+const char* css_of(const AlgorithmView& v) {
+  return v.best ? "best" : v.result->bound ? "bound" : "";
 }
 
 std::string regret_in_words(double regret) {
@@ -79,13 +84,9 @@ std::string with_reference_cells(const AlgorithmResult& a) {
   return out;
 }
 
-std::string ranking_row(const ReplayResult& r, std::size_t index) {
-  const AlgorithmResult& a = r.algorithms[index];
-  std::string out = fmt::format("<tr class=\"{}\">",
-                                r.best == index ? "best"
-                                : a.bound       ? "bound"
-                                                : "");
-  out += name_cell(r, index);
+std::string ranking_row(const ReplayResult& r, const AlgorithmView& v) {
+  const AlgorithmResult& a = *v.result;
+  std::string out = fmt::format("<tr class=\"{}\">", css_of(v)) + name_cell(v);
   out += cell(
       people(a.rmse), a.rmse, std::isfinite(a.rmse_ci95.low) ? people_interval(a.rmse_ci95) : "");
   if (r.has_reference)
@@ -107,7 +108,8 @@ std::string joined(const std::vector<std::string>& all) {
 
 }  // namespace
 
-std::string ranking_table(const ReplayResult& r) {
+std::string ranking_table(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   const std::string unit = score_unit(r);
   std::vector<std::string> head = {"Algorithm", score_name(r) + (unit.empty() ? "" : ", " + unit)};
   if (r.has_reference)
@@ -118,8 +120,8 @@ std::string ranking_table(const ReplayResult& r) {
     head.emplace_back(name);
   std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + table_head(head);
   std::string bounds;
-  for (const AlgorithmResult* a : ranked(r))
-    (a->bound ? bounds : out) += ranking_row(r, index_of(r, *a));
+  for (const AlgorithmView* a : view.ranked)
+    (a->result->bound ? bounds : out) += ranking_row(r, *a);
   // Their own body, so that sorting keeps them apart from what one could use.
   if (!bounds.empty())
     out +=
@@ -131,7 +133,7 @@ std::string ranking_table(const ReplayResult& r) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string needs_table(const ReplayResult& r) {
+std::string needs_table(const ReplayView& view) {
   std::string out = "<div class=\"wide\"><table>\n" + table_head({"Algorithm",
                                                                   "What it is",
                                                                   "Needs",
@@ -139,13 +141,13 @@ std::string needs_table(const ReplayResult& r) {
                                                                   "A learning instant costs",
                                                                   "Source",
                                                                   "Here"});
-  for (const AlgorithmResult& a : r.algorithms) {
+  for (const AlgorithmView& v : view.algorithms) {
+    const AlgorithmResult& a = *v.result;
     if (a.card == nullptr) continue;
-    const auto needs = needs_in_words(*a.card);
     out += table_row(
         {a.label,
          std::string(a.card->title),
-         needs.empty() ? "nothing but the samples" : joined(needs),
+         v.needs.empty() ? "nothing but the samples" : joined(v.needs),
          std::string(a.card->complexity),
          a.card->learning_complexity.empty() ? "–" : std::string(a.card->learning_complexity),
          std::string(a.card->source),
@@ -156,17 +158,14 @@ std::string needs_table(const ReplayResult& r) {
 
 namespace {
 
-std::string input_row(const ReplayResult& r, const AlgorithmResult& a, std::size_t j) {
+std::string input_row(const AlgorithmView& v, std::size_t j) {
+  const AlgorithmResult& a = *v.result;
   const InputScore& input = a.inputs[j];
   const ErrorScore& e = input.error;
   const auto interval = [](const Interval& i) {
     return std::isfinite(i.low) ? people_interval(i, 3) : "";
   };
-  return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>",
-                     r.best == index_of(r, a) ? "best"
-                     : a.bound                ? "bound"
-                                              : "",
-                     html_text(a.label)) +
+  return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>", css_of(v), html_text(a.label)) +
          cell(people(e.rmse), e.rmse, interval(e.rmse_ci95)) +
          cell(regret_in_words(input.optimum_ratio - 1), input.optimum_ratio) +
          cell(people(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
@@ -175,11 +174,11 @@ std::string input_row(const ReplayResult& r, const AlgorithmResult& a, std::size
          cell(people_percent(e.availability, 1), e.availability) + "</tr>\n";
 }
 
-std::string input_table(const ReplayResult& r, std::size_t j) {
-  const InputResult& input = r.inputs[j];
+std::string input_table(const ReplayView& view, std::size_t j) {
+  const InputResult& input = *view.inputs[j].result;
   const std::string unit = usual_unit(input.unit);
   std::string out = "<h3>Input " + html_text(input.name) + "</h3>\n<p class=\"note\">Optimum of " +
-                    optimum_of(r) + ": RMSE " + html_text(with_unit(input.optimum_rmse, 4, unit)) +
+                    view.optimum + ": RMSE " + html_text(with_unit(input.optimum_rmse, 4, unit)) +
                     "</p>\n<div class=\"wide\"><table class=\"ranking\">\n" +
                     table_head({"Algorithm",
                                 "RMSE" + (unit.empty() ? "" : ", " + unit),
@@ -188,26 +187,21 @@ std::string input_table(const ReplayResult& r, std::size_t j) {
                                 "Maximum",
                                 "Converged",
                                 "Available"});
-  std::vector<const AlgorithmResult*> scored = ranked(r);
-  std::erase_if(scored, [&](const AlgorithmResult* a) { return j >= a->inputs.size(); });
-  std::stable_sort(scored.begin(), scored.end(), [&](const auto* a, const auto* b) {
-    const double x = a->inputs[j].error.rmse, y = b->inputs[j].error.rmse;
-    return std::isfinite(x) && (!std::isfinite(y) || x < y);
-  });
-  for (const AlgorithmResult* a : scored) out += input_row(r, *a, j);
+  for (const AlgorithmView* a : view.inputs[j].ranked) out += input_row(*a, j);
   return out + "</tbody></table></div>\n";
 }
 
 }  // namespace
 
-std::string inputs_table(const ReplayResult& r) {
-  if (r.inputs.size() < 2 || !r.has_reference) return "";
+std::string inputs_table(const ReplayView& view) {
+  if (view.inputs.size() < 2 || !view.result->has_reference) return "";
   std::string out;
-  for (std::size_t j = 0; j < r.inputs.size(); ++j) out += input_table(r, j);
+  for (std::size_t j = 0; j < view.inputs.size(); ++j) out += input_table(view, j);
   return out;
 }
 
-std::string sensors_table(const ReplayResult& r) {
+std::string sensors_table(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   std::vector<std::string> head = {"Sensor"};
   if (r.has_reference)
     for (const char* name : {"RMSE", "95 %", "Bias", "Maximum"}) head.emplace_back(name);
@@ -215,7 +209,8 @@ std::string sensors_table(const ReplayResult& r) {
        {"Unit", "Noise given", "From", "Offset taken off", "Missing", "Row of H", ""})
     head.emplace_back(name);
   std::string out = "<div class=\"wide\"><table>\n" + table_head(head);
-  for (const SensorResult& s : r.sensors) {
+  for (std::size_t i = 0; i < r.sensors.size(); ++i) {
+    const SensorResult& s = r.sensors[i];
     std::vector<std::string> row = {s.name};
     if (r.has_reference) {
       row.push_back(people(s.error.rmse));
@@ -224,7 +219,7 @@ std::string sensors_table(const ReplayResult& r) {
       row.push_back(people(s.error.maximum, 3));
     }
     row.push_back(usual_unit(s.unit));
-    row.push_back(s.noise_variance ? people(std::sqrt(*s.noise_variance), 4) : "not known");
+    row.push_back(view.noise_sd[i] ? people(*view.noise_sd[i], 4) : "not known");
     row.push_back(s.noise_source);
     row.push_back(s.offset == 0 ? "–" : people(s.offset, 4));
     row.push_back(s.missing > 0 ? people_percent(s.missing) : "none");
@@ -237,14 +232,15 @@ std::string sensors_table(const ReplayResult& r) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string blind_table(const ReplayResult& r) {
+std::string blind_table(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
   if (r.has_reference) return "";
   std::vector<std::string> head = {"Leave-one-out RMS of"};
   for (const SensorResult& s : r.sensors) head.push_back(s.name);
   std::string out =
       "<h3>Each sensor against the others</h3>\n<div class=\"wide\"><table>\n" + table_head(head);
-  for (const AlgorithmResult* one : ranked(r)) {
-    const AlgorithmResult& a = *one;
+  for (const AlgorithmView* one : view.ranked) {
+    const AlgorithmResult& a = *one->result;
     if (!a.blind) continue;
     std::vector<std::string> row = {a.label};
     for (const double v : a.blind->leave_one_out) row.push_back(people(v));
@@ -254,35 +250,19 @@ std::string blind_table(const ReplayResult& r) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string weights_table(const ReplayResult& r) {
+std::string weights_table(const ReplayView& view) {
+  if (view.final_rows.empty()) return "";
   std::vector<std::string> head = {"At the end of the run"};
-  for (const SensorResult& s : r.sensors) head.push_back(s.name);
+  for (const SensorResult& s : view.result->sensors) head.push_back(s.name);
   head.emplace_back("Distance");
   std::string rows;
-  for (const AlgorithmResult* one : ranked(r)) {
-    const AlgorithmResult& a = *one;
-    if (a.weights)
-      for (Eigen::Index j = 0; j < a.weights->cols(); ++j) {
-        const std::string of =
-            a.weights->cols() > 1 && j < static_cast<Eigen::Index>(r.inputs.size())
-                ? " of " + r.inputs[static_cast<std::size_t>(j)].name
-                : "";
-        std::vector<std::string> row = {a.label + ": weights" + of};
-        for (Eigen::Index k = 0; k < a.weights->rows(); ++k)
-          row.push_back(people((*a.weights)(k, j), 4));
-        row.resize(head.size() - 1, "–");
-        row.push_back(j == 0 && a.weight_distance > 0 ? people(a.weight_distance, 3) : "–");
-        rows += table_row(row);
-      }
-    if (a.variances) {
-      std::vector<std::string> row = {a.label + ": standard deviations"};
-      for (const double v : *a.variances) row.push_back(v >= 0 ? people(std::sqrt(v), 4) : "–");
-      row.resize(head.size() - 1, "–");
-      row.push_back(a.variance_error > 0 ? people(a.variance_error, 3) : "–");
-      rows += table_row(row);
-    }
+  for (const FinalRow& final : view.final_rows) {
+    std::vector<std::string> row = {final.label};
+    for (const double value : final.values) row.push_back(people(value, 4));
+    row.resize(head.size() - 1, "–");
+    row.push_back(people(final.distance, 3));
+    rows += table_row(row);
   }
-  if (rows.empty()) return "";
   return "<details><summary>Weights and noise levels at the end</summary>\n<div "
          "class=\"wide\"><table>\n" +
          table_head(head) + rows +
@@ -295,64 +275,52 @@ std::string weights_table(const ReplayResult& r) {
 
 namespace {
 
-std::string answer_in_words(const AlgorithmResult& a, std::size_t fault) {
-  for (const FaultAnswer& answer : a.answers)
-    if (answer.fault == fault)
-      return !answer.found_s
-                 ? "missed"
-                 : "found after " + people_seconds(*answer.found_s) +
-                       (answer.returned_s ? ", used again " + people_seconds(*answer.returned_s) +
-                                                " after its end"
-                                          : "");
-  return "–";
+std::string answer_in_words(const FaultAnswer* answer) {
+  if (answer == nullptr) return "–";
+  if (!answer->found_s) return "missed";
+  return "found after " + people_seconds(*answer->found_s) +
+         (answer->returned_s
+              ? ", used again " + people_seconds(*answer->returned_s) + " after its end"
+              : "");
 }
 
-// How much was raised where no fault is known: a false alarm, as far as the scene knows.
-std::size_t alarms_without_fault(const ReplayResult& r, const AlgorithmResult& a) {
-  return static_cast<std::size_t>(
-      std::count_if(a.faults.begin(), a.faults.end(), [&](const FoundFault& found) {
-        return std::none_of(r.faults.begin(), r.faults.end(), [&](const SensorFault& known) {
-          return known.sensor == found.sensor && found.from_s < known.to_s &&
-                 found.to_s.value_or(std::numeric_limits<double>::infinity()) > known.from_s;
-        });
-      }));
+std::string fault_row(const ReplayView& view, std::size_t f) {
+  const ReplayResult& r = *view.result;
+  const SensorFault& fault = r.faults[f];
+  const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
+  std::vector<std::string> row = {
+      std::string(name_of(fault.kind)) + (valueless ? "" : " " + plain_number(fault.value)),
+      fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
+      people_instant(fault.from_s),
+      std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
+  for (const AlgorithmView* a : view.watching) row.push_back(answer_in_words(a->answers[f]));
+  return table_row(row);
+}
+
+std::string alarms_row(const ReplayView& view) {
+  std::vector<std::string> row = {"alarms where no fault is known", "", "", ""};
+  for (const AlgorithmView* a : view.watching)
+    row.push_back(people_count(a->alarms_without_fault) +
+                  (a->result->faults_not_kept > 0
+                       ? " (" + people_count(a->result->faults_not_kept) + " events not kept)"
+                       : ""));
+  return view.watching.empty() ? "" : table_row(row);
 }
 
 }  // namespace
 
-std::string faults_table(const ReplayResult& r) {
-  std::vector<const AlgorithmResult*> watchers;
-  for (const AlgorithmResult& a : r.algorithms)
-    if (a.ran && a.watches_faults) watchers.push_back(&a);
-  if (watchers.empty() && r.faults.empty()) return "";
+std::string faults_table(const ReplayView& view) {
+  const std::size_t known = view.result->faults.size();
+  if (view.watching.empty() && known == 0) return "";
   std::vector<std::string> head = {"Known fault", "Sensor", "From", "To"};
-  for (const AlgorithmResult* a : watchers) head.push_back(a->label);
+  for (const AlgorithmView* a : view.watching) head.push_back(a->result->label);
   std::string out = "<div class=\"wide\"><table>\n" + table_head(head);
-  for (std::size_t f = 0; f < std::min(r.faults.size(), kMostFaultRows); ++f) {
-    const SensorFault& fault = r.faults[f];
-    std::vector<std::string> row = {
-        std::string(name_of(fault.kind)) +
-            (fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout
-                 ? ""
-                 : " " + plain_number(fault.value)),
-        fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
-        people_instant(fault.from_s),
-        std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
-    for (const AlgorithmResult* a : watchers) row.push_back(answer_in_words(*a, f));
-    out += table_row(row);
-  }
-  std::vector<std::string> row = {"alarms where no fault is known", "", "", ""};
-  for (const AlgorithmResult* a : watchers)
-    row.push_back(people_count(alarms_without_fault(r, *a)) +
-                  (a->faults_not_kept > 0
-                       ? " (" + people_count(a->faults_not_kept) + " events not kept)"
-                       : ""));
-  if (!watchers.empty()) out += table_row(row);
-  return out + "</tbody></table></div>\n" +
-         (r.faults.size() > kMostFaultRows
+  for (std::size_t f = 0; f < std::min(known, kMostFaultRows); ++f) out += fault_row(view, f);
+  return out + alarms_row(view) + "</tbody></table></div>\n" +
+         (known > kMostFaultRows
               ? fmt::format("<p class=\"note\">The first {} of {}; all stand in report.json.</p>\n",
                             kMostFaultRows,
-                            r.faults.size())
+                            known)
               : "");
 }
 

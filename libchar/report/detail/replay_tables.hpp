@@ -4,23 +4,23 @@
 
 #include <string>
 
-#include "libchar/replay/replay_result.hpp"
+#include "libchar/replay/replay_view.hpp"
 
 namespace libchar {
 
 /// All algorithms that ran, best first, bounds behind them: scores, costs.
-std::string ranking_table(const ReplayResult& result);
+std::string ranking_table(const ReplayView& view);
 /// Card facts of every algorithm, with the sentence of those that did not run.
-std::string needs_table(const ReplayResult& result);
+std::string needs_table(const ReplayView& view);
 /// A table of scores for each input; "" for one input.
-std::string inputs_table(const ReplayResult& result);
+std::string inputs_table(const ReplayView& view);
 /// Per sensor: error, noise, quality.
-std::string sensors_table(const ReplayResult& result);
+std::string sensors_table(const ReplayView& view);
 /// Leave-one-out of each sensor; "" with a reference.
-std::string blind_table(const ReplayResult& result);
+std::string blind_table(const ReplayView& view);
 /// Final weights and variances; "" when no algorithm has any.
-std::string weights_table(const ReplayResult& result);
+std::string weights_table(const ReplayView& view);
 /// Faults that the scene knows against what each algorithm found; "" without either.
-std::string faults_table(const ReplayResult& result);
+std::string faults_table(const ReplayView& view);
 
 }  // namespace libchar

@@ -24,13 +24,13 @@
 
 #include "libchar/simulate/detail/flicker.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/simulate/detail/sections.hpp"
 
 namespace libchar {
@@ -70,12 +70,11 @@ Rule gauss_rule(const Rule& measure, int n) {
     before = now;
     now = next / beside[k];
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside);
+  const SymmetricEigen eigen = tridiagonal_eigen(diagonal, beside);
   Rule rule;
   for (int k = n; k-- > 0;) {  // largest node first
-    rule.node.push_back(solver.eigenvalues()[k] * scale);
-    rule.weight.push_back(w.sum() * std::pow(solver.eigenvectors()(0, k), 2));
+    rule.node.push_back(eigen.values[k] * scale);
+    rule.weight.push_back(w.sum() * std::pow(eigen.vectors(0, k), 2));
   }
   return rule;
 }

@@ -1,0 +1,29 @@
+// An algorithm of one's own under the contract of fusion/algorithm.hpp: the midrange of the sensors.
+#include <algorithm>
+#include <cstdio>
+
+#include "libchar/libchar.hpp"
+
+namespace fusion = libchar::fusion;
+
+struct Midrange {
+  static constexpr fusion::Card card{.name = "midrange",
+                                     .title = "Middle between the smallest and the largest",
+                                     .source = "this page",
+                                     .complexity = "O(n)"};
+  explicit Midrange(const fusion::Given&) {}
+  fusion::Estimate step(const fusion::Sample& y) const {
+    return fusion::Estimate::scalar((y.minCoeff() + y.maxCoeff()) / 2, 0);
+  }
+};
+
+int main() {
+  fusion::Given array;
+  array.channels = 3;
+  fusion::RunnerOf<Midrange> runner(array, fusion::Settings());  // checks the contract when compiled
+  Eigen::MatrixXd samples(3, 2), x(1, 2), variance(1, 2);
+  samples << 1.0, 2.0,  // a row a sensor, a column an instant
+      1.2, 2.2, 1.1, 2.6;
+  runner.run(samples, x, variance);
+  std::printf("%.2f %.2f\n", x(0, 0), x(0, 1));
+}

@@ -1,0 +1,107 @@
+#include "libchar/core/dense.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace libchar {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+SymmetricEigen symmetric_eigen(const MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+SymmetricEigen tridiagonal_eigen(const VectorXd& diagonal, const VectorXd& subdiagonal) {
+  Eigen::SelfAdjointEigenSolver<MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, subdiagonal);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+ThinQr thin_qr(const MatrixXd& a) {
+  const Eigen::HouseholderQR<MatrixXd> qr(a);
+  return {qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols()), qr.matrixQR().diagonal()};
+}
+
+MatrixXd qr_triangle(const MatrixXd& a) {
+  const Eigen::HouseholderQR<MatrixXd> qr(a);
+  return qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
+}
+
+MatrixXd column_basis(const MatrixXd& a) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  return qr.householderQ() * MatrixXd::Identity(a.rows(), qr.rank());
+}
+
+MatrixXd least_squares(const MatrixXd& a, const MatrixXd& b) {
+  const Eigen::HouseholderQR<MatrixXd> qr(a);
+  MatrixXd x(a.cols(), b.cols());
+  for (Index j = 0; j < b.cols(); ++j) x.col(j) = qr.solve(VectorXd(b.col(j)));
+  return x;
+}
+
+PivotedSolution pivoted_least_squares(const MatrixXd& a,
+                                      const VectorXd& b,
+                                      std::optional<double> threshold) {
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  if (threshold) qr.setThreshold(*threshold);
+  // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
+  if (qr.rank() == 0) return {VectorXd::Zero(a.cols()), 0};
+  return {qr.solve(b), qr.rank()};
+}
+
+std::optional<MatrixXd> cholesky_factor(const MatrixXd& a) {
+  const Eigen::LLT<MatrixXd> llt(a);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return MatrixXd(llt.matrixL());
+}
+
+MatrixXd inverse_cholesky_factor(const MatrixXd& a) {
+  const Eigen::LLT<MatrixXd> llt(a);
+  return llt.matrixL().solve(MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+MatrixXd solve_lower(const MatrixXd& l, const MatrixXd& b) {
+  return l.triangularView<Eigen::Lower>().solve(b);
+}
+
+VectorXd solve_lower(const MatrixXd& l, const VectorXd& b) {
+  return l.triangularView<Eigen::Lower>().solve(b);
+}
+
+VectorXd cholesky_solve(const MatrixXd& a, const VectorXd& b) {
+  return a.llt().solve(b);
+}
+
+MatrixXd cholesky_inverse(const MatrixXd& a) {
+  return a.llt().solve(MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+VectorXd ldlt_solve(const MatrixXd& a, const VectorXd& b) {
+  return a.ldlt().solve(b);
+}
+
+MatrixXd complement_projector(const MatrixXd& q) {
+  return MatrixXd::Identity(q.rows(), q.rows()) - q * q.transpose();
+}
+
+MatrixXd without_columns_of(const MatrixXd& q, const MatrixXd& y) {
+  return y - q * (q.transpose() * y);
+}
+
+MatrixXd projected(const MatrixXd& p, const MatrixXd& c) {
+  return p * c * p;
+}
+
+VectorXd projected_diagonal(const MatrixXd& p, const MatrixXd& c) {
+  return (p * c * p).diagonal();
+}
+
+MatrixXd upper_times_transposed(const MatrixXd& u, const MatrixXd& b, Index rows) {
+  return u.triangularView<Eigen::Upper>() * b.topRows(rows).transpose();
+}
+
+}  // namespace libchar

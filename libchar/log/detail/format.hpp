@@ -1,0 +1,37 @@
+#pragma once
+// One row of the table of log formats: its description and the functions behind it. A format exports its row and nothing else.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/formats.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/log/write.hpp"
+
+namespace libchar {
+
+struct Format {
+  LogFormat about;
+  /// Does a file look like this format? Asked when no suffix decides.
+  bool (*sniff)(const std::string& path, std::string_view first_bytes) = nullptr;
+  std::unique_ptr<RowSource> (*open)(const std::string& path, const ReadOptions& options) = nullptr;
+  /// nullptr for a format that is not written.
+  std::unique_ptr<LogWriter> (*write)(const std::string& path,
+                                      const LogInfo& info,
+                                      const WriteOptions& options) = nullptr;
+};
+
+/// The table, the most specific format first.
+const std::vector<Format>& formats();
+
+/// The row of this name, nullptr when there is none.
+const Format* find_format(std::string_view name);
+
+/// The first row with a suffix of `path`, in capitals or not; nullptr when there is none.
+const Format* format_by_suffix(const std::string& path);
+const Format* written_format_by_suffix(const std::string& path);
+
+}  // namespace libchar

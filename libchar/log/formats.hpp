@@ -1,0 +1,34 @@
+#pragma once
+// The log formats: what each is called, which files it takes, what it can hold. Readers, writers, the command line, scenes and
+// docs/formats.md go by this table; detail/format.hpp has the functions behind it.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+struct LogFormat {
+  std::string_view name;   ///< the word for it in options: "csv"
+  std::string_view title;  ///< as tables of formats list it: "CSV"
+  std::vector<std::string_view>
+      suffixes;                ///< files of this format by their name, whatever they hold
+  std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it
+  std::string_view names, units, rate, start;  ///< does a file hold them? "yes", "no", or where
+  std::vector<std::string_view>
+      written_suffixes;     ///< written as this format unless told otherwise; none = never written
+  bool from_pipes = false;  ///< can be read from standard input and named pipes
+};
+
+/// All of them, in the order in which files are asked whether they are of this format.
+std::vector<LogFormat> log_formats();
+
+/// What an option that names a format to read may say: "auto" and the names in alphabetical order.
+std::vector<std::string> format_words();
+/// The same for a format to write.
+std::vector<std::string> written_format_words();
+
+/// ".csv, .npy, .f64, .f32, .bin, .raw": the suffixes that say which format to write.
+std::string written_suffixes();
+
+}  // namespace libchar

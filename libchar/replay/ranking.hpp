@@ -1,0 +1,31 @@
+#pragma once
+// The algorithms of a replay in order: best first, on a front of error against cost, or skipped.
+
+#include <string>
+#include <vector>
+
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+/// Those that ran, best first; those without a score behind.
+std::vector<const AlgorithmResult*> ranked(const ReplayResult& result);
+
+/// The same by the RMSE of one input; those that have no estimate of it are left out.
+std::vector<const AlgorithmResult*> ranked_by_input(const ReplayResult& result, std::size_t input);
+
+/// Why algorithms did not run: a reason and the labels it holds for.
+struct SkippedAlgorithms {
+  std::string reason;
+  std::vector<std::string> labels;
+};
+std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result);
+
+/// On the front of error against a cost: no other method is at least as good in both and better in
+/// one. Bounds are not on it and do not dominate.
+struct ParetoFront {
+  std::vector<bool> time, memory;  ///< one an algorithm
+};
+ParetoFront pareto_front(const ReplayResult& result);
+
+}  // namespace libchar

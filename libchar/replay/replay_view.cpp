@@ -1,0 +1,202 @@
+#include "libchar/replay/replay_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libchar/core/sha256.hpp"
+#include "libchar/replay/algorithm_words.hpp"
+#include "libchar/replay/detail/thinned_tracks.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/scene/scene_writer.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// An algorithm that takes sensors out answers to each fault that the scene knows.
+std::vector<const FaultAnswer*> answers_of(const AlgorithmResult& a, std::size_t known) {
+  std::vector<const FaultAnswer*> out(known, nullptr);
+  for (const FaultAnswer& answer : a.answers)
+    if (answer.fault < known) out[answer.fault] = &answer;
+  return out;
+}
+
+bool explains(const SensorFault& known, const FoundFault& found) {
+  return known.sensor == found.sensor && found.from_s < known.to_s &&
+         found.to_s.value_or(std::numeric_limits<double>::infinity()) > known.from_s;
+}
+
+// How much was raised where no fault is known: a false alarm, as far as the scene knows.
+std::size_t alarms_without_fault(const ReplayResult& r, const AlgorithmResult& a) {
+  return static_cast<std::size_t>(
+      std::count_if(a.faults.begin(), a.faults.end(), [&](const FoundFault& found) {
+        return std::none_of(r.faults.begin(), r.faults.end(), [&](const SensorFault& known) {
+          return explains(known, found);
+        });
+      }));
+}
+
+AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, std::size_t divisor) {
+  AlgorithmView out;
+  out.result = &a;
+  out.best = r.best && &r.algorithms[*r.best] == &a;
+  if (a.card != nullptr) {
+    out.learns = a.card->needs.reference;
+    out.needs = needs_in_words(*a.card);
+  }
+  out.settings = settings_in_words(a.settings);
+  out.weight_track = merged_bins(a.weight_track, divisor);
+  out.variance_track = merged_bins(a.variance_track, divisor);
+  out.answers = answers_of(a, r.faults.size());
+  out.alarms_without_fault = alarms_without_fault(r, a);
+  return out;
+}
+
+void add_algorithms(ReplayView& view, const ReplayResult& r) {
+  const ParetoFront front = pareto_front(r);
+  const std::size_t divisor = track_divisor(r);
+  view.algorithms.reserve(r.algorithms.size());
+  for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
+    AlgorithmView& added =
+        view.algorithms.emplace_back(algorithm_view(r, r.algorithms[i], divisor));
+    added.on_time_front = front.time[i];
+    added.on_memory_front = front.memory[i];
+    if (added.result->ran && added.result->watches_faults) view.watching.push_back(&added);
+  }
+}
+
+std::vector<const AlgorithmView*> views_of(const ReplayView& view,
+                                           const std::vector<const AlgorithmResult*>& results) {
+  std::vector<const AlgorithmView*> out;
+  for (const AlgorithmResult* a : results)
+    out.push_back(&view.algorithms[static_cast<std::size_t>(a - view.result->algorithms.data())]);
+  return out;
+}
+
+InputView input_view(const ReplayView& view, std::size_t input) {
+  InputView out;
+  out.result = &view.result->inputs[input];
+  out.ranked = views_of(view, ranked_by_input(*view.result, input));
+  for (const AlgorithmResult& a : view.result->algorithms) {
+    if (input >= a.inputs.size()) continue;
+    out.has_window_rms = out.has_window_rms || !a.inputs[input].window_rms.empty();
+    out.has_allan = out.has_allan || !a.inputs[input].allan.points.empty();
+  }
+  return out;
+}
+
+void add_final_weights(std::vector<FinalRow>& out,
+                       const ReplayResult& r,
+                       const AlgorithmResult& a) {
+  for (Eigen::Index j = 0; j < a.weights->cols(); ++j) {
+    const bool named = a.weights->cols() > 1 && j < static_cast<Eigen::Index>(r.inputs.size());
+    const auto column = a.weights->col(j);
+    out.push_back(
+        {a.label + ": weights" + (named ? " of " + r.inputs[static_cast<std::size_t>(j)].name : ""),
+         {column.begin(), column.end()},
+         j == 0 && a.weight_distance > 0 ? a.weight_distance : kNone});
+  }
+}
+
+void add_final_variances(std::vector<FinalRow>& out, const AlgorithmResult& a) {
+  FinalRow row{
+      a.label + ": standard deviations", {}, a.variance_error > 0 ? a.variance_error : kNone};
+  for (const double v : *a.variances) row.values.push_back(v >= 0 ? std::sqrt(v) : kNone);
+  out.push_back(std::move(row));
+}
+
+std::vector<FinalRow> final_rows(const ReplayView& view) {
+  std::vector<FinalRow> out;
+  for (const AlgorithmView* a : view.ranked) {
+    if (a->result->weights) add_final_weights(out, *view.result, *a->result);
+    if (a->result->variances) add_final_variances(out, *a->result);
+  }
+  return out;
+}
+
+std::vector<AlgorithmRemark> remarks_of(const ReplayResult& r) {
+  std::vector<AlgorithmRemark> out;
+  for (const AlgorithmResult& a : r.algorithms)
+    for (const Warning& w : a.remarks.list())
+      out.push_back({w.message.starts_with(a.label) ? "" : a.label, w.message, w.count});
+  return out;
+}
+
+Warnings all_warnings(const ReplayResult& r) {
+  Warnings out = r.warnings;
+  for (const LogInfo& log : r.logs) out.merge(log.warnings);
+  return out;
+}
+
+std::vector<std::optional<double>> noise_sd(const ReplayResult& r) {
+  std::vector<std::optional<double>> out;
+  for (const SensorResult& s : r.sensors)
+    out.push_back(s.noise_variance ? std::optional(std::sqrt(*s.noise_variance)) : std::nullopt);
+  return out;
+}
+
+// Sensors in different units have no axis in common.
+bool sensors_can_be_drawn(const std::vector<SensorResult>& sensors) {
+  const auto scored = [](const SensorResult& s) { return s.error.rmse > 0; };
+  const auto alike = [&](const SensorResult& s) { return s.unit == sensors[0].unit; };
+  return std::any_of(sensors.begin(), sensors.end(), scored) &&
+         std::all_of(sensors.begin(), sensors.end(), alike);
+}
+
+ReplayFigures figures_of(const ReplayResult& r) {
+  const auto any = [&](auto has) {
+    return std::any_of(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+      return a.ran && has(a);
+    });
+  };
+  ReplayFigures out;
+  out.error_over_time = any([](const auto& a) { return a.rmse > 0 && a.ns_per_sample > 0; });
+  out.error_over_memory =
+      any([](const auto& a) { return a.rmse > 0 && a.peak_bytes.value_or(0) > 0; });
+  out.weights = any([](const auto& a) { return a.weights && a.weights->cols() == 1; });
+  out.variances = any([](const auto& a) { return a.variances.has_value(); });
+  out.faults = !r.faults.empty() || any([](const auto& a) { return !a.faults.empty(); });
+  out.sensors = sensors_can_be_drawn(r.sensors);
+  return out;
+}
+
+// What was simulated, whoever was asked to fuse it.
+std::string identity_of(const Scene& scene) {
+  if (!scene.simulate) return "";
+  Scene identity = scene;
+  identity.algorithms.clear();
+  identity.learning.reset();
+  identity.evaluation.reset();
+  identity.name.clear();
+  Sha256 hash;
+  hash.update(scene_yaml(identity));
+  return hash.finish();
+}
+
+}  // namespace
+
+ReplayView replay_view(const ReplayResult& r) {
+  ReplayView out;
+  out.result = &r;
+  out.title = r.scene.name.empty() ? r.scene.file : r.scene.name;
+  out.optimum = optimum_of(r);
+  out.verdict = verdict_sentences(r, true);
+  out.steady_verdict = verdict_sentences(r, false);
+  out.duration_s = static_cast<double>(r.instants) / r.rate_hz;
+  out.end_s = r.start_s + out.duration_s;
+  add_algorithms(out, r);
+  out.ranked = views_of(out, ranked(r));
+  out.skipped = skipped_algorithms(r);
+  for (std::size_t j = 0; j < r.inputs.size(); ++j) out.inputs.push_back(input_view(out, j));
+  out.noise_sd = noise_sd(r);
+  out.final_rows = final_rows(out);
+  out.remarks = remarks_of(r);
+  out.warnings = all_warnings(r);
+  out.figures = figures_of(r);
+  out.simulation_identity = identity_of(r.scene);
+  return out;
+}
+
+}  // namespace libchar

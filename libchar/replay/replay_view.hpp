@@ -1,0 +1,86 @@
+#pragma once
+// A replay as its reports show it, computed once: what stands first, who is on a front, who was
+// skipped and why, which sentences say it, tracks short enough for a page. HTML, JSON, Markdown and
+// terminal only print it.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/replay/ranking.hpp"
+#include "libchar/replay/replay_result.hpp"
+
+namespace libchar {
+
+struct AlgorithmView {
+  const AlgorithmResult* result = nullptr;
+  bool best = false;    ///< of the methods
+  bool learns = false;  ///< from a reference
+  bool on_time_front = false, on_memory_front = false;
+  std::vector<std::string> needs;         ///< of a scene, a phrase each
+  std::string settings;                   ///< options that differ from the standard, "gamma = 0.99"
+  Timeline weight_track, variance_track;  ///< thinned to what a page can hold
+  std::vector<const FaultAnswer*> answers;  ///< one a known fault; null: it does not watch
+  std::size_t alarms_without_fault = 0;     ///< raised where the scene knows of none
+};
+
+/// One true input, with what there is to draw of it.
+struct InputView {
+  const InputResult* result = nullptr;
+  std::vector<const AlgorithmView*> ranked;  ///< by the error of this input, best first
+  bool has_window_rms = false, has_allan = false;
+};
+
+/// A row of numbers at the end of the run, one a sensor; NaN: none.
+struct FinalRow {
+  std::string label;  ///< "minque: weights of x", "minque: standard deviations"
+  std::vector<double> values;
+  double distance = 0;  ///< from the optimum; NaN: not known
+};
+
+/// What an algorithm remarks on its run.
+struct AlgorithmRemark {
+  std::string label;  ///< of the algorithm; empty where the message names it
+  std::string message;
+  std::uint64_t count = 1;
+};
+
+/// Which figures have something to show.
+struct ReplayFigures {
+  bool error_over_time = false;    ///< cost: ns a sample
+  bool error_over_memory = false;  ///< cost: peak bytes
+  bool weights = false, variances = false, faults = false, sensors = false;
+};
+
+/// Points into the result that it is a view of, which must live as long.
+struct ReplayView {
+  const ReplayResult* result = nullptr;
+  std::string title;                           ///< the scene's name, else its file
+  std::string optimum;                         ///< what it is of: "fixed weights", "tilt filters"
+  std::vector<std::string> verdict;            ///< sentences, with what was measured
+  std::vector<std::string> steady_verdict;     ///< without: the same in every run
+  double duration_s = 0, end_s = 0;            ///< of the run
+  std::vector<AlgorithmView> algorithms;       ///< all, in the order of the table
+  std::vector<const AlgorithmView*> ranked;    ///< those that ran, best first, bounds among them
+  std::vector<const AlgorithmView*> watching;  ///< those that take sensors out
+  std::vector<SkippedAlgorithms> skipped;
+  std::vector<InputView> inputs;
+  std::vector<std::optional<double>> noise_sd;  ///< of a sensor's sample, as algorithms were told
+  std::vector<FinalRow> final_rows;
+  std::vector<AlgorithmRemark> remarks;
+  Warnings warnings;  ///< of the replay and of its logs
+  ReplayFigures figures;
+  std::string simulation_identity;  ///< SHA-256 of all that was simulated; empty: a recording
+
+  ReplayView() = default;
+  ReplayView(const ReplayView&) = delete;
+  ReplayView& operator=(const ReplayView&) = delete;
+  ReplayView(ReplayView&&) = default;
+  ReplayView& operator=(ReplayView&&) = default;
+};
+
+ReplayView replay_view(const ReplayResult& result);
+ReplayView replay_view(ReplayResult&&) = delete;
+
+}  // namespace libchar

@@ -1,0 +1,107 @@
+#include "libchar/replay/replay_view.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/replay/detail/thinned_tracks.hpp"
+#include "libchar/replay/verdict.hpp"
+#include "libchar/report/replay_json.hpp"
+#include "tests/report/synthetic_replay.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+TEST_CASE("replay view: best first, those without a score behind, each that ran once") {
+  ReplayResult r = test::synthetic_replay();
+  r.algorithms[1].rmse = std::nan("");
+  const ReplayView view = replay_view(r);
+  const auto ran = std::count_if(
+      r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) { return a.ran; });
+  REQUIRE(view.ranked.size() == static_cast<std::size_t>(ran));
+  for (std::size_t i = 1; i < view.ranked.size(); ++i)
+    CHECK_FALSE(view.ranked[i]->result->rmse < view.ranked[i - 1]->result->rmse);
+  CHECK(view.ranked.back()->result == &r.algorithms[1]);
+  std::size_t skipped = 0;
+  for (const SkippedAlgorithms& s : view.skipped) skipped += s.labels.size();
+  CHECK(skipped + view.ranked.size() == r.algorithms.size());
+}
+
+TEST_CASE("replay view: an alarm on another sensor or at another time is one without a fault") {
+  ReplayResult r = test::synthetic_replay();
+  r.faults = {{1, FaultKind::bias, 0.5, 40, 50}};
+  AlgorithmResult& a = r.algorithms[0];
+  a.ran = a.watches_faults = true;
+  a.answers = {{0, 0.02, 0.5}};
+  a.faults = {{1, "bias", 41, 50.5}, {2, "bias", 41, 50.5}, {1, "bias", 60, {}}};
+  const ReplayView view = replay_view(r);
+  CHECK(view.algorithms[0].alarms_without_fault == 2);
+  REQUIRE(view.algorithms[0].answers.size() == 1);
+  CHECK(view.algorithms[0].answers[0]->found_s == 0.02);
+}
+
+TEST_CASE("replay view: what stands at the end has a row a matrix column, and no negative root") {
+  ReplayResult r = test::synthetic_replay(3);
+  for (AlgorithmResult& a : r.algorithms) {
+    a.weights.reset();
+    a.variances.reset();
+  }
+  r.algorithms[0].variances = Eigen::Vector3d(4, -1, 0);
+  r.algorithms[0].variance_error = 0;
+  const ReplayView view = replay_view(r);
+  REQUIRE(view.final_rows.size() == 1);
+  CHECK(view.final_rows[0].values[0] == 2);
+  CHECK(std::isnan(view.final_rows[0].values[1]));
+  CHECK(std::isnan(view.final_rows[0].distance));
+}
+
+TEST_CASE("replay view: tracks of any number of algorithms fit a page, and keep their extremes") {
+  ReplayResult r = test::synthetic_replay(12);
+  r.algorithms[3].weight_track.high[4][123] = 7.5;
+  const std::size_t divisor = track_divisor(r);
+  CHECK(divisor > 1);
+  const ReplayView view = replay_view(r);
+  CHECK(view.algorithms[3].weight_track.high ==
+        merged_bins(r.algorithms[3].weight_track, divisor).high);
+  const Timeline merged = merged_bins(r.algorithms[3].weight_track, divisor);
+  CHECK(merged.time_s.size() == (400 + divisor - 1) / divisor);
+  CHECK(*std::max_element(merged.high[4].begin(), merged.high[4].end()) == 7.5);
+  CHECK(dump_json(replay_json(r)).size() < 4'000'000);
+}
+
+TEST_CASE("replay: the front holds exactly what no method beats in both") {
+  const ReplayResult r = test::synthetic_replay();
+  const ParetoFront front = pareto_front(r);
+  const ReplayView view = replay_view(r);
+  for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
+    const AlgorithmResult& a = r.algorithms[i];
+    bool beaten = !a.ran || a.bound;
+    for (const AlgorithmResult& b : r.algorithms)
+      beaten =
+          beaten || (b.ran && !b.bound && b.rmse < a.rmse && b.ns_per_sample < a.ns_per_sample);
+    INFO(a.label);
+    CHECK(front.time[i] == !beaten);
+    CHECK(view.algorithms[i].on_time_front == !beaten);
+  }
+}
+
+TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not told apart") {
+  ReplayResult r = test::synthetic_replay();
+  CHECK_THAT(replay_verdict(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
+  CHECK_THAT(replay_verdict(r, true), Contains("3 ns a sample"));
+  CHECK_THAT(replay_verdict(r, false), !Contains("ns a sample"));
+  // A taught method wins: the best untaught one is named as well.
+  for (AlgorithmResult& a : r.algorithms)
+    if (a.label == "least-squares") a.rmse = 0.02;
+  test::judge(r);
+  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
+  CHECK_THAT(replay_verdict(r), Contains("of the methods that need none mean is best"));
+  CHECK_THAT(replay_verdict(r), Contains("Every other method is worse"));
+  // A bound is never recommended, however good.
+  for (AlgorithmResult& a : r.algorithms)
+    if (a.bound) a.rmse = 0.001;
+  test::judge(r);
+  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
+  CHECK_THAT(replay_verdict(test::without_reference()), Contains("all sensors share"));
+  CHECK_THAT(replay_verdict(test::nothing_scored()), Contains("No algorithm has a score"));
+}
