@@ -34,7 +34,7 @@ def includes(path):
 
 public = {path.relative_to(root).as_posix() for path in (root / "libchar").glob("*/*.hpp")}
 seen = set()  # from outside, directly or through a public header
-wanted = set().union(*(includes(path) for folder in ("tools", "docs/examples") for path in (root / folder).glob("*.[ch]pp")))
+wanted = set().union(*(includes(path) for folder in ("tools", "docs/examples") for path in (root / folder).rglob("*.[ch]pp")))
 for path in (root / "libchar").rglob("*.[ch]pp"):
     floor = path.relative_to(root / "libchar").parts[0]
     wanted |= {name for name in includes(path) if name.split("/")[1] != floor}

@@ -37,7 +37,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
-// CLI11 only lists what it could not place; the nearest name is what people need.
+// CLI11 only lists what it could not place; the nearest name is what helps.
 std::string say_unknown(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
   const std::string word = rest.empty() ? "" : rest.front();

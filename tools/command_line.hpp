@@ -1,5 +1,5 @@
 #pragma once
-// The command line in a few plain functions. Only command_line.cpp knows the parser behind them:
+// The command line in a few functions. Only command_line.cpp knows the parser behind them:
 // its templates are compiled there once, not in every verb.
 
 #include <cstdint>

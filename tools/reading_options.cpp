@@ -5,6 +5,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/formats.hpp"
 
 namespace sensorchar {
 namespace {
@@ -38,10 +39,8 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
 
 void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  verb.add_choice("--format",
-                  options.format,
-                  {"auto", "csv", "npy", "raw"},
-                  "format of the log (default: auto)")
+  verb.add_choice(
+          "--format", options.format, libchar::format_words(), "format of the log (default: auto)")
       .group("Reading");
   verb.add_parsed(
           "--delimiter",
@@ -151,12 +150,12 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
 }
 
 std::string shell_word(std::string_view word) {
-  const bool plain =
+  const bool bare =
       !word.empty() &&
       word.find_first_not_of(
           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+=@%") ==
           std::string_view::npos;
-  if (plain) return std::string(word);
+  if (bare) return std::string(word);
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

@@ -7,7 +7,7 @@
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/csv_cell.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/outputs.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 

@@ -7,7 +7,7 @@
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/text.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {

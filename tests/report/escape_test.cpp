@@ -1,4 +1,4 @@
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -38,7 +38,7 @@ std::string bytes(const AlgorithmSummary* one) {
              : "–";
 }
 
-std::string text_for_people(const Comparison& c) {
+std::string comparison_table(const Comparison& c) {
   std::string out =
       fmt::format("A: {}: {}\nB: {}: {}\n",
                   printable(c.a.file),
@@ -104,7 +104,7 @@ void run_compare(Session& session, const CompareVerb& verb) {
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
   print(verb.json       ? dump_json(document(session, comparison, failed))
         : verb.markdown ? comparison_markdown(comparison)
-                        : text_for_people(comparison));
+                        : comparison_table(comparison));
   if (failed.empty()) return;
   std::string what = failed[0];
   for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];

@@ -60,7 +60,7 @@ struct Table {
 };
 
 /// A table whose header does not name what its columns are: the first is the averaging time or the frequency, every other one a curve.
-Table plain_table(Session& session, const FitVerb& verb, ReadOptions reading) {
+Table unnamed_table(Session& session, const FitVerb& verb, ReadOptions reading) {
   reading.time_column = "none";
   reading.rate_hz = 1;  // rows of a curve have no time
   const Recording read = read_recording(verb.input, reading, session.terminal);
@@ -113,7 +113,7 @@ std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInf
   const CharacterizeOptions options = finish(verb.analysis);
   const auto named = read_curve_table(verb.input, verb.curve == "allan");
   Table table = named ? named_table(verb, *named, options.reading.channels)
-                      : plain_table(session, verb, options.reading);
+                      : unnamed_table(session, verb, options.reading);
   log = table.info;
   std::vector<ChannelFit> fits;
   for (std::size_t c = 0; c < table.curves.size(); ++c) {

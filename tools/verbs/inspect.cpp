@@ -83,7 +83,7 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
                      shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
 }
 
-std::string for_people(const InspectVerb& verb, const libchar::Inspection& inspection) {
+std::string inspection_text(const InspectVerb& verb, const libchar::Inspection& inspection) {
   const libchar::LogInfo& info = inspection.info;
   std::string text = libchar::summary_line(info) + "\n";
   std::string dialect = info.format;
@@ -112,7 +112,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
     const libchar::LogInfo& info = inspections.back().info;
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
     if (!verb.json)
-      print((inspections.size() > 1 ? "\n" : "") + for_people(verb, inspections.back()));
+      print((inspections.size() > 1 ? "\n" : "") + inspection_text(verb, inspections.back()));
   }
   if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;

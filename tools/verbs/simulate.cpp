@@ -15,6 +15,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_reader.hpp"
@@ -227,7 +228,7 @@ void stream(Session& session,
   }
 }
 
-std::string text_for_people(const ArraySimulation& s,
+std::string simulation_text(const ArraySimulation& s,
                             const LogInfo& info,
                             const std::vector<DeviceDraw>& draws,
                             const std::vector<std::string>& files) {
@@ -303,7 +304,7 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   }
   session.terminal.clear();
   const std::vector<DeviceDraw> draws = ArraySimulator(simulation).draws();
-  if (!verb.json) return print(text_for_people(simulation, info, draws, files));
+  if (!verb.json) return print(simulation_text(simulation, info, draws, files));
   Json document = document_head(session, "simulation", {});
   document["samples"] = simulation.samples;
   document["rate_hz"] = simulation.rate_hz;
@@ -331,7 +332,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "log to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+                "log to write; its suffix says the format (" + libchar::written_suffixes() + ")")
       .required()
       .value_name("LOG");
   options.add_duration("--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
@@ -382,7 +383,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-scene", verb->no_scene, "write no scene");
   options.add_choice("--as",
                      verb->writing.format,
-                     {"auto", "csv", "npy", "raw"},
+                     libchar::written_format_words(),
                      "format to write (default: auto, by the suffix)");
   options.add_choice("--dtype",
                      verb->writing.dtype,

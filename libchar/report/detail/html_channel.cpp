@@ -12,8 +12,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/export/consumers.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

@@ -1,6 +1,6 @@
 #include "libchar/report/detail/verification_json.hpp"
 
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 
 namespace libchar {

@@ -1,4 +1,4 @@
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 
 #include "libchar/core/text.hpp"
 

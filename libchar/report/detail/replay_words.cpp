@@ -1,4 +1,4 @@
-#include "libchar/report/replay_words.hpp"
+#include "libchar/report/detail/replay_words.hpp"
 
 #include <fmt/format.h>
 
