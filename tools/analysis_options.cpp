@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
-#include "numbers.hpp"
 
 namespace sensorchar {
 namespace {
@@ -32,29 +32,30 @@ std::vector<std::string> words(const std::string& list) {
 }
 
 void read_taus(const std::string& text, AllanOptions& allan) {
-  if (text == "octave") {
-    allan.grid = TauGrid::octave;
-  } else if (text == "decade") {
-    allan.grid = TauGrid::decade;
-  } else if (text == "dense") {
-    allan.grid = TauGrid::dense;
-  } else {
-    allan.grid = TauGrid::list;
-    try {
-      for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
-    } catch (const Error&) {
-      refuse("--taus",
-             "octave, decade, dense or a list of times was expected",
-             text,
-             "for example --taus 0.1s,1s,10s");
-    }
+  const auto grid = find_enum<TauGrid>(text);
+  allan.grid = grid.value_or(TauGrid::list);
+  if (grid && *grid != TauGrid::list) return;
+  allan.taus_s.clear();
+  try {
+    for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
+  } catch (const Error&) {
+    refuse("--taus",
+           "octave, decade, dense or a list of times was expected",
+           text,
+           "for example --taus 0.1s,1s,10s");
   }
 }
 
-// A number of samples, or a duration that becomes one when the rate is known: only samples are taken here.
-std::uint64_t read_segment(const std::string& text) {
-  if (text.empty() || text == "N/4") return 0;
-  return parse_count(text, 8);
+// "4096" counts samples; "20s" is a time, which becomes samples when the rate is known; "N/4" is a
+// quarter of the record.
+void read_segment(const std::string& text, WelchOptions& spectrum, double& segment_s) {
+  spectrum.segment = 0;
+  segment_s = 0;
+  if (text.empty() || text == "N/4") return;
+  if (text.find_first_not_of("0123456789") == std::string::npos)
+    spectrum.segment = parse_count(text, 8);
+  else
+    segment_s = parse_duration_s(text);
 }
 
 std::array<bool, kTerms> read_terms(const std::string& text) {
@@ -75,17 +76,15 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
 }  // namespace
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choice("--data",
-                  a.data,
-                  {"rate", "phase", "frequency"},
-                  "what the samples are: the quantity itself, its integral, or a frequency in Hz "
-                  "(default: rate)");
-  verb.add_number(
-      "--nominal-frequency",
-      a.nominal_frequency,
-      "with --data frequency: the frequency that counts as zero deviation, Hz (default: "
-      "values are fractional)",
-      0);
+  verb.add_enum("--data",
+                a.options.data,
+                "what the samples are: the quantity itself, its integral, or a frequency in Hz "
+                "(default: rate)");
+  verb.add_number("--nominal-frequency",
+                  a.nominal_frequency,
+                  "with --data frequency: the frequency that counts as zero deviation, Hz "
+                  "(default: values are fractional)",
+                  0);
   verb.add_bytes("--memory",
                  a.options.memory_bytes,
                  "samples kept in memory at most; a longer log streams through fixed-size stages "
@@ -95,9 +94,10 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_choice(
       "--type", a.type, deviation_words(), "deviation (default: oadev, overlapping Allan)");
-  verb.add_text(
+  verb.add_parsed(
       "--taus",
-      a.taus,
+      "TEXT",
+      [&a](const std::string& text) { read_taus(text, a.options.allan); },
       "averaging times: octave, decade, dense, or a list such as 0.1s,1s,1min (default: octave)");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
   verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
@@ -107,36 +107,35 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
                 "million samples)");
 }
 
-void add_spectrum_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choice("--sides", a.sides, {"one", "two"}, "one- or two-sided spectrum (default: one)");
-  verb.add_choice("--scaling",
-                  a.scaling,
-                  {"psd", "ps", "lsd", "ls"},
-                  "density U²/Hz, power U², and their roots (default: psd)");
-  verb.add_text(
-      "--segment", a.segment, "samples per segment (default: N/4, a quarter of the record)");
+void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s) {
+  verb.add_enum("--sides", spectrum.sides, "one- or two-sided spectrum (default: one)");
+  verb.add_enum(
+      "--scaling", spectrum.scaling, "density U²/Hz, power U², and their roots (default: psd)");
+  verb.add_parsed(
+      "--segment",
+      "N|TIME",
+      [&spectrum, &segment_s](const std::string& text) { read_segment(text, spectrum, segment_s); },
+      "samples per segment, or a time such as 20s; a log of any length then streams through "
+      "(default: N/4, a quarter of the record)");
   verb.add_number(
-      "--overlap", a.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
-  verb.add_choice("--window",
-                  a.window,
-                  {"hann", "rectangular", "blackman_harris", "flat_top"},
-                  "window (default: hann)");
-  verb.add_choice("--detrend",
-                  a.detrend,
-                  {"none", "constant", "linear"},
-                  "what is removed from each segment (default: constant)");
+      "--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  verb.add_enum("--window", spectrum.window, "window (default: hann)");
+  verb.add_enum(
+      "--detrend", spectrum.detrend, "what is removed from each segment (default: constant)");
 }
 
 void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_text("--terms",
-                a.terms,
-                "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and "
-                "R join when an alarm asks)");
-  verb.add_number(
-      "--threshold",
-      a.threshold,
-      "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)",
-      0);
+  verb.add_parsed(
+      "--terms",
+      "TEXT",
+      [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
+      "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and R join when "
+      "an alarm asks)");
+  verb.add_number("--threshold",
+                  a.options.fit.threshold,
+                  "likelihood ratio above which a term counts as present (default: 5.41, 1 % "
+                  "false)",
+                  0);
   verb.add_flag("--no-remedies",
                 a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
@@ -145,29 +144,12 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
 
 CharacterizeOptions finish(const AnalysisOptions& a) {
   CharacterizeOptions o = a.options;
-  o.data = a.data == "phase"       ? SampleKind::phase
-           : a.data == "frequency" ? SampleKind::frequency
-                                   : SampleKind::rate;
-  o.nominal_frequency = a.nominal_frequency.value_or(0);
   if (a.nominal_frequency && o.data != SampleKind::frequency)
     refuse("--nominal-frequency", "goes with --data frequency only", "", "");
-  o.allan.type = *deviation_type(a.type);
-  read_taus(a.taus, o.allan);
+  o.nominal_frequency = a.nominal_frequency.value_or(0);
+  o.allan.type = deviation_type(a.type).value_or(DeviationType::oadev);
   o.allan.tau_min_s = a.tau_min_s.value_or(0);
   o.allan.tau_max_s = a.tau_max_s.value_or(0);
-  o.spectrum.sides = a.sides == "two" ? Sides::two : Sides::one;
-  o.spectrum.scaling = a.scaling == "ps"    ? Scaling::ps
-                       : a.scaling == "lsd" ? Scaling::lsd
-                       : a.scaling == "ls"  ? Scaling::ls
-                                            : Scaling::psd;
-  o.spectrum.segment = read_segment(a.segment);
-  if (a.overlap) o.spectrum.overlap = *a.overlap;
-  o.spectrum.window = *window_named(a.window);
-  o.spectrum.detrend = a.detrend == "none"     ? Detrend::none
-                       : a.detrend == "linear" ? Detrend::linear
-                                               : Detrend::constant;
-  o.fit.terms = read_terms(a.terms);
-  if (a.threshold) o.fit.threshold = *a.threshold;
   o.fit.remedies = !a.no_remedies;
   o.fit.second_opinion = !a.no_second_opinion;
   return o;

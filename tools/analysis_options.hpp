@@ -7,29 +7,25 @@
 
 namespace sensorchar {
 
-/// Flags become CharacterizeOptions only when all of them are known: text is kept until `finish`.
+/// What the flags say; `finish` checks what only all of them together show.
 struct AnalysisOptions {
   libchar::CharacterizeOptions options;
-  std::string data = "rate", type = "oadev", taus = "octave", sides = "one", scaling = "psd",
-              window = "hann", detrend = "constant", terms = "Q,B,K";
-  std::optional<double> nominal_frequency, tau_min_s, tau_max_s, overlap, threshold;
-  std::string segment;
+  std::string type = "oadev";
+  std::optional<double> nominal_frequency, tau_min_s, tau_max_s;
   bool no_remedies = false, no_second_opinion = false;
 };
 
-void add_data_options(VerbOptions& verb,
-                      AnalysisOptions& analysis);  ///< --data, --nominal-frequency, --memory
-void add_allan_options(
-    VerbOptions& verb,
-    AnalysisOptions& analysis);  ///< --type, --taus, --tau-min, --tau-max, --full-overlap
-void add_spectrum_options(
-    VerbOptions& verb,
-    AnalysisOptions& analysis);  ///< --sides, --scaling, --segment, --overlap, --window, --detrend
-void add_fit_options(
-    VerbOptions& verb,
-    AnalysisOptions& analysis);  ///< --terms, --threshold, --no-remedies, --no-second-opinion
+/// --data, --nominal-frequency, --memory
+void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
+/// --type, --taus, --tau-min, --tau-max, --full-overlap
+void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
+/// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
+/// segment when a time was given for it, 0 otherwise.
+void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s);
+/// --terms, --threshold, --no-remedies, --no-second-opinion
+void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 
-/// The options with every text read. Throws Error(usage).
+/// The options of the job. Throws Error(usage) for flags that do not go together.
 libchar::CharacterizeOptions finish(const AnalysisOptions& analysis);
 
 }  // namespace sensorchar

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
-#include "numbers.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -37,7 +37,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
-// CLI11 only lists what it could not place; the nearest name is what people need.
+// CLI11 only lists what it could not place; the nearest name is what helps.
 std::string say_unknown(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
   const std::string word = rest.empty() ? "" : rest.front();
@@ -158,7 +158,7 @@ Option VerbOptions::add_number(const std::string& names,
                                double lowest,
                                double highest) {
   const auto read = [&value, lowest, highest](const std::string& text) {
-    value = parse_number(text, lowest, highest);
+    value = libchar::parse_number(text, lowest, highest);
   };
   return add_parsed(names, "NUMBER", read, help);
 }
@@ -169,7 +169,7 @@ Option VerbOptions::add_number(const std::string& names,
                                double lowest,
                                double highest) {
   const auto read = [&value, lowest, highest](const std::string& text) {
-    value = parse_number(text, lowest, highest);
+    value = libchar::parse_number(text, lowest, highest);
   };
   return add_parsed(names, "NUMBER", read, help);
 }
@@ -180,7 +180,7 @@ Option VerbOptions::add_count(const std::string& names,
                               std::uint64_t lowest,
                               std::uint64_t highest) {
   const auto read = [&value, lowest, highest](const std::string& text) {
-    value = parse_count(text, lowest, highest);
+    value = libchar::parse_count(text, lowest, highest);
   };
   return add_parsed(names, "N", read, help);
 }
@@ -188,21 +188,23 @@ Option VerbOptions::add_count(const std::string& names,
 Option VerbOptions::add_duration(const std::string& names,
                                  std::optional<double>& seconds,
                                  const std::string& help) {
-  const auto read = [&seconds](const std::string& text) { seconds = parse_duration_s(text); };
+  const auto read = [&seconds](const std::string& text) {
+    seconds = libchar::parse_duration_s(text);
+  };
   return add_parsed(names, "TIME", read, help);
 }
 
 Option VerbOptions::add_rate(const std::string& names,
                              std::optional<double>& hertz,
                              const std::string& help) {
-  const auto read = [&hertz](const std::string& text) { hertz = parse_rate_hz(text); };
+  const auto read = [&hertz](const std::string& text) { hertz = libchar::parse_rate_hz(text); };
   return add_parsed(names, "RATE", read, help);
 }
 
 Option VerbOptions::add_bytes(const std::string& names,
                               std::uint64_t& bytes,
                               const std::string& help) {
-  const auto read = [&bytes](const std::string& text) { bytes = parse_bytes(text); };
+  const auto read = [&bytes](const std::string& text) { bytes = libchar::parse_bytes(text); };
   return add_parsed(names, "BYTES", read, help);
 }
 
@@ -210,8 +212,16 @@ Option VerbOptions::add_choice(const std::string& names,
                                std::string& value,
                                std::vector<std::string> words,
                                const std::string& help) {
+  return add_word(
+      names, std::move(words), help, [&value](const std::string& word) { value = word; });
+}
+
+Option VerbOptions::add_word(const std::string& names,
+                             std::vector<std::string> words,
+                             const std::string& help,
+                             std::function<void(const std::string&)> use) {
   const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
-  const auto read = [&value, words = std::move(words)](const std::string& text) {
+  const auto read = [words = std::move(words), use = std::move(use)](const std::string& text) {
     if (std::find(words.begin(), words.end(), text) == words.end()) {
       const auto near = libchar::nearest(text, words);
       throw Error({ErrorKind::usage,
@@ -221,7 +231,7 @@ Option VerbOptions::add_choice(const std::string& names,
                    text,
                    near ? fmt::format("did you mean {}?", *near) : ""});
     }
-    value = text;
+    use(text);
   };
   return add_parsed(names, value_name, read, help);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The command line in a few plain functions. Only command_line.cpp knows the parser behind them:
+// The command line in a few functions. Only command_line.cpp knows the parser behind them:
 // its templates are compiled there once, not in every verb.
 
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "libchar/core/enum_table.hpp"
 
 namespace CLI {
 class App;
@@ -79,6 +81,13 @@ class VerbOptions {
   Option add_rate(const std::string& names, std::optional<double>& hertz, const std::string& help);
   /// Bytes ("4096", "64KiB").
   Option add_bytes(const std::string& names, std::uint64_t& bytes, const std::string& help);
+  /// A value of an enum by its word (core/enum_table.hpp).
+  template <libchar::EnumWithTable Enum>
+  Option add_enum(const std::string& names, Enum& value, const std::string& help) {
+    return add_word(names, libchar::words_of<Enum>(), help, [&value](const std::string& word) {
+      value = *libchar::find_enum<Enum>(word);
+    });
+  }
   /// One of a few words; a wrong one is refused with the nearest right one.
   Option add_choice(const std::string& names,
                     std::string& value,
@@ -86,6 +95,11 @@ class VerbOptions {
                     const std::string& help);
 
  private:
+  Option add_word(const std::string& names,
+                  std::vector<std::string> words,
+                  const std::string& help,
+                  std::function<void(const std::string&)> use);
+
   CLI::App* app_;
 };
 

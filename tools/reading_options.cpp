@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/formats.hpp"
-#include "numbers.hpp"
 
 namespace sensorchar {
 namespace {
@@ -140,7 +140,7 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
           "--threads",
           "N",
           [&options](const std::string& text) {
-            options.threads = static_cast<int>(parse_count(text, 0, 4096));
+            options.threads = static_cast<int>(libchar::parse_count(text, 0, 4096));
           },
           "threads for reading; the result does not depend on it (default: 0 = all cores)")
       .group("Reading");
@@ -150,12 +150,12 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
 }
 
 std::string shell_word(std::string_view word) {
-  const bool plain =
+  const bool bare =
       !word.empty() &&
       word.find_first_not_of(
           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+=@%") ==
           std::string_view::npos;
-  if (plain) return std::string(word);
+  if (bare) return std::string(word);
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

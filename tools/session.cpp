@@ -5,6 +5,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "flag_names.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -65,7 +66,7 @@ int exit_code_of(Session& session, const std::function<void()>& work) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0)
       return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
-    return fail(error.what(), exit_code(error.problem().kind));
+    return fail(libchar::one_line(with_flags(error.problem())), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
   } catch (const StdoutClosed&) {

@@ -11,6 +11,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 
 namespace sensorchar {
 namespace {
@@ -20,13 +21,6 @@ volatile std::sig_atomic_t g_stop_signal =
 
 void remember(int number) {
   g_stop_signal = number;
-}
-
-// Characters, not bytes: "°" takes one place on a terminal.
-std::size_t width(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
 }
 
 // Returns errno, 0 when everything was written.
@@ -98,7 +92,7 @@ void Terminal::update(double fraction, std::string_view what) {
   drawn_ = now;
   std::string line = libchar::printable(what, 60);
   if (fraction >= 0) line += fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0));
-  const std::size_t places = width(line);
+  const std::size_t places = libchar::width_of(line);
   const std::string rest =
       escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
   write_all(STDERR_FILENO, "\r" + line + rest);
@@ -122,29 +116,6 @@ void Terminal::note(std::string_view line) {
   if (quiet_) return;
   clear();
   say(line);
-}
-
-std::string table(const std::vector<std::vector<std::string>>& rows,
-                  std::string_view indent,
-                  bool words_last) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line(indent);
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string blanks(widths[c] - width(row[c]), ' ');
-      if (c > 0) line += "  ";
-      const bool words = c == 0 || (words_last && c + 1 == row.size());
-      line += words ? row[c] + blanks : blanks + row[c];
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
 }
 
 }  // namespace sensorchar

@@ -1,5 +1,5 @@
 #pragma once
-// What the program says to people: results to stdout, progress and messages to stderr, and how it
+// What the program says: results to stdout, progress and messages to stderr, and how it
 // is interrupted.
 
 #include <chrono>
@@ -47,7 +47,7 @@ class Terminal : public libchar::Progress {
   void clear();
   /// Says every warning on one line each (nothing when quiet).
   void warn(const libchar::Warnings& warnings, std::string_view file);
-  /// A note for people on stderr (nothing when quiet).
+  /// A note on stderr (nothing when quiet).
   void note(std::string_view line);
 
  private:
@@ -56,11 +56,5 @@ class Terminal : public libchar::Progress {
   std::size_t shown_ = 0;  ///< characters of the line now on the terminal
   Clock::time_point start_, drawn_;
 };
-
-/// A table for people: columns aligned by width in characters, the first (and the last, if it holds
-/// words) to the left and the others to the right.
-std::string table(const std::vector<std::vector<std::string>>& rows,
-                  std::string_view indent = "  ",
-                  bool words_last = false);
 
 }  // namespace sensorchar

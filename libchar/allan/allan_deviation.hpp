@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/allan/deviation_types.hpp"
+#include "libchar/core/enum_table.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 
@@ -16,6 +17,12 @@ namespace libchar {
 enum class DataKind { rate, phase };
 /// m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); as listed
 enum class TauGrid { octave, decade, dense, list };
+
+template <>
+inline constexpr auto enum_table<TauGrid> = enum_words<TauGrid>({{TauGrid::octave, "octave"},
+                                                                 {TauGrid::decade, "decade"},
+                                                                 {TauGrid::dense, "dense"},
+                                                                 {TauGrid::list, "list"}});
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor

@@ -28,6 +28,12 @@ enum class SampleKind {
   frequency,  ///< a frequency in its unit around `nominal_frequency`: y = (f - nominal) / nominal
 };
 
+template <>
+inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind>({{SampleKind::rate, "rate"},
+                                                                       {SampleKind::phase, "phase"},
+                                                                       {SampleKind::frequency,
+                                                                        "frequency"}});
+
 /// What is to be computed; nothing else is.
 struct Wanted {
   bool quality = true;
@@ -44,6 +50,8 @@ struct CharacterizeOptions {
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
   AllanOptions allan;
   WelchOptions spectrum;
+  double segment_s =
+      0;  ///< length of a segment where spectrum.segment is 0; 0 = a quarter of the record
   FitOptions fit;
   std::uint64_t memory_bytes =
       std::uint64_t{1}

@@ -120,7 +120,9 @@ const Fields<CharacterizeOptions>& characterize_fields() {
         part<&Options::fit>("fit", always(fit_settings())),
         part<&Options::reading>("reading", reading_settings()),
     };
-    return always(all);
+    all = always(all);
+    all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}));
+    return all;
   }();
   return rows;
 }

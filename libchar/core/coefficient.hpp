@@ -3,8 +3,8 @@
 
 #include <array>
 #include <optional>
-#include <string_view>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 
@@ -17,7 +17,13 @@ enum class Status {
   given,         ///< not fitted but stated by somebody (models only)
   not_fitted,    ///< the term was not part of the model that was asked for
 };
-std::string_view name_of(Status status);
+template <>
+inline constexpr auto enum_table<Status> =
+    enum_words<Status>({{Status::detected, "detected"},
+                        {Status::not_detected, "not_detected"},
+                        {Status::undetermined, "undetermined"},
+                        {Status::given, "given"},
+                        {Status::not_fitted, "not_fitted"}});
 
 /// One coefficient (not squared), in the channel's unit times the unit of core/units.hpp's term_unit.
 struct Coefficient {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/export/sensor_group.hpp"
 
 namespace libchar {
@@ -21,6 +22,15 @@ enum class AxisChoice {
   y,
   z,
 };
+
+template <>
+inline constexpr auto enum_table<AxisChoice> = enum_words<AxisChoice>({{AxisChoice::automatic,
+                                                                        "auto"},
+                                                                       {AxisChoice::max, "max"},
+                                                                       {AxisChoice::rms, "rms"},
+                                                                       {AxisChoice::x, "x"},
+                                                                       {AxisChoice::y, "y"},
+                                                                       {AxisChoice::z, "z"}});
 
 struct ExportOptions {
   AxisChoice axes = AxisChoice::automatic;

@@ -67,22 +67,6 @@ std::string best_of(const ReplaySummary& r) {
 
 }  // namespace
 
-std::string_view name_of(Difference d) {
-  switch (d) {
-    case Difference::equal:
-      return "equal";
-    case Difference::not_resolved:
-      return "not resolved";
-    case Difference::better:
-      return "better";
-    case Difference::worse:
-      return "worse";
-    case Difference::unknown:
-      return "unknown";
-  }
-  return "";
-}
-
 Comparison compare_replays(ReplaySummary a, ReplaySummary b) {
   Comparison out;
   out.a = std::move(a);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/replay/replay_summary.hpp"
 
 namespace libchar {
@@ -18,8 +19,13 @@ enum class Difference {
   unknown,       ///< one of them has no RMSE or no interval
 };
 
-/// "equal", "not resolved", "better", "worse", "unknown".
-std::string_view name_of(Difference difference);
+template <>
+inline constexpr auto enum_table<Difference> =
+    enum_words<Difference>({{Difference::equal, "equal"},
+                            {Difference::not_resolved, "not resolved"},
+                            {Difference::better, "better"},
+                            {Difference::worse, "worse"},
+                            {Difference::unknown, "unknown"}});
 
 /// One label; a side that does not have it is null.
 struct ComparedAlgorithm {

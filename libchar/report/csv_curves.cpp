@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {

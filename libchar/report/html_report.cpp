@@ -14,9 +14,9 @@
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 

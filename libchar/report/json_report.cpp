@@ -7,8 +7,8 @@
 #include "libchar/characterize/verification.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/verification_json.hpp"
-#include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 

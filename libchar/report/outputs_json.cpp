@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/units.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 

@@ -12,11 +12,11 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/detail/replay_tables.hpp"
 #include "libchar/report/detail/replay_words.hpp"
-#include "libchar/report/escape.hpp"
 #include "libchar/report/replay_json.hpp"
 
 namespace libchar {

@@ -8,7 +8,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {

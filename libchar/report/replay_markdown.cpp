@@ -7,7 +7,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/replay/verdict.hpp"
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
 namespace {

@@ -11,8 +11,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_fields.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
-#include "libchar/scene/detail/scene_paths.hpp"
 #include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_paths.hpp"
 
 namespace libchar {
 namespace {

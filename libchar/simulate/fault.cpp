@@ -8,45 +8,12 @@
 namespace libchar {
 namespace {
 
-struct Name {
-  FaultKind kind;
-  const char* word;
-};
-constexpr Name kNames[] = {{FaultKind::scale, "scale"},
-                           {FaultKind::bias, "bias"},
-                           {FaultKind::ramp, "ramp"},
-                           {FaultKind::stuck, "stuck"},
-                           {FaultKind::saturation, "saturation"},
-                           {FaultKind::noise, "noise"},
-                           {FaultKind::dropout, "dropout"}};
-
 // First sample at or after `t`; one that stands there but for rounding counts.
 double first_sample(double t, double rate_hz) {
   return std::ceil(t * rate_hz - 1e-6);
 }
 
 }  // namespace
-
-std::string_view name_of(FaultKind kind) {
-  for (const Name& name : kNames)
-    if (name.kind == kind) return name.word;
-  return "";
-}
-
-const std::vector<std::string>& fault_kinds() {
-  static const std::vector<std::string> words = [] {
-    std::vector<std::string> all;
-    for (const Name& name : kNames) all.emplace_back(name.word);
-    return all;
-  }();
-  return words;
-}
-
-FaultKind fault_kind(const std::string& word) {
-  for (const Name& name : kNames)
-    if (word == name.word) return name.kind;
-  return FaultKind::bias;
-}
 
 FaultInjector::FaultInjector(std::vector<SensorFault> faults,
                              double rate_hz,

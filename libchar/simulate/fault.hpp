@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {
@@ -30,10 +31,15 @@ struct SensorFault {
   double to_s = std::numeric_limits<double>::infinity();
 };
 
-std::string_view name_of(FaultKind kind);
-const std::vector<std::string>& fault_kinds();
-/// `word` is one of them.
-FaultKind fault_kind(const std::string& word);
+template <>
+inline constexpr auto enum_table<FaultKind> =
+    enum_words<FaultKind>({{FaultKind::scale, "scale"},
+                           {FaultKind::bias, "bias"},
+                           {FaultKind::ramp, "ramp"},
+                           {FaultKind::stuck, "stuck"},
+                           {FaultKind::saturation, "saturation"},
+                           {FaultKind::noise, "noise"},
+                           {FaultKind::dropout, "dropout"}});
 
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
 class FaultInjector {

@@ -12,6 +12,13 @@ namespace libchar {
 enum class Sides { one, two };
 enum class Scaling { psd, ps, lsd, ls };  ///< U²/Hz, U², U/√Hz, U
 
+template <>
+inline constexpr auto enum_table<Sides> = enum_words<Sides>({{Sides::one, "one"},
+                                                             {Sides::two, "two"}});
+template <>
+inline constexpr auto enum_table<Scaling> = enum_words<Scaling>(
+    {{Scaling::psd, "psd"}, {Scaling::ps, "ps"}, {Scaling::lsd, "lsd"}, {Scaling::ls, "ls"}});
+
 struct Spectrum {
   Sides sides = Sides::one;
   Scaling scaling = Scaling::psd;

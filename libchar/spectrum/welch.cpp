@@ -17,6 +17,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
@@ -256,6 +257,29 @@ Spectrum welch(std::span<const double> record,
                     spectrum.dropped,
                     spectrum.dropped + spectrum.segments));
   return spectrum;
+}
+
+std::uint64_t segment_samples(double seconds, double rate_hz) {
+  const std::string got = significant(seconds, 6) + "s";
+  if (!(rate_hz > 0))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "`segment`",
+                 "a time needs the sampling rate, which this log does not say",
+                 got,
+                 "give `rate_hz`, or a number of samples"});
+  const double samples = std::round(seconds * rate_hz);
+  if (!(samples >= kShortestSegment && samples < 1e12))
+    throw Error({ErrorKind::usage,
+                 "",
+                 "`segment`",
+                 fmt::format("at {} Hz this is {} samples, and a segment needs at least {}",
+                             significant(rate_hz, 6),
+                             significant(samples, 6),
+                             kShortestSegment),
+                 got,
+                 ""});
+  return static_cast<std::uint64_t>(samples);
 }
 
 }  // namespace libchar

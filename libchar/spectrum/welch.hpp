@@ -11,6 +11,11 @@ namespace libchar {
 
 enum class Detrend { none, constant, linear };
 
+template <>
+inline constexpr auto enum_table<Detrend> = enum_words<Detrend>({{Detrend::none, "none"},
+                                                                 {Detrend::constant, "constant"},
+                                                                 {Detrend::linear, "linear"}});
+
 /// What welch() works in, kept from one record to the next: for long segments it is as large as a
 /// record, and new memory costs as much as a transform. Any number of threads may share it.
 class WelchWorkspace {
@@ -42,5 +47,9 @@ Spectrum welch(std::span<const double> record,
                double rate_hz,
                const WelchOptions& options = {},
                WelchWorkspace* workspace = nullptr);
+
+/// Samples of a segment that lasts `seconds`. Throws Error(usage) when the rate is not known (0), or
+/// the segment would be shorter than 8 samples.
+std::uint64_t segment_samples(double seconds, double rate_hz);
 
 }  // namespace libchar

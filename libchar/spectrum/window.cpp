@@ -14,16 +14,15 @@ namespace {
 
 struct Row {
   Window window;
-  std::string_view name;
   std::array<double, 5> terms;
 };
 
 constexpr std::array<Row, 5> kWindows = {{
-    {Window::hann, "hann", {0.5, 0.5}},
-    {Window::rectangular, "rectangular", {1}},
-    {Window::blackman_harris, "blackman_harris", {0.35875, 0.48829, 0.14128, 0.01168}},
-    {Window::flat_top, "flat_top", {0.21557895, 0.41663158, 0.277263158, 0.083578947, 0.006947368}},
-    {Window::hann_nonzero, "hann_nonzero", {0.5, 0.5}},
+    {Window::hann, {0.5, 0.5}},
+    {Window::rectangular, {1}},
+    {Window::blackman_harris, {0.35875, 0.48829, 0.14128, 0.01168}},
+    {Window::flat_top, {0.21557895, 0.41663158, 0.277263158, 0.083578947, 0.006947368}},
+    {Window::hann_nonzero, {0.5, 0.5}},
 }};
 
 const Row& row_of(Window window) {
@@ -33,16 +32,6 @@ const Row& row_of(Window window) {
 }
 
 }  // namespace
-
-std::string_view name_of(Window window) {
-  return row_of(window).name;
-}
-
-std::optional<Window> window_named(std::string_view name) {
-  for (const Row& row : kWindows)
-    if (row.name == name) return row.window;
-  return std::nullopt;
-}
 
 std::vector<double> window_values(Window window, std::size_t n) {
   const std::array<double, 5>& terms = row_of(window).terms;

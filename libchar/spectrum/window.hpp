@@ -2,9 +2,9 @@
 // Window functions.
 
 #include <cstddef>
-#include <optional>
-#include <string_view>
 #include <vector>
+
+#include "libchar/core/enum_table.hpp"
 
 namespace libchar {
 
@@ -16,8 +16,14 @@ enum class Window {
   hann_nonzero
 };  ///< periodic, but hann_nonzero = MATLAB's hanning
 
-std::string_view name_of(Window window);
-std::optional<Window> window_named(std::string_view name);
+template <>
+inline constexpr auto enum_table<Window> =
+    enum_words<Window>({{Window::hann, "hann"},
+                        {Window::rectangular, "rectangular"},
+                        {Window::blackman_harris, "blackman_harris"},
+                        {Window::flat_top, "flat_top"},
+                        {Window::hann_nonzero, "hann_nonzero"}});
+
 std::vector<double> window_values(Window window, std::size_t n);
 
 }  // namespace libchar

@@ -1,9 +1,10 @@
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "libchar/core/csv_cell.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -5,7 +5,7 @@
 
 #include "libchar/core/document.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/scene/detail/scene_paths.hpp"
+#include "libchar/scene/scene_paths.hpp"
 #include "libchar/scene/scene_writer.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/replay/scene_text.hpp"

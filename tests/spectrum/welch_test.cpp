@@ -205,14 +205,14 @@ TEST_CASE("windows are named, symmetric and read back") {
                               Window::blackman_harris,
                               Window::flat_top,
                               Window::hann_nonzero}) {
-    CHECK(window_named(name_of(window)) == window);
+    CHECK(find_enum<Window>(name_of(window)) == window);
     for (const std::size_t n : {9U, 16U}) {
       const auto w = window_values(window, n);
       const bool periodic = window != Window::hann_nonzero;
       for (std::size_t j = 1; j < n; ++j) CHECK(w[j] == w[periodic ? n - j : n - 1 - j]);
     }
   }
-  CHECK_FALSE(window_named("hanning").has_value());
+  CHECK_FALSE(find_enum<Window>("hanning").has_value());
   CHECK(window_values(Window::hann, 2) == std::vector<double>{0, 1});
   CHECK(window_values(Window::hann, 4)[1] == Approx(0.5).epsilon(1e-15));
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
@@ -23,13 +24,6 @@ struct AllanVerb {
   bool json = false, force = false;
   AnalysisOptions analysis;
 };
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string as_csv(const Characterization& result) {
   std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms\n";

@@ -8,18 +8,17 @@
 #include <set>
 
 #include "analysis_options.hpp"
-#include "fit_table.hpp"
-#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
-#include "libchar/model/model_file.hpp"
+#include "libchar/report/characterization_text.hpp"
 #include "libchar/report/outputs.hpp"
-#include "output_files.hpp"
+#include "libchar/report/report_files.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -36,49 +35,6 @@ struct CharacterizeVerb {
   std::uint64_t seed = 1;
   AnalysisOptions analysis;
 };
-
-std::vector<OutputFile> outputs_of(const Characterization& result, const fs::path& folder) {
-  Json document = json_without_times(result);
-  std::vector<OutputFile> outputs = {
-      {(folder / "report.html").string(), html_report(result, document)}};
-  add_times(document, result);
-  outputs.push_back({(folder / "report.json").string(), dump_json(document)});
-  outputs.push_back({(folder / "curves.csv").string(), csv_curves(result)});
-  std::set<std::string> taken;
-  for (const ChannelResult& c : result.channels) {
-    if (!c.fit) continue;
-    const std::string name = unused_file_name_for(c.channel.name, taken);
-    outputs.push_back(
-        {(folder / (name + ".sensor.yaml")).string(),
-         model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
-  }
-  return outputs;
-}
-
-std::string text_for_people(const Characterization& result) {
-  const LogInfo& log = result.log;
-  const double rate = log.time.rate_hz;
-  const std::string length =
-      rate > 0 ? fmt::format("{} Hz, {} s",
-                             significant(rate, 6),
-                             significant(static_cast<double>(log.samples) / rate, 6))
-               : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
-  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n",
-                                 printable(log.file),
-                                 log.channels.size(),
-                                 log.channels.size() == 1 ? "" : "s",
-                                 length,
-                                 log.time.gaps,
-                                 log.time.gaps == 1 ? "" : "s");
-  for (const ChannelResult& c : result.channels) {
-    text += "\n" + (c.fit ? fit_for_people(c.channel, *c.fit) : printable(c.channel.name) + "\n");
-    if (c.verification)
-      for (const std::string& sentence : c.verification->sentences)
-        text += fmt::format("  {}\n", printable(sentence));
-    for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
-  }
-  return text;
-}
 
 fs::path folder_for(const CharacterizeVerb& verb,
                     const std::string& log,
@@ -105,14 +61,14 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
     session.terminal.clear();
     report_warnings(session, result.log);
     const fs::path folder = folder_for(verb, log, taken);
-    const std::vector<OutputFile> outputs = outputs_of(result, folder);
+    const std::vector<OutputFile> outputs = report_files(result, folder);
     write_outputs(outputs, folder, {log}, verb.force);
     for (const ChannelResult& c : result.channels) any_fit = any_fit || c.fit;
     if (verb.json) {
       documents.push_back(json_report(result));
       continue;
     }
-    print(text_for_people(result));
+    print(characterization_text(result));
     std::string written = "\nwrote";
     for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
     print(written + "\n");
@@ -159,7 +115,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   add_reading_options(options, session, verb->analysis.options.reading);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);
-  add_spectrum_options(options, verb->analysis);
+  add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);
   add_fit_options(options, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }

@@ -9,6 +9,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
@@ -38,7 +39,7 @@ std::string bytes(const AlgorithmSummary* one) {
              : "–";
 }
 
-std::string text_for_people(const Comparison& c) {
+std::string comparison_table(const Comparison& c) {
   std::string out =
       fmt::format("A: {}: {}\nB: {}: {}\n",
                   printable(c.a.file),
@@ -72,7 +73,7 @@ std::string text_for_people(const Comparison& c) {
                     bytes(row.b),
                     where.empty() ? std::string(name_of(row.difference)) : where});
   }
-  return out + "\n" + table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
+  return out + "\n" + text_table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
 }
 
 Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
@@ -104,7 +105,7 @@ void run_compare(Session& session, const CompareVerb& verb) {
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
   print(verb.json       ? dump_json(document(session, comparison, failed))
         : verb.markdown ? comparison_markdown(comparison)
-                        : text_for_people(comparison));
+                        : comparison_table(comparison));
   if (failed.empty()) return;
   std::string what = failed[0];
   for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];

@@ -9,16 +9,17 @@
 #include <set>
 
 #include "analysis_options.hpp"
-#include "fit_table.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/report/fit_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -61,7 +62,7 @@ struct Table {
 };
 
 /// A table whose header does not name what its columns are: the first is the averaging time or the frequency, every other one a curve.
-Table plain_table(Session& session, const FitVerb& verb, ReadOptions reading) {
+Table unnamed_table(Session& session, const FitVerb& verb, ReadOptions reading) {
   reading.time_column = "none";
   reading.rate_hz = 1;  // rows of a curve have no time
   const Recording read = read_recording(verb.input, reading, session.terminal);
@@ -114,13 +115,13 @@ std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInf
   const CharacterizeOptions options = finish(verb.analysis);
   const auto named = read_curve_table(verb.input, verb.curve == "allan");
   Table table = named ? named_table(verb, *named, options.reading.channels)
-                      : plain_table(session, verb, options.reading);
+                      : unnamed_table(session, verb, options.reading);
   log = table.info;
   std::vector<ChannelFit> fits;
   for (std::size_t c = 0; c < table.curves.size(); ++c) {
     DigitisedCurve& curve = table.curves[c];
     curve.is_allan = verb.curve == "allan";
-    curve.sides = verb.analysis.sides == "two" ? Sides::two : Sides::one;
+    curve.sides = verb.analysis.options.spectrum.sides;
     if (verb.quantity != "auto") curve.root = verb.quantity == "root";
     const std::vector<std::string>& units = options.reading.units;
     if (named && !units.empty()) table.channels[c].unit = units[std::min(c, units.size() - 1)];
@@ -139,26 +140,15 @@ std::string obtained_from(const FitVerb& verb) {
 
 // One sensor model a channel; all are written before the first gets its name.
 void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
-  std::error_code problem;
-  std::filesystem::create_directories(verb.models, problem);
-  if (problem)
-    throw Error({ErrorKind::output,
-                 "E0505",
-                 verb.models,
-                 "cannot make this folder: " + problem.message(),
-                 "",
-                 ""});
-  std::vector<WholeFile> files;
+  std::vector<OutputFile> models;
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
-    const std::string name = unused_file_name_for(c.channel.name, taken);
-    const std::string path =
-        (std::filesystem::path(verb.models) / (name + ".sensor.yaml")).string();
-    refuse_same_file(verb.input, path);
-    files.emplace_back(path, verb.force)
-        .write(model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log)));
+    const std::string name = unused_file_name_for(c.channel.name, taken) + ".sensor.yaml";
+    models.push_back(
+        {(std::filesystem::path(verb.models) / name).string(),
+         model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log))});
   }
-  for (WholeFile& file : files) file.commit();
+  write_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
 void run_fit(Session& session, const FitVerb& verb) {
@@ -186,7 +176,7 @@ void run_fit(Session& session, const FitVerb& verb) {
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits)
-      text += (text.empty() ? "" : "\n") + fit_for_people(c.channel, c.fit);
+      text += (text.empty() ? "" : "\n") + fit_text(c.channel, c.fit);
   }
   if (verb.output.empty()) {
     print(text);
@@ -221,7 +211,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
       verb->curve,
       {"none", "allan", "psd"},
       "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  options.add_choice("--sides", verb->analysis.sides, {"one", "two"}, "of a --curve psd (one)");
+  options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
   options.add_choice(
       "--quantity",
       verb->quantity,

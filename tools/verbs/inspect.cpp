@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/log/inspection.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -61,7 +62,7 @@ std::string channel_table(const libchar::Inspection& inspection) {
                                                  "kurtosis of differences"}};
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
-  return table(rows);
+  return libchar::text_table(rows);
 }
 
 std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {
@@ -83,7 +84,7 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
                      shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
 }
 
-std::string for_people(const InspectVerb& verb, const libchar::Inspection& inspection) {
+std::string inspection_text(const InspectVerb& verb, const libchar::Inspection& inspection) {
   const libchar::LogInfo& info = inspection.info;
   std::string text = libchar::summary_line(info) + "\n";
   std::string dialect = info.format;
@@ -112,7 +113,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
     const libchar::LogInfo& info = inspections.back().info;
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
     if (!verb.json)
-      print((inspections.size() > 1 ? "\n" : "") + for_people(verb, inspections.back()));
+      print((inspections.size() > 1 ? "\n" : "") + inspection_text(verb, inspections.back()));
   }
   if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;

@@ -10,12 +10,11 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/core/units.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "numbers.hpp"
+#include "libchar/report/model_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -25,7 +24,7 @@ using namespace libchar;
 
 struct ModelVerb {
   std::vector<std::string> files, places;
-  std::string target, output, axes = "auto";
+  std::string target, output;
   ExportOptions options;
   bool list = false, force = false, json = false;
 };
@@ -52,17 +51,6 @@ ReadModels read_all(const ModelVerb& verb) {
   return read;
 }
 
-AxisChoice axis_choice(const std::string& word) {
-  static constexpr std::pair<std::string_view, AxisChoice> kWords[] = {{"max", AxisChoice::max},
-                                                                       {"rms", AxisChoice::rms},
-                                                                       {"x", AxisChoice::x},
-                                                                       {"y", AxisChoice::y},
-                                                                       {"z", AxisChoice::z}};
-  for (const auto& [name, choice] : kWords)
-    if (name == word) return choice;
-  return AxisChoice::automatic;
-}
-
 AxisOverrides overrides(const std::vector<std::string>& places) {
   AxisOverrides out;
   for (const std::string& text : places) {
@@ -77,65 +65,6 @@ AxisOverrides overrides(const std::vector<std::string>& places) {
     out.emplace_back(text.substr(0, sign), text.substr(sign + 1));
   }
   return out;
-}
-
-// What a person wants to know of a term: its figure in the habitual units, sides said.
-std::string in_other_words(const Coefficient& c, std::size_t t, const std::string& unit) {
-  std::string text;
-  for (const HabitualValue& habit : habitual_units(kTermNames[t].key, unit))
-    text += fmt::format("{}{}{} {}{}",
-                        text.empty() ? "" : ", ",
-                        c.value ? "" : "≤ ",
-                        significant(habit.factor * c.value.value_or(c.upper95.value_or(0)), 4),
-                        habit.symbol,
-                        habit.name.find("floor") != std::string::npos       ? " floor"
-                        : habit.name.find("one-sided") != std::string::npos ? " one-sided"
-                        : habit.name.find("two-sided") != std::string::npos ? " two-sided"
-                                                                            : "");
-  return text;
-}
-
-std::vector<std::string> term_row(const Coefficient& c, std::size_t t, const std::string& unit) {
-  const bool interval = c.value && c.status != Status::given && c.ci95.high > 0;
-  std::string status(name_of(c.status));
-  std::replace(status.begin(), status.end(), '_', ' ');
-  return {fmt::format("{} {}", kTermNames[t].key, kTermNames[t].letter),
-          c.value     ? significant(*c.value, 5)
-          : c.upper95 ? "≤ " + significant(*c.upper95, 3)
-                      : "–",
-          interval ? fmt::format("{} … {}", significant(c.ci95.low, 4), significant(c.ci95.high, 4))
-                   : "",
-          term_unit(kTermNames[t].key, printable(unit)),
-          status,
-          c.value || c.upper95 ? in_other_words(c, t, unit) : ""};
-}
-
-std::string summary(const SensorModel& m) {
-  const std::string axis = axis_of(m);
-  std::string text = fmt::format("{}{}: {}{}, {}, {}\n",
-                                 printable(m.channel),
-                                 m.unit.empty() ? "" : fmt::format(" [{}]", printable(m.unit)),
-                                 printable(kind_of(m)),
-                                 axis.empty() ? "" : " " + axis,
-                                 m.rate_hz > 0 ? significant(m.rate_hz, 6) + " Hz" : "rate unknown",
-                                 printable(m.obtained));
-  std::vector<std::vector<std::string>> rows = {
-      {"term", "value", "95 % interval", "unit", "status", "in other words"}};
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    if (m.noise[t].status == Status::not_fitted && !m.noise[t].value) continue;
-    rows.push_back(term_row(m.noise[t], t, m.unit));
-  }
-  text += rows.size() > 1 ? table(rows, "  ", true) : "  no noise\n";
-  text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
-  if (m.bandwidth_hz)
-    text += fmt::format("  low-pass corner {} Hz\n", significant(*m.bandwidth_hz, 4));
-  if (m.resolution) text += fmt::format("  resolution {}\n", significant(*m.resolution, 4));
-  if (m.tau_max_s > 0)
-    text += fmt::format("  valid for averaging times of {} s … {} s\n",
-                        significant(m.tau_min_s, 3),
-                        significant(m.tau_max_s, 3));
-  for (const std::string& remark : m.remarks) text += fmt::format("  {}\n", printable(remark));
-  return text;
 }
 
 Json head_of(const Session& session, const char* format, const std::vector<LogInfo>& files) {
@@ -202,7 +131,7 @@ void run_summary(const Session& session, const ModelVerb& verb) {
     for (const SensorModel& m : read.models) document["models"].push_back(model_json(m));
     text = dump_json(document);
   } else {
-    for (const SensorModel& m : read.models) text += (text.empty() ? "" : "\n") + summary(m);
+    for (const SensorModel& m : read.models) text += (text.empty() ? "" : "\n") + model_text(m);
   }
   deliver(verb, text);
 }
@@ -216,7 +145,6 @@ void run_model(Session& session, ModelVerb& verb) {
                  "FILE is required",
                  "",
                  "sensorchar model --list names the targets"});
-  verb.options.axes = axis_choice(verb.axes);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);
   run_export(session, verb);
@@ -225,10 +153,9 @@ void run_model(Session& session, ModelVerb& verb) {
 void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
-  sub.add_choice(
+  sub.add_enum(
       "--axes",
-      verb.axes,
-      {"auto", "max", "rms", "x", "y", "z"},
+      options.axes,
       "one number for three axes: the largest, their root mean square, or one axis (auto: each "
       "its own where the consumer takes three, else max)");
   sub.add_texts(

@@ -7,13 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis_options.hpp"
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
@@ -21,7 +22,6 @@
 #include "libchar/spectrum/welch.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 #include "libchar/spectrum/window.hpp"
-#include "numbers.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -31,9 +31,9 @@ namespace {
 using namespace libchar;
 
 struct PsdVerb {
-  std::string log, output, segment, sides = "one", scaling = "psd", window = "hann",
-                                    detrend = "constant";
-  double overlap = 0.5;
+  std::string log, output;
+  WelchOptions spectrum;
+  double segment_s = 0;  ///< when a time was given for a segment
   std::uint64_t log_bins = 0;
   bool json = false, force = false, lines = false;
   ReadOptions reading;
@@ -51,44 +51,13 @@ struct Result {
 };
 
 WelchOptions welch_options(const PsdVerb& verb) {
-  WelchOptions options;
-  options.window = *window_named(verb.window);
-  options.overlap = verb.overlap;
-  options.sides = verb.sides == "two" ? Sides::two : Sides::one;
-  options.scaling = verb.scaling == "ps"    ? Scaling::ps
-                    : verb.scaling == "lsd" ? Scaling::lsd
-                    : verb.scaling == "ls"  ? Scaling::ls
-                                            : Scaling::psd;
-  options.detrend = verb.detrend == "none"     ? Detrend::none
-                    : verb.detrend == "linear" ? Detrend::linear
-                                               : Detrend::constant;
+  WelchOptions options = verb.spectrum;
   options.threads = verb.reading.threads;
   return options;
 }
 
-// "4096" counts samples; "20s" is a time and needs the rate.
-std::uint64_t segment_of(const std::string& text, double rate_hz) {
-  if (std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
-    return parse_count(text, 8);
-  const double seconds = parse_duration_s(text);
-  if (!(rate_hz > 0))
-    throw Error({ErrorKind::usage,
-                 "",
-                 "--segment",
-                 "a time needs the sampling rate, which this log does not say",
-                 text,
-                 "give --rate, or a number of samples"});
-  const double samples = std::round(seconds * rate_hz);
-  if (!(samples >= 8 && samples < 1e12))
-    throw Error({ErrorKind::usage,
-                 "",
-                 "--segment",
-                 fmt::format("at {} Hz this is {} samples, and a segment needs at least 8",
-                             significant(rate_hz, 6),
-                             significant(samples, 6)),
-                 text,
-                 ""});
-  return static_cast<std::uint64_t>(samples);
+bool segment_given(const PsdVerb& verb) {
+  return verb.spectrum.segment != 0 || verb.segment_s > 0;
 }
 
 void check_rate(const LogInfo& info) {
@@ -119,7 +88,8 @@ class StreamSink : public BlockSink {
  public:
   StreamSink(const PsdVerb& verb, WelchOptions options) : verb_(verb), options_(options) {}
   void begin(const LogInfo& so_far) override {
-    options_.segment = segment_of(verb_.segment, so_far.time.rate_hz);
+    if (options_.segment == 0)
+      options_.segment = segment_samples(verb_.segment_s, so_far.time.rate_hz);
     for (std::size_t c = 0; c < so_far.channels.size(); ++c) streams_.emplace_back(options_);
   }
   void block(const SampleBlock& samples) override {
@@ -221,11 +191,11 @@ Json channel_json(const PsdVerb& verb, const ChannelSpectrum& c) {
 
 Json as_json(const Session& session, const PsdVerb& verb, const Result& result) {
   Json document = document_head(session, "spectrum", {&result.info});
-  document["sides"] = verb.sides;
-  document["scaling"] = verb.scaling;
-  document["window"] = verb.window;
-  document["overlap"] = verb.overlap;
-  document["detrend"] = verb.detrend;
+  document["sides"] = name_of(verb.spectrum.sides);
+  document["scaling"] = name_of(verb.spectrum.scaling);
+  document["window"] = name_of(verb.spectrum.window);
+  document["overlap"] = verb.spectrum.overlap;
+  document["detrend"] = name_of(verb.spectrum.detrend);
   document["rate_hz"] = result.info.time.rate_hz;
   document["channels"] = Json::array();
   for (const ChannelSpectrum& c : result.channels)
@@ -240,7 +210,7 @@ void write_result(const PsdVerb& verb, const std::string& text) {
 }
 
 void run_psd(Session& session, const PsdVerb& verb) {
-  Result result = verb.segment.empty() ? whole(session, verb) : streamed(session, verb);
+  Result result = segment_given(verb) ? streamed(session, verb) : whole(session, verb);
   session.terminal.clear();
   report_warnings(session, result.info);
   if (result.channels.empty())
@@ -249,7 +219,7 @@ void run_psd(Session& session, const PsdVerb& verb) {
                  verb.log,
                  "no channel gives a spectrum",
                  "",
-                 verb.segment.empty() ? "" : "try a shorter --segment"});
+                 segment_given(verb) ? "try a shorter --segment" : ""});
   for (ChannelSpectrum& c : result.channels) {
     if (verb.lines) c.lines = find_lines(c.spectrum);
     if (verb.log_bins > 0) c.spectrum = log_binned(c.spectrum, verb.log_bins);
@@ -273,27 +243,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
       "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
   options.add_flag(
       "--lines", verb->lines, "list the spectral lines (with --json: beside the spectra)");
-  options.add_choice("--sides", verb->sides, {"one", "two"}, "one- or two-sided (default: one)");
-  options.add_choice("--scaling",
-                     verb->scaling,
-                     {"psd", "ps", "lsd", "ls"},
-                     "density U^2/Hz, power U^2, and their roots (default: psd)");
-  options
-      .add_text("--segment",
-                verb->segment,
-                "samples per segment, or a time such as 20s; a log of any length then streams "
-                "through (default: a quarter of the record)")
-      .value_name("N|TIME");
-  options.add_number(
-      "--overlap", verb->overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
-  options.add_choice("--window",
-                     verb->window,
-                     {"hann", "rectangular", "blackman_harris", "flat_top", "hann_nonzero"},
-                     "window (default: hann)");
-  options.add_choice("--detrend",
-                     verb->detrend,
-                     {"none", "constant", "linear"},
-                     "what is removed from each segment (default: constant)");
+  add_spectrum_options(options, verb->spectrum, verb->segment_s);
   options.add_count(
       "--log-bins",
       verb->log_bins,

@@ -1,7 +1,5 @@
 // replay SCENE -o DIR: every algorithm the scene can feed, and the report that says which to use.
 
-#include "libchar/replay/replay.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,21 +10,23 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "fault_words.hpp"
+#include "fault_help.hpp"
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/output_files.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/replay/algorithm_words.hpp"
+#include "libchar/replay/estimates_writer.hpp"
 #include "libchar/replay/replay_view.hpp"
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
 #include "libchar/report/replay_text.hpp"
+#include "libchar/scene/fault_text.hpp"
 #include "libchar/scene/scene_file.hpp"
-#include "numbers.hpp"
-#include "output_files.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -116,72 +116,12 @@ Scene read_scene(const ReplayVerb& verb) {
   std::vector<std::string> names;
   for (const SceneSensor& sensor : scene.sensors) names.push_back(sensor.name);
   for (const std::string& words : verb.faults) {
-    const SensorFault fault = fault_from_words(words, names);
+    const SensorFault fault = parse_fault(words, names);
     scene.faults.push_back(fault);
     if (scene.simulate) scene.simulate->faults.push_back(fault);
   }
   return scene;
 }
-
-// Truth and estimates as a log.
-class EstimateFile final : public EstimateSink {
- public:
-  EstimateFile(std::string path, bool overwrite) : path_(std::move(path)) {
-    writing_.overwrite = overwrite;
-  }
-  void begin(const std::vector<std::string>& labels,
-             const std::vector<InputResult>& inputs,
-             double rate_hz,
-             double start_s,
-             std::uint64_t instants) override {
-    LogInfo info;
-    info.file = path_;
-    info.samples = info.rows = instants;
-    info.time.rate_hz = rate_hz;
-    // Seconds from the recording's first sample, as everything else in the report.
-    info.channels.push_back({"t", "s", false});
-    writing_.time_column = false;
-    rate_hz_ = rate_hz;
-    start_s_ = start_s;
-    inputs_ = inputs.size();
-    labels_ = labels.size();
-    for (const InputResult& input : inputs)
-      info.channels.push_back({input.name, input.unit, false});
-    for (const std::string& label : labels)
-      for (const InputResult& input : inputs)
-        info.channels.push_back(
-            {inputs.size() == 1 ? label : label + " " + input.name, input.unit, false});
-    writer_ = open_log_writer(path_, info, writing_);
-  }
-  void block(const std::vector<std::vector<double>>& columns) override {
-    times_.clear();
-    const std::size_t rows = columns.empty() ? 0 : columns[0].size();
-    for (std::size_t k = 0; k < rows; ++k)
-      times_.push_back(start_s_ + static_cast<double>(done_ + k) / rate_hz_);
-    done_ += rows;
-    std::vector<std::span<const double>> out = {times_};
-    // Without a reference the columns of the truth are missing.
-    if (columns.size() < inputs_ * (labels_ + 1)) {
-      missing_.assign(columns.empty() ? 0 : columns[0].size(), kMissing);
-      out.insert(out.end(), inputs_, missing_);
-    }
-    out.insert(out.end(), columns.begin(), columns.end());
-    writer_->write(out);
-  }
-  std::vector<std::string> finish() {
-    writer_->finish();
-    return writer_->files();
-  }
-
- private:
-  std::string path_;
-  WriteOptions writing_;
-  std::unique_ptr<LogWriter> writer_;
-  std::size_t inputs_ = 1, labels_ = 0;
-  std::vector<double> missing_, times_;
-  double rate_hz_ = 1, start_s_ = 0;
-  std::uint64_t done_ = 0;
-};
 
 std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& result) {
   std::vector<std::string> faults;
@@ -192,24 +132,6 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
           {"no_skip", verb.no_skip},
           {"no_faults", verb.no_faults},
           {"faults", std::move(faults)}};
-}
-
-// What runs, what it needs and what can be set.
-std::string list_for_people() {
-  std::string text;
-  for (const fusion::Entry& entry : fusion::algorithms()) {
-    text += fmt::format("{:<28} {}\n", entry.card->name, entry.card->title);
-    for (const std::string& need : needs_in_words(*entry.card))
-      text += fmt::format("{:<28}   needs {}\n", "", need);
-    for (const fusion::Option& option : entry.options)
-      text += fmt::format("{:<28}   {} = {}{}  {}\n",
-                          "",
-                          option.name,
-                          significant(option.standard, 6),
-                          option.unit.empty() ? "" : " " + std::string(option.unit),
-                          option.meaning);
-  }
-  return text;
 }
 
 // A folder that a failing run has made goes again.
@@ -226,7 +148,7 @@ struct MadeFolder {
 };
 
 void run_replay(Session& session, const ReplayVerb& verb) {
-  if (verb.list) return print(list_for_people());
+  if (verb.list) return print(algorithms_text());
   if (verb.scene.empty()) refuse("SCENE", "which scene?", "", "--list names the algorithms");
   const Scene scene = read_scene(verb);
   ReplayOptions options;
@@ -256,7 +178,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   std::vector<std::string> files;
   for (const char* name : {"report.html", "report.json", "report.md"})
     files.push_back((folder / name).string());
-  std::optional<EstimateFile> estimates;
+  std::optional<EstimatesWriter> estimates;
   if (!verb.estimates.empty()) {
     const std::string path = (folder / ("estimates." + verb.estimates)).string();
     format_to_write(path, {});

@@ -10,8 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fault_words.hpp"
+#include "fault_help.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
@@ -19,13 +20,14 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "libchar/scene/detail/scene_paths.hpp"
-#include "libchar/scene/detail/scene_signal.hpp"
+#include "libchar/scene/fault_text.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/scene_paths.hpp"
+#include "libchar/scene/scene_signal.hpp"
 #include "libchar/scene/scene_writer.hpp"
+#include "libchar/scene/simulated_scene.hpp"
 #include "libchar/simulate/sensor_array.hpp"
-#include "numbers.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -184,7 +186,7 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
   std::vector<std::string> names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   for (const std::string& fault : verb.faults)
-    simulation.faults.push_back(fault_from_words(fault, names));
+    simulation.faults.push_back(parse_fault(fault, names));
   const auto recorded = [&](SignalSpec& spec, const std::string& option) {
     if (spec.kind != "recording") return;
     for (const std::string& output : {verb.output, verb.scene_path})
@@ -202,78 +204,6 @@ void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnin
                                simulation.sensors[fault.sensor].name,
                                significant(fault.from_s, 6),
                                significant(end_s, 6)));
-}
-
-std::string output_unit(const SensorModel& model) {
-  return model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
-}
-
-LogInfo log_info(const ArraySimulation& simulation, const std::string& path, bool with_truth) {
-  LogInfo info;
-  info.file = path;
-  info.samples = info.rows = simulation.samples;
-  info.time.rate_hz = simulation.rate_hz;
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    info.channels.push_back({sensor.name, output_unit(sensor.model), false});
-  if (!with_truth) return info;
-  for (const std::string& name : simulation.truth_names)
-    info.channels.push_back(
-        {name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
-  if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
-  return info;
-}
-
-std::vector<double> rows_of(const SceneReference& reference,
-                            const std::vector<double>& h,
-                            const ArraySimulation& simulation) {
-  std::vector<double> row;
-  const auto& names = simulation.truth_names;
-  for (const std::string& channel : reference.channels)
-    row.push_back(h[std::find(names.begin(), names.end(), channel) - names.begin()]);
-  return row;
-}
-
-// The scene that replays the recording: its channels by name, the models inline, the truth as
-// reference.
-// What the simulated scene wanted of its replay is kept.
-Scene replay_scene(const ArraySimulation& simulation,
-                   const LogInfo& info,
-                   const SimulateVerb& verb,
-                   const Scene& given) {
-  Scene scene;
-  scene.learning = given.learning;
-  scene.evaluation = given.evaluation;
-  scene.rest = given.rest;
-  scene.fault_free_s = given.fault_free_s;
-  scene.tilt = given.tilt;
-  scene.algorithms = given.algorithms;
-  scene.file = verb.scene_path;
-  scene.name = fs::path(verb.output).stem().string();
-  scene.recording = verb.output;
-  const std::string format = format_to_write(verb.output, verb.writing);
-  if (format == "npy") {
-    scene.reading.rate_hz = simulation.rate_hz;
-    for (const Channel& channel : info.channels) {
-      scene.reading.names.push_back(channel.name);
-      scene.reading.units.push_back(channel.unit.empty() ? "1" : channel.unit);
-    }
-  } else if (format == "csv" && verb.no_time_column) {
-    scene.reading.rate_hz = simulation.rate_hz;
-    scene.reading.time_column = "none";
-  }
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    scene.sensors.push_back({sensor.name, sensor.name, sensor.model, sensor.h});
-  for (std::size_t i = 0; i < given.sensors.size(); ++i)
-    scene.sensors[i].noise = given.sensors[i].noise;
-  if (!verb.no_truth) {
-    scene.reference =
-        given.reference.value_or(SceneReference{simulation.truth_names, false, {}, {}, 0, false});
-    // Rows of the matrix have a weight for each input that the reference names.
-    for (SceneSensor& sensor : scene.sensors)
-      sensor.h = rows_of(*scene.reference, sensor.h, simulation);
-  }
-  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults, simulation.oversampling};
-  return scene;
 }
 
 void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
@@ -299,7 +229,7 @@ void stream(Session& session,
   }
 }
 
-std::string text_for_people(const ArraySimulation& s,
+std::string simulation_text(const ArraySimulation& s,
                             const LogInfo& info,
                             const std::vector<DeviceDraw>& draws,
                             const std::vector<std::string>& files) {
@@ -356,12 +286,13 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   session.terminal.warn(warnings, "simulate");
   check(simulation);
   check_names(simulation, verb);
-  const LogInfo info = log_info(simulation, verb.output, !verb.no_truth);
+  const SimulatedRecording recording{verb.output, verb.scene_path, verb.writing, !verb.no_truth};
+  const LogInfo info = log_info(simulation, recording);
   const auto writer = open_log_writer(verb.output, info, verb.writing);
   std::optional<WholeFile> scene_file;
   if (!verb.no_scene) {
     scene_file.emplace(verb.scene_path, verb.writing.overwrite);
-    scene_file->write(scene_yaml(replay_scene(simulation, info, verb, scene)));
+    scene_file->write(scene_yaml(replay_scene(simulation, recording, scene)));
   }
   stream(session, verb, simulation, *writer);
   session.terminal.clear();
@@ -374,7 +305,7 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   }
   session.terminal.clear();
   const std::vector<DeviceDraw> draws = ArraySimulator(simulation).draws();
-  if (!verb.json) return print(text_for_people(simulation, info, draws, files));
+  if (!verb.json) return print(simulation_text(simulation, info, draws, files));
   Json document = document_head(session, "simulation", {});
   document["samples"] = simulation.samples;
   document["rate_hz"] = simulation.rate_hz;
@@ -402,7 +333,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "log to write; its suffix says the format (" + written_suffixes() + ")")
+                "log to write; its suffix says the format (" + libchar::written_suffixes() + ")")
       .required()
       .value_name("LOG");
   options.add_duration("--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
@@ -453,7 +384,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-scene", verb->no_scene, "write no scene");
   options.add_choice("--as",
                      verb->writing.format,
-                     written_format_words(),
+                     libchar::written_format_words(),
                      "format to write (default: auto, by the suffix)");
   options.add_choice("--dtype",
                      verb->writing.dtype,

@@ -128,7 +128,7 @@ void ChannelStage::stop_keeping() {
                  "",
                  "phase data longer than the memory budget cannot be streamed",
                  "",
-                 "raise --memory"});
+                 "raise `memory_bytes`"});
   keeping_ = false;
   streams_.emplace();
   const std::uint64_t segment = options_->spectrum.segment;

@@ -14,7 +14,8 @@ constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
 constexpr std::size_t kFittedAtOnce = 2;
 
 std::uint64_t budget_of(const CharacterizeOptions& options) {
-  const bool whole_record_needed = options.wanted.spectrum && options.spectrum.segment == 0;
+  const bool whole_record_needed =
+      options.wanted.spectrum && options.spectrum.segment == 0 && !(options.segment_s > 0);
   return whole_record_needed || options.full_overlap
              ? options.memory_bytes
              : std::min(options.memory_bytes, kSmallLogBytes);
@@ -27,6 +28,8 @@ ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWor
 
 void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t channels = so_far.channels.size();
+  if (options_.wanted.spectrum && options_.spectrum.segment == 0 && options_.segment_s > 0)
+    options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
   for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_, workspace_);
   arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
   if (surely_too_long(so_far)) {

@@ -14,7 +14,7 @@ namespace libchar {
 /// The first pass. Channels go side by side, each through a stage of its own.
 class ChannelStages final : public BlockSink {
  public:
-  /// Both must live as long.
+  /// The workspace must live as long.
   ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace);
 
   void begin(const LogInfo& so_far) override;
@@ -30,7 +30,7 @@ class ChannelStages final : public BlockSink {
  private:
   bool surely_too_long(const LogInfo& so_far) const;
 
-  const CharacterizeOptions& options_;
+  CharacterizeOptions options_;  ///< with the segment in samples, once the rate is known
   CharacterizeWorkspace& workspace_;
   std::uint64_t budget_ = 0, kept_bytes_ = 0;
   tbb::task_arena arena_;

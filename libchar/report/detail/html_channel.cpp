@@ -10,8 +10,8 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

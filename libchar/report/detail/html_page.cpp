@@ -9,8 +9,8 @@
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

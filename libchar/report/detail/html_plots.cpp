@@ -7,8 +7,8 @@
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

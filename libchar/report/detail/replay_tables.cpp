@@ -9,9 +9,9 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/replay/verdict.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/detail/replay_words.hpp"
-#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 
 namespace libchar {

@@ -1,14 +1,14 @@
 #pragma once
-// Numbers on the command line. CLI11 takes "-1" for 18446744073709551615, "010" for 8, "nan" and
-// "1e400" for numbers; these functions do not. Each throws Error(usage) with one sentence that says
-// what would have been right.
+// Numbers and quantities with units as one types them: strict where a slip would go unseen ("-1" is
+// no count, "010" neither eight nor ten, "nan" and "1e400" are no numbers). Each throws Error(usage)
+// with one sentence that says what would have been right.
 
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
 
-namespace sensorchar {
+namespace libchar {
 
 /// A finite number in [lowest, highest].
 double parse_number(std::string_view text,
@@ -30,4 +30,4 @@ double parse_rate_hz(std::string_view text);
 /// MB, GB of 1000).
 std::uint64_t parse_bytes(std::string_view text);
 
-}  // namespace sensorchar
+}  // namespace libchar

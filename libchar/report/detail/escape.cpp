@@ -1,4 +1,4 @@
-#include "libchar/report/escape.hpp"
+#include "libchar/report/detail/escape.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -80,13 +80,6 @@ std::string html_comment(std::string_view text) {
   return out;
 }
 
-std::string csv_cell(std::string_view text) {
-  std::string out(text);
-  if (!out.empty() && std::string_view("=+-@\t\r").find(out[0]) != std::string_view::npos)
-    out.insert(0, "'");
-  if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
-  replace_all(out, "\"", "\"\"");
-  return '"' + out + '"';
 }
 
 std::string markdown_text(std::string_view text) {

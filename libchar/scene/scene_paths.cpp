@@ -1,4 +1,4 @@
-#include "libchar/scene/detail/scene_paths.hpp"
+#include "libchar/scene/scene_paths.hpp"
 
 #include <fmt/format.h>
 

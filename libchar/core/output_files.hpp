@@ -1,12 +1,12 @@
 #pragma once
-// The files of one run of a verb: all of them or none.
+// The files of one job: all of them or none.
 
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-namespace sensorchar {
+namespace libchar {
 
 struct OutputFile {
   std::string path, text;
@@ -28,4 +28,4 @@ void write_outputs(const std::vector<OutputFile>& outputs,
                    bool force,
                    const std::function<void()>& before_names = {});
 
-}  // namespace sensorchar
+}  // namespace libchar

@@ -1,4 +1,4 @@
-#include "fault_words.hpp"
+#include "libchar/scene/fault_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,36 +8,32 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 
-namespace sensorchar {
-
-using namespace libchar;
+namespace libchar {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& option,
-                         const std::string& what,
+[[noreturn]] void refuse(const std::string& what,
                          const std::string& got,
                          const std::string& hint = "") {
-  throw Error({ErrorKind::usage, "E0722", option, what, got, hint});
+  throw Error({ErrorKind::usage, "E0722", "`fault`", what, got, hint});
 }
 
 }  // namespace
 
 // An open end is the end of the record.
-SensorFault fault_from_words(const std::string& text, const std::vector<std::string>& names) {
+SensorFault parse_fault(const std::string& text, const std::vector<std::string>& names) {
   const std::string form = "SENSOR:KIND[=VALUE]@FROM..TO";
   const std::size_t at = text.rfind('@'),
                     colon = at == std::string::npos ? at : text.rfind(':', at);
   if (colon == std::string::npos)
-    refuse("--fault", "expected " + form + " in seconds", text, "such as gyr_x:bias=0.2@100..200");
+    refuse("expected " + form + " in seconds", text, "such as gyr_x:bias=0.2@100..200");
   const std::string name = text.substr(0, colon), what = text.substr(colon + 1, at - colon - 1),
                     when = text.substr(at + 1);
   SensorFault fault;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     const auto near = nearest(name, names);
-    refuse("--fault",
-           "there is no such sensor",
+    refuse("there is no such sensor",
            name,
            near ? fmt::format("did you mean {}?", *near)
                 : fmt::format("the sensors are {}", fmt::join(names, ", ")));
@@ -45,27 +41,28 @@ SensorFault fault_from_words(const std::string& text, const std::vector<std::str
   fault.sensor = static_cast<std::size_t>(found - names.begin());
   const std::size_t equals = what.find('=');
   const std::string kind = what.substr(0, equals);
-  if (std::find(fault_kinds().begin(), fault_kinds().end(), kind) == fault_kinds().end())
-    refuse("--fault", fmt::format("expected one of {}", fmt::join(fault_kinds(), ", ")), kind);
-  fault.kind = fault_kind(kind);
+  const auto known = find_enum<FaultKind>(kind);
+  if (!known)
+    refuse(fmt::format("expected one of {}", fmt::join(words_of<FaultKind>(), ", ")), kind);
+  fault.kind = *known;
   const auto number = [&](const std::string& word) {
     const auto value = parse_double(word);
-    if (!value) refuse("--fault", "expected a number in " + form, word);
+    if (!value) refuse("expected a number in " + form, word);
     return *value;
   };
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
   if (valueless != (equals == std::string::npos))
-    refuse("--fault", valueless ? kind + " takes no value" : kind + " needs a value", text, form);
+    refuse(valueless ? kind + " takes no value" : kind + " needs a value", text, form);
   if (!valueless) fault.value = number(what.substr(equals + 1));
   if ((fault.kind == FaultKind::saturation || fault.kind == FaultKind::noise) && fault.value < 0)
-    refuse("--fault", kind + " needs a value of at least 0", what.substr(equals + 1));
+    refuse(kind + " needs a value of at least 0", what.substr(equals + 1));
   const std::size_t dots = when.find("..");
-  if (dots == std::string::npos) refuse("--fault", "expected FROM..TO in seconds", when, form);
+  if (dots == std::string::npos) refuse("expected FROM..TO in seconds", when, form);
   fault.from_s = number(when.substr(0, dots));
   if (dots + 2 < when.size()) fault.to_s = number(when.substr(dots + 2));
   if (!(fault.from_s >= 0 && fault.from_s < fault.to_s))
-    refuse("--fault", "a fault lasts from a time to a later one", when);
+    refuse("a fault lasts from a time to a later one", when);
   return fault;
 }
 
-}  // namespace sensorchar
+}  // namespace libchar

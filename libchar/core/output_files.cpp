@@ -1,11 +1,9 @@
-#include "output_files.hpp"
+#include "libchar/core/output_files.hpp"
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/whole_file.hpp"
 
-namespace sensorchar {
-
-using namespace libchar;
+namespace libchar {
 
 namespace {
 
@@ -50,4 +48,4 @@ void write_outputs(const std::vector<OutputFile>& outputs,
   for (WholeFile& file : files) file.commit();
 }
 
-}  // namespace sensorchar
+}  // namespace libchar

@@ -1,4 +1,4 @@
-#include "fit_table.hpp"
+#include "libchar/report/fit_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,16 +6,14 @@
 #include <vector>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
-#include "terminal.hpp"
 
-namespace sensorchar {
-
-using namespace libchar;
+namespace libchar {
 
 namespace {
 
-std::string length_for_people(double seconds) {
+std::string rounded_length(double seconds) {
   if (seconds < 120) return fmt::format("{} s", significant(seconds, 2));
   if (seconds < 7200) return fmt::format("{} min", significant(seconds / 60, 2));
   if (seconds < 172800) return fmt::format("{} h", significant(seconds / 3600, 2));
@@ -23,7 +21,7 @@ std::string length_for_people(double seconds) {
   return "> 10 years";
 }
 
-std::string habits(const Coefficient& term, std::size_t i, const std::string& unit) {
+std::string in_habitual_units(const Coefficient& term, std::size_t i, const std::string& unit) {
   std::string text;
   for (const HabitualValue& habit : habitual_units(kTermNames[i].key, unit)) {
     const double value = term.value ? *term.value : term.upper95.value_or(0);
@@ -52,13 +50,13 @@ std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const st
           term_unit(kTermNames[i].key, printable(unit)),
           status,
           term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "",
-          term.seconds_for_10_percent ? length_for_people(*term.seconds_for_10_percent) : "",
-          habits(term, i, unit)};
+          term.seconds_for_10_percent ? rounded_length(*term.seconds_for_10_percent) : "",
+          in_habitual_units(term, i, unit)};
 }
 
 }  // namespace
 
-std::string fit_for_people(const Channel& channel, const NoiseFit& fit) {
+std::string fit_text(const Channel& channel, const NoiseFit& fit) {
   std::string text =
       fmt::format("{}{}\n",
                   printable(channel.name),
@@ -75,7 +73,7 @@ std::string fit_for_people(const Channel& channel, const NoiseFit& fit) {
     if (fit.term[i].status != Status::not_fitted)
       rows.push_back(row_of(fit.term[i], i, channel.unit));
   }
-  text += table(rows, "  ", true);
+  text += text_table(rows, "  ", true);
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
                         significant(*fit.bandwidth_hz, 4),
@@ -99,4 +97,4 @@ std::string fit_for_people(const Channel& channel, const NoiseFit& fit) {
   return text;
 }
 
-}  // namespace sensorchar
+}  // namespace libchar

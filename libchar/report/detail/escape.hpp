@@ -25,10 +25,6 @@ std::string json_in_script(const Json& document);
 /// For the inside of an HTML comment: "--" cannot occur, so the comment ends where we end it.
 std::string html_comment(std::string_view text);
 
-/// A text cell of a table that may be opened in a spreadsheet: quoted when needed (RFC 4180), and
-/// an apostrophe put in front of = + - @ TAB CR, which would start a formula.
-std::string csv_cell(std::string_view text);
-
 /// For Markdown: no mark of it becomes a tag, link, column or line.
 std::string markdown_text(std::string_view text);
 

@@ -1,4 +1,4 @@
-#include "numbers.hpp"
+#include "libchar/core/quantity_text.hpp"
 
 #include <fmt/format.h>
 
@@ -9,21 +9,20 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 
-namespace sensorchar {
+namespace libchar {
 namespace {
 
 using Units = std::initializer_list<std::pair<std::string_view, double>>;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& expected) {
-  throw libchar::Error(
-      {libchar::ErrorKind::usage, "E0201", "", "expected " + expected, std::string(text), ""});
+  throw Error({ErrorKind::usage, "E0201", "", "expected " + expected, std::string(text), ""});
 }
 
 bool may_follow(char c) {
   return (c >= '0' && c <= '9') || c == '.' || c == '-';
 }
 
-// A decimal number as people write it: "+5" and "5." are fine, "010" is not (eight or ten?), nor
+// A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor
 // "nan", "inf", "0x10".
 std::pair<double, std::string_view> leading_number(std::string_view text,
                                                    const std::string& expected) {
@@ -58,12 +57,11 @@ double parse_number(std::string_view text, double lowest, double highest) {
   std::string expected = "a number";
   constexpr double kMost = std::numeric_limits<double>::max();
   if (lowest > -kMost && highest < kMost)
-    expected +=
-        fmt::format(" from {} to {}", libchar::shortest(lowest), libchar::shortest(highest));
+    expected += fmt::format(" from {} to {}", shortest(lowest), shortest(highest));
   else if (lowest > -kMost)
-    expected += fmt::format(" not below {}", libchar::shortest(lowest));
+    expected += fmt::format(" not below {}", shortest(lowest));
   else if (highest < kMost)
-    expected += fmt::format(" not above {}", libchar::shortest(highest));
+    expected += fmt::format(" not above {}", shortest(highest));
   const auto [value, rest] = leading_number(text, expected);
   if (!rest.empty() || !(value >= lowest && value <= highest)) refuse(text, expected);
   return value;
@@ -135,4 +133,4 @@ std::uint64_t parse_bytes(std::string_view text) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace sensorchar
+}  // namespace libchar

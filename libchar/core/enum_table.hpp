@@ -1,0 +1,65 @@
+#pragma once
+// The words of enums, one table each: what the command line offers, what YAML and JSON hold, and
+// what messages list. A table stands beside its enum:
+//
+//     enum class Sides { one, two };
+//     template <>
+//     inline constexpr auto enum_table<Sides> =
+//         enum_words<Sides>({{Sides::one, "one"}, {Sides::two, "two"}});
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace libchar {
+
+template <typename Enum>
+struct EnumWord {
+  Enum value;
+  std::string_view word;
+};
+
+template <typename Enum, std::size_t N>
+constexpr std::array<EnumWord<Enum>, N> enum_words(const EnumWord<Enum> (&rows)[N]) {
+  return std::to_array(rows);
+}
+
+/// The table of an enum, in the order in which its words are offered; nullptr for one without.
+template <typename Enum>
+inline constexpr std::nullptr_t enum_table = nullptr;
+
+template <typename Enum>
+concept EnumWithTable = std::is_enum_v<Enum> && requires {
+  enum_table<Enum>.size();
+};
+
+/// The word of a value, "" when the table has none.
+template <EnumWithTable Enum>
+constexpr std::string_view name_of(Enum value) {
+  for (const EnumWord<Enum>& row : enum_table<Enum>)
+    if (row.value == value) return row.word;
+  return "";
+}
+
+/// The value of a word, nothing when no row has it.
+template <EnumWithTable Enum>
+constexpr std::optional<Enum> find_enum(std::string_view word) {
+  for (const EnumWord<Enum>& row : enum_table<Enum>)
+    if (row.word == word) return row.value;
+  return std::nullopt;
+}
+
+/// All words, in order.
+template <EnumWithTable Enum>
+std::vector<std::string> words_of() {
+  std::vector<std::string> words;
+  for (const EnumWord<Enum>& row : enum_table<Enum>) words.emplace_back(row.word);
+  return words;
+}
+
+}  // namespace libchar

@@ -1,0 +1,36 @@
+#include "libchar/report/characterization_text.hpp"
+
+#include <fmt/format.h>
+
+#include "libchar/characterize/verification.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/report/fit_text.hpp"
+
+namespace libchar {
+
+std::string characterization_text(const Characterization& result) {
+  const LogInfo& log = result.log;
+  const double rate = log.time.rate_hz;
+  const std::string length =
+      rate > 0 ? fmt::format("{} Hz, {} s",
+                             significant(rate, 6),
+                             significant(static_cast<double>(log.samples) / rate, 6))
+               : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
+  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n",
+                                 printable(log.file),
+                                 log.channels.size(),
+                                 log.channels.size() == 1 ? "" : "s",
+                                 length,
+                                 log.time.gaps,
+                                 log.time.gaps == 1 ? "" : "s");
+  for (const ChannelResult& c : result.channels) {
+    text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    if (c.verification)
+      for (const std::string& sentence : c.verification->sentences)
+        text += fmt::format("  {}\n", printable(sentence));
+    for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
+  }
+  return text;
+}
+
+}  // namespace libchar

@@ -1,0 +1,14 @@
+#pragma once
+// A fit in text, for a terminal.
+
+#include <string>
+
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar {
+
+/// One channel's noise coefficients as a table, with what was done to the data and what to think of the fit.
+std::string fit_text(const Channel& channel, const NoiseFit& fit);
+
+}  // namespace libchar

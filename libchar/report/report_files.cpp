@@ -1,0 +1,31 @@
+#include "libchar/report/report_files.hpp"
+
+#include <set>
+
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/core/file_name.hpp"
+#include "libchar/model/model_file.hpp"
+#include "libchar/report/outputs.hpp"
+
+namespace libchar {
+
+std::vector<OutputFile> report_files(const Characterization& result,
+                                     const std::filesystem::path& folder) {
+  Json document = json_without_times(result);
+  std::vector<OutputFile> outputs = {
+      {(folder / "report.html").string(), html_report(result, document)}};
+  add_times(document, result);
+  outputs.push_back({(folder / "report.json").string(), dump_json(document)});
+  outputs.push_back({(folder / "curves.csv").string(), csv_curves(result)});
+  std::set<std::string> taken;
+  for (const ChannelResult& c : result.channels) {
+    if (!c.fit) continue;
+    const std::string name = unused_file_name_for(c.channel.name, taken);
+    outputs.push_back(
+        {(folder / (name + ".sensor.yaml")).string(),
+         model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
+  }
+  return outputs;
+}
+
+}  // namespace libchar

@@ -1,0 +1,17 @@
+#pragma once
+// All files of a characterization.
+
+#include <filesystem>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/output_files.hpp"
+
+namespace libchar {
+
+/// report.html, report.json, curves.csv and a sensor model CHANNEL.sensor.yaml for each channel that
+/// was fitted, with their paths in `folder`: what `write_outputs` takes.
+std::vector<OutputFile> report_files(const Characterization& result,
+                                     const std::filesystem::path& folder);
+
+}  // namespace libchar

@@ -1,0 +1,94 @@
+// The same words mean the same in every verb that analyses, and no table carries a formula.
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Contains;
+using libchar::Json;
+
+namespace {
+
+Json spectrum_settings(const std::vector<std::string>& more, const test::TemporaryFolder& folder) {
+  const std::string out = (folder / "report").string();
+  std::vector<std::string> words = {"characterize",
+                                    test::fixture("imu_at_rest.csv").string(),
+                                    "-c",
+                                    "gyro_z",
+                                    "-o",
+                                    out,
+                                    "--force",
+                                    "--quiet"};
+  words.insert(words.end(), more.begin(), more.end());
+  const auto ran = test::run(words);
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  return Json::parse(test::slurp(out + "/report.json"));
+}
+
+}  // namespace
+
+TEST_CASE("a channel's name that a spreadsheet would run is guarded in allan as in psd") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "log.csv").string();
+  {
+    std::ofstream out(log);
+    out << "=1+1\n";
+    for (int i = 0; i < 256; ++i) out << (i * 37 % 11) << "\n";
+  }
+  const auto allan = test::run({"allan", log, "--rate", "10"});
+  REQUIRE(allan.code == 0);
+  CHECK_THAT(allan.out, Contains("\n'=1+1,") && !Contains("\n=1+1"));
+  CHECK_THAT(test::run({"psd", log, "--rate", "10"}).out, Contains("frequency_hz,'=1+1["));
+}
+
+TEST_CASE("--segment takes samples, a time or N/4, in psd and in characterize") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto psd = [&](const std::string& segment) {
+    return test::run({"psd", log, "-c", "gyro_z", "--segment", segment}).out;
+  };
+  // 100 Hz.
+  CHECK(psd("5s") == psd("500"));
+  CHECK_FALSE(psd("5s").empty());
+  CHECK(psd("N/4") == test::run({"psd", log, "-c", "gyro_z"}).out);
+  const Json time = spectrum_settings({"--segment", "5s"}, folder);
+  const Json samples = spectrum_settings({"--segment", "500"}, folder);
+  CHECK(time["channels"] == samples["channels"]);
+  CHECK(time["config"]["spectrum"]["segment_s"] == 5);
+  const Json quarter = spectrum_settings({"--segment", "N/4"}, folder);
+  CHECK(quarter["channels"] == spectrum_settings({}, folder)["channels"]);
+  CHECK(quarter["channels"] != samples["channels"]);
+}
+
+TEST_CASE("a segment that cannot be is refused in the same words everywhere") {
+  const test::TemporaryFolder folder;
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  for (const char* verb : {"psd", "characterize"}) {
+    const auto refused = [&](const std::string& segment, const std::string& rate = "") {
+      std::vector<std::string> words = {verb, log, "--segment", segment};
+      if (verb == std::string("characterize"))
+        words.insert(words.end(), {"-o", (folder / "out").string()});
+      if (!rate.empty()) words.insert(words.end(), {"--time-column", rate});
+      const auto ran = test::run(words);
+      CHECK(ran.code == 2);
+      return ran.err;
+    };
+    CAPTURE(verb);
+    CHECK_THAT(refused("4"), Contains("--segment") && Contains("not below 8"));
+    CHECK_THAT(refused("5 parsecs"), Contains("--segment") && Contains("a duration such as"));
+    CHECK_THAT(refused("1ms"), Contains("--segment") && Contains("at least 8"));
+    CHECK_THAT(refused("5s", "none"), Contains("--segment") && Contains("give --rate"));
+  }
+}
+
+TEST_CASE("every window of the library is offered by psd and by characterize") {
+  const test::TemporaryFolder folder;
+  const Json document = spectrum_settings({"--window", "hann_nonzero"}, folder);
+  CHECK(document["config"]["spectrum"]["window"] == "hann_nonzero");
+  for (const char* verb : {"psd", "characterize"})
+    CHECK_THAT(test::run({verb, "--help"}).out,
+               Contains("hann|rectangular|blackman_harris|flat_top|hann_nonzero"));
+}

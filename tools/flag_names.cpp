@@ -1,0 +1,74 @@
+#include "flag_names.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace sensorchar {
+namespace {
+
+struct FlagName {
+  std::string_view option;  ///< of the library
+  std::string_view flag;
+};
+
+// In the order of the alphabet.
+constexpr FlagName kFlags[] = {{"allow_outside", "--allow-outside"},
+                               {"axes", "--axes"},
+                               {"axis", "--axis"},
+                               {"channels", "--channel"},
+                               {"correlation_s", "--correlation-time"},
+                               {"decimal", "--decimal"},
+                               {"delimiter", "--delimiter"},
+                               {"encoding", "--encoding"},
+                               {"fault", "--fault"},
+                               {"filter_step_s", "--filter-step"},
+                               {"format", "--format"},
+                               {"from_s", "--from"},
+                               {"header", "--header"},
+                               {"inflate", "--inflate"},
+                               {"memory_bytes", "--memory"},
+                               {"names", "--names"},
+                               {"older", "--older"},
+                               {"overflow_as_missing", "--overflow nan"},
+                               {"rate_hz", "--rate"},
+                               {"segment", "--segment"},
+                               {"skip_repeated_header", "--repeated-header skip"},
+                               {"skip_rows", "--skip-rows"},
+                               {"time_column", "--time-column"},
+                               {"time_unit", "--time-unit"},
+                               {"to_s", "--to"},
+                               {"topic", "--topic"},
+                               {"units", "--units"}};
+
+}  // namespace
+
+std::string with_flags(const std::string& message) {
+  std::string text;
+  std::size_t done = 0;
+  for (std::size_t open = message.find('`'); open != std::string::npos;) {
+    const std::size_t close = message.find('`', open + 1);
+    if (close == std::string::npos) break;
+    const std::string_view name(message.data() + open + 1, close - open - 1);
+    const auto* row = std::find_if(
+        std::begin(kFlags), std::end(kFlags), [&](const FlagName& f) { return f.option == name; });
+    if (row == std::end(kFlags)) {
+      open = close;
+      continue;
+    }
+    text += message.substr(done, open - done);
+    text += row->flag;
+    done = close + 1;
+    open = message.find('`', done);
+  }
+  return text + message.substr(done);
+}
+
+libchar::Problem with_flags(libchar::Problem problem) {
+  problem.where = with_flags(problem.where);
+  problem.what = with_flags(problem.what);
+  problem.hint = with_flags(problem.hint);
+  return problem;
+}
+
+}  // namespace sensorchar

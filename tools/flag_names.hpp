@@ -1,0 +1,18 @@
+#pragma once
+// The library's messages speak of its options by name in backquotes (`rate_hz`); whoever types
+// commands knows them as flags (--rate).
+
+#include <string>
+
+#include "libchar/core/error.hpp"
+
+namespace sensorchar {
+
+/// The text with every option of the library in backquotes replaced by its flag; what has no flag
+/// stays.
+std::string with_flags(const std::string& message);
+
+/// The same for everything a problem says itself; what it quotes from the input stays.
+libchar::Problem with_flags(libchar::Problem problem);
+
+}  // namespace sensorchar
