@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include "libchar/allan/detail/lag_sum.hpp"
+#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/core/error.hpp"
 
 namespace libchar {

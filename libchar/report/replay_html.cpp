@@ -14,9 +14,9 @@
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/detail/replay_tables.hpp"
+#include "libchar/report/detail/replay_words.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/replay_json.hpp"
-#include "libchar/report/detail/replay_words.hpp"
 
 namespace libchar {
 namespace {

@@ -11,8 +11,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/scene/scene.hpp"
 #include "libchar/scene/detail/scene_paths.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "libchar/core/schema.hpp"
-#include "libchar/scene/scene.hpp"
 #include "libchar/scene/detail/scene_paths.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
 
