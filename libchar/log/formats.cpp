@@ -81,7 +81,11 @@ std::vector<LogFormat> log_formats() {
 
 std::string readable_files() {
   std::vector<std::string_view> files;
-  for (const Format* format : by_name()) files.push_back(format->about.brief);
+  for (const Format* format : by_name()) {
+    const LogFormat& about = format->about;
+    if (!about.brief.empty() || !about.suffixes.empty())
+      files.push_back(about.brief.empty() ? about.suffixes.front() : about.brief);
+  }
   return fmt::format("{}", fmt::join(files, ", "));
 }
 

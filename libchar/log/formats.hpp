@@ -11,7 +11,7 @@ namespace libchar {
 struct LogFormat {
   std::string_view name;   ///< the word for it in options: "csv"
   std::string_view title;  ///< as tables of formats list it: "CSV"
-  std::string_view brief;  ///< its files in a help text: ".csv"
+  std::string_view brief;  ///< its files in a help text; "" = the first suffix
   std::vector<std::string_view>
       suffixes;                ///< files of this format by their name, whatever they hold
   std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it

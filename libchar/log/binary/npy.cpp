@@ -150,7 +150,6 @@ Format npy_format() {
   Format row;
   row.about.name = "npy";
   row.about.title = "NumPy";
-  row.about.brief = ".npy";
   row.about.suffixes = {".npy"};
   row.about.names = "structured arrays";
   row.about.units = "no";
