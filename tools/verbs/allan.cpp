@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "analysis_options.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"

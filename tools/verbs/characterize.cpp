@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "analysis_options.hpp"
 #include "fit_table.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
@@ -92,11 +94,11 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
   for (const std::string& log : verb.logs) {
     Characterization result = characterize(log, options, session.terminal);
     result.command = session.command;
-    result.settings = settings_json(options);
+    result.settings = settings_of(options);
     if (verb.verify) {
       VerifyOptions how;
       how.seed = verb.seed;
-      result.settings["verify"] = {{"seed", verb.seed}};
+      result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
       agrees = verify(result, options, how, session.terminal) && agrees;
     }
     session.terminal.clear();

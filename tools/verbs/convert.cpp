@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/error.hpp"

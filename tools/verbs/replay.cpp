@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "fault_words.hpp"
@@ -231,15 +232,15 @@ std::string text_for_people(const ReplayResult& r) {
   return text;
 }
 
-Json settings_json(const ReplayVerb& verb, const ReplayResult& result) {
-  Json out = {{"seed", verb.seed},
-              {"window_s", json_number(result.window_s)},
-              {"allan", !verb.no_allan},
-              {"no_skip", verb.no_skip},
-              {"no_faults", verb.no_faults},
-              {"faults", Json::array()}};
-  for (const std::string& fault : verb.faults) out["faults"].push_back(printable(fault));
-  return out;
+std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& result) {
+  std::vector<std::string> faults;
+  for (const std::string& fault : verb.faults) faults.push_back(printable(fault));
+  return {{"seed", verb.seed},
+          {"window_s", finite_or_null(result.window_s)},
+          {"allan", !verb.no_allan},
+          {"no_skip", verb.no_skip},
+          {"no_faults", verb.no_faults},
+          {"faults", std::move(faults)}};
 }
 
 // What runs, what it needs and what can be set.
@@ -316,7 +317,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   ReplayResult result = replay(scene, options, session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
-  result.settings = settings_json(verb, result);
+  result.settings = settings_of(verb, result);
   session.terminal.warn(result.warnings, verb.scene);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
   const std::vector<OutputFile> outputs = {{files[0], replay_html(result)},
