@@ -23,6 +23,8 @@ for path in sorted((root / "libchar").rglob("*.[ch]pp")):
             faults.append(f"{path}:{number}: {floor} includes {own[1]}, which is not below it")
         if own and own[1] != floor and own[2]:
             faults.append(f"{path}:{number}: {own[1]}/{own[2]} belongs to {own[1]}, {floor} is not to look into it")
+        if own and own[2] and path.suffix == ".hpp" and path.parent.parent == root / "libchar":
+            faults.append(f"{path}:{number}: a public header includes what is not installed")
         for library, floors in KEPT.items():
             if re.match(rf"\s*#include <{re.escape(library)}", line) and floor not in floors:
                 faults.append(f"{path}:{number}: {library} is not to be used in {floor}")

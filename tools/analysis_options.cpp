@@ -93,10 +93,8 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
 }
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choice("--type",
-                  a.type,
-                  {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
-                  "deviation (default: oadev, overlapping Allan)");
+  verb.add_choice(
+      "--type", a.type, deviation_words(), "deviation (default: oadev, overlapping Allan)");
   verb.add_text(
       "--taus",
       a.taus,

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {

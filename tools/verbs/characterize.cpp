@@ -16,6 +16,7 @@
 #include "libchar/core/file_name.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/outputs.hpp"
 #include "output_files.hpp"
@@ -139,7 +140,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_texts("LOG",
                  verb->logs,
-                 "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+                 "recordings (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options
       .add_text(

@@ -17,6 +17,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/model/model_file.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -211,8 +212,9 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("LOG|CURVE",
                 verb->input,
-                "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging "
-                "time or frequency, then values")
+                "recording (" + readable_files() +
+                    "), or with --curve a table: averaging "
+                    "time or frequency, then values")
       .required();
   options.add_choice(
       "--curve",

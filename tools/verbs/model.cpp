@@ -251,15 +251,21 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                  kSmall);
   sub.add_number("--airsim-tau",
                  options.bias_tau_s,
-                 "airsim: BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
+                 targets_that_take(&ExportTakes::bias_tau) +
+                     ": BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
                  kSmall);
   sub.add_number("--filter-step",
                  options.filter_step_s,
-                 "px4: step of the filter's prediction in s (0.01)",
+                 targets_that_take(&ExportTakes::filter_step) +
+                     ": step of the filter's prediction in s (0.01)",
                  kSmall);
-  sub.add_number(
-      "--gravity", options.gravity, "vins, gtsam: gravity in m/s² (not written)", kSmall);
-  sub.add_text("--topic", options.topic, "kalibr, openvins: ROS topic (/imu0)").value_name("NAME");
+  sub.add_number("--gravity",
+                 options.gravity,
+                 targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (not written)",
+                 kSmall);
+  sub.add_text(
+         "--topic", options.topic, targets_that_take(&ExportTakes::topic) + ": ROS topic (/imu0)")
+      .value_name("NAME");
   sub.add_flag("--older",
                options.older,
                "basalt: one number in place of three; orbslam3: whole rate, no File.version");
