@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/interval.hpp"
 #include "libchar/core/fields.hpp"
+#include "libchar/core/interval.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/error_meter.hpp"

@@ -11,7 +11,6 @@
 #include "libchar/core/text.hpp"
 #include "libchar/export/consumers.hpp"
 #include "libchar/log/inspection.hpp"
-#include "libchar/log/inspection.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
