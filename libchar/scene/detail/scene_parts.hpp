@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "libchar/core/schema.hpp"
-#include "libchar/scene/scene.hpp"
 #include "libchar/scene/detail/scene_paths.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
 
@@ -44,6 +44,9 @@ std::size_t index_of_name(const MapReader& at,
                           const std::string& name,
                           const std::vector<std::string>& names,
                           const std::string& what);
+
+/// From 1 to 1024.
+void check_oversampling(const MapReader& at, std::uint64_t oversampling);
 
 // ---- files ----
 
