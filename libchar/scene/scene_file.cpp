@@ -148,6 +148,11 @@ bool is_scalar(const Document& node) {
   return node.kind != Document::Kind::map && node.kind != Document::Kind::list;
 }
 
+void check_oversampling(const MapReader& at, std::uint64_t oversampling) {
+  if (oversampling < 1 || oversampling > 1024)
+    at.refuse("oversampling", "expected a whole number from 1 to 1024");
+}
+
 std::size_t index_of_name(const MapReader& at,
                           std::string_view key,
                           const std::string& name,

@@ -141,7 +141,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
                 "m.json")
             .empty());
   CHECK(refusal(R"({"format":"sensor-model","version":1.0})", "m.json")
-            .starts_with("m.json: error E0546"));
+            .starts_with("m.json:1:36: error E0546"));
   CHECK(refusal(R"({"format":"sensor-model","version":1,"bandwidth_hz":"x"})", "m.json")
             .find("bandwidth_hz") != std::string::npos);
 }

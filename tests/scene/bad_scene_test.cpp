@@ -105,10 +105,11 @@ const std::map<std::string, Case>& json_cases() {
       {"009_comment", {"{" + kJson + "} // c", ":1:", "E0601"}},
       {"010_trunc", {"{\"version\":", ":1:", "E0601"}},
       {"011_bom", {"\xEF\xBB\xBF{" + kJson + "}", "", ""}},
-      {"012_float_version", {R"({"format":"scene","version":1.5})", ": error E0546", "version: 1"}},
+      {"012_float_version",
+       {R"({"format":"scene","version":1.5})", ":1:29: error E0546", "version: 1"}},
       {"013_null",
        {R"({"format":"scene","version":1,"recording":"log.csv","sensors":null})",
-        ": error E0542",
+        ":1:63: error E0542",
         "sensors is missing"}},
   };
   return cases;

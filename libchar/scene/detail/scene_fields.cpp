@@ -5,7 +5,6 @@
 namespace libchar {
 namespace {
 
-constexpr NumberRange kOversampling{1, 1024, false};
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
 
 const std::vector<Word>& kind_words() {
@@ -126,8 +125,7 @@ const Fields<ArraySimulation>& simulation_fields() {
                                      .written = Written::always}),
       field<&ArraySimulation::oversampling>(
           "oversampling",
-          {.range = kOversampling,
-           .meaning = "everything up to the quantization runs so many times as fast, so that "
+          {.meaning = "everything up to the quantization runs so many times as fast, so that "
                       "aliases are in the samples",
            .otherwise = "1"}),
       elsewhere<ArraySimulation>("truth",
@@ -211,8 +209,8 @@ const Fields<SimulatedFrom>& simulated_fields() {
   static const Fields<SimulatedFrom> rows = {
       field<&SimulatedFrom::seed>("seed",
                                   {.meaning = "it was simulated with", .written = Written::always}),
-      field<&SimulatedFrom::oversampling>(
-          "oversampling", {.range = kOversampling, .meaning = "likewise", .otherwise = "1"}),
+      field<&SimulatedFrom::oversampling>("oversampling",
+                                          {.meaning = "likewise", .otherwise = "1"}),
       elsewhere<SimulatedFrom>("faults", "list", {.meaning = "that its samples hold"}),
   };
   return rows;

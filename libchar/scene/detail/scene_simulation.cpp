@@ -169,6 +169,7 @@ ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& fol
   ArraySimulation s;
   read_fields(simulation_fields(), at, s);
   s.samples = samples_of(at, s.rate_hz);
+  check_oversampling(at, s.oversampling);
   if (at.has("truth")) read_truth(at, s, folder, scene);
   if (at.has("temperature"))
     s.temperature = signal_of(

@@ -68,6 +68,7 @@ SimulatedFrom simulated_of(const MapReader& top, const Scene& scene, const Senso
   const MapReader at = top.map("simulated", keys_of(simulated_fields()));
   SimulatedFrom from;
   read_fields(simulated_fields(), at, from);
+  check_oversampling(at, from.oversampling);
   from.faults = faults_of(at, scene, index);
   return from;
 }
