@@ -93,10 +93,8 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
 }
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choice("--type",
-                  a.type,
-                  {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"},
-                  "deviation (default: oadev, overlapping Allan)");
+  verb.add_choice(
+      "--type", a.type, deviation_words(), "deviation (default: oadev, overlapping Allan)");
   verb.add_text(
       "--taus",
       a.taus,
@@ -173,50 +171,6 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
   o.fit.remedies = !a.no_remedies;
   o.fit.second_opinion = !a.no_second_opinion;
   return o;
-}
-
-Json settings_json(const CharacterizeOptions& o) {
-  Json terms = Json::array();
-  for (std::size_t t = 0; t < kTerms; ++t)
-    if (o.fit.terms[t]) terms.push_back(std::string(kTermNames[t].key));
-  const char* const data[] = {"rate", "phase", "frequency"};
-  const char* const grids[] = {"octave", "decade", "dense", "list"};
-  const char* const scalings[] = {"psd", "ps", "lsd", "ls"};
-  const char* const detrends[] = {"none", "constant", "linear"};
-  Json settings = {{"data", data[static_cast<int>(o.data)]},
-                   {"nominal_frequency_hz", o.nominal_frequency},
-                   {"memory_bytes", o.memory_bytes},
-                   {"allan",
-                    {{"type", std::string(name_of(o.allan.type))},
-                     {"taus", grids[static_cast<int>(o.allan.grid)]},
-                     {"taus_s", o.allan.taus_s},
-                     {"tau_min_s", o.allan.tau_min_s},
-                     {"tau_max_s", o.allan.tau_max_s},
-                     {"full_overlap", o.full_overlap}}},
-                   {"spectrum",
-                    {{"sides", o.spectrum.sides == Sides::one ? "one" : "two"},
-                     {"scaling", scalings[static_cast<int>(o.spectrum.scaling)]},
-                     {"segment", o.spectrum.segment},
-                     {"overlap", o.spectrum.overlap},
-                     {"window", std::string(name_of(o.spectrum.window))},
-                     {"detrend", detrends[static_cast<int>(o.spectrum.detrend)]}}},
-                   {"fit",
-                    {{"terms", terms},
-                     {"threshold", o.fit.threshold},
-                     {"remedies", o.fit.remedies},
-                     {"second_opinion", o.fit.second_opinion},
-                     {"profile_above", o.fit.profile_above}}},
-                   {"reading",
-                    {{"channels", o.reading.channels},
-                     {"time_column", o.reading.time_column},
-                     {"time_unit", o.reading.time_unit},
-                     {"delimiter", o.reading.delimiter},
-                     {"decimal", o.reading.decimal},
-                     {"header", o.reading.header}}}};
-  if (o.reading.rate_hz) settings["reading"]["rate_hz"] = *o.reading.rate_hz;
-  if (o.reading.from_s) settings["reading"]["from_s"] = *o.reading.from_s;
-  if (o.reading.to_s) settings["reading"]["to_s"] = *o.reading.to_s;
-  return settings;
 }
 
 }  // namespace sensorchar

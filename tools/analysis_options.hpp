@@ -32,7 +32,4 @@ void add_fit_options(
 /// The options with every text read. Throws Error(usage).
 libchar::CharacterizeOptions finish(const AnalysisOptions& analysis);
 
-/// Effective settings for provenance, every one with its value.
-libchar::Json settings_json(const libchar::CharacterizeOptions& options);
-
 }  // namespace sensorchar

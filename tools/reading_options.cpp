@@ -4,6 +4,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/formats.hpp"
 #include "numbers.hpp"
 
 namespace sensorchar {
@@ -38,10 +39,8 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
 
 void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  verb.add_choice("--format",
-                  options.format,
-                  {"auto", "csv", "npy", "raw"},
-                  "format of the log (default: auto)")
+  verb.add_choice(
+          "--format", options.format, libchar::format_words(), "format of the log (default: auto)")
       .group("Reading");
   verb.add_parsed(
           "--delimiter",

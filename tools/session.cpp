@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/log/recording_json.hpp"
 
 namespace sensorchar {
 namespace {
@@ -41,33 +42,7 @@ void report_warnings(Session& session, const libchar::LogInfo& info) {
 libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs) {
-  libchar::Json head;
-  head["format"] = format;
-  head["version"] = 1;
-  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(libchar::version())}};
-  libchar::Json command = libchar::Json::array();
-  for (const std::string& word : session.command)
-    command.push_back(
-        libchar::first_invalid_utf8(word) == std::string::npos ? word : libchar::printable(word));
-  head["command"] = std::move(command);
-  head["input"] = libchar::Json::array();
-  head["warnings"] = libchar::Json::array();
-  for (const libchar::LogInfo* info : inputs) {
-    libchar::Json hash;
-    if (!info->sha256.empty()) hash = info->sha256;
-    head["input"].push_back(
-        {{"path", libchar::printable(info->file)}, {"sha256", hash}, {"bytes", info->bytes}});
-    for (const libchar::Warning& w : info->warnings.list()) {
-      libchar::Json where = libchar::Json::array();
-      for (const std::string& place : w.places) where.push_back(libchar::printable(place));
-      head["warnings"].push_back({{"file", libchar::printable(info->file)},
-                                  {"code", w.code},
-                                  {"message", libchar::printable(w.message)},
-                                  {"count", w.count},
-                                  {"where", where}});
-    }
-  }
-  return head;
+  return libchar::document_head(format, session.command, inputs);
 }
 
 int exit_code_of(Session& session, const std::function<void()>& work) {

@@ -20,7 +20,8 @@ struct Midrange {
 int main() {
   fusion::Given array;
   array.channels = 3;
-  fusion::RunnerOf<Midrange> runner(array, fusion::Settings());  // checks the contract when compiled
+  // Checks the contract when compiled.
+  fusion::RunnerOf<Midrange> runner(array, fusion::Settings());
   Eigen::MatrixXd samples(3, 2), x(1, 2), variance(1, 2);
   samples << 1.0, 2.0,  // a row a sensor, a column an instant
       1.2, 2.2, 1.1, 2.6;

@@ -114,13 +114,13 @@ double factor_of(const Side& a, const Side& b) {
 }  // namespace
 
 std::uint64_t stride_of(const AllanCurve& curve, const AllanPoint& point) {
-  if (curve.type == DeviationType::adev || curve.type == DeviationType::hdev) return point.m;
+  if (!deviation_row(curve.type).overlapping) return point.m;
   if (curve.stride_divisor == 0) return 1;
   return std::max<std::uint64_t>(1, point.m / curve.stride_divisor);
 }
 
 AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
-  if (curve.type != DeviationType::adev && curve.type != DeviationType::oadev)
+  if (!deviation_row(curve.type).is_allan())
     throw Error({ErrorKind::usage,
                  "",
                  "",

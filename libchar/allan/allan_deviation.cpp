@@ -35,26 +35,6 @@ namespace {
 
 constexpr std::uint64_t kPiece = 65536;
 
-struct TypeFacts {
-  DeviationType type;
-  std::string_view name;
-  int order;    // of the difference
-  bool of_sum;  // of W instead of x
-  bool overlapping;
-  double divisor;  // sum of squares / (divisor tau^2 n)
-};
-constexpr TypeFacts kTypes[] = {{DeviationType::adev, "adev", 2, false, false, 2},
-                                {DeviationType::oadev, "oadev", 2, false, true, 2},
-                                {DeviationType::mdev, "mdev", 3, true, true, 2},
-                                {DeviationType::tdev, "tdev", 3, true, true, 2},
-                                {DeviationType::hdev, "hdev", 3, false, false, 6},
-                                {DeviationType::ohdev, "ohdev", 3, false, true, 6},
-                                {DeviationType::totdev, "totdev", 2, false, true, 2}};
-
-const TypeFacts& facts(DeviationType type) {
-  return kTypes[static_cast<std::size_t>(type)];
-}
-
 /// Starts [begin, end) on the grid of multiples of `stride`.
 struct Starts {
   std::uint64_t begin, end, stride;
@@ -63,7 +43,7 @@ struct Starts {
 
 /// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
 /// it sums.
-Starts starts_in(const Stretch& stretch, const TypeFacts& f, std::uint64_t m) {
+Starts starts_in(const Stretch& stretch, const DeviationRow& f, std::uint64_t m) {
   const std::uint64_t stride = f.overlapping ? 1 : m;
   const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
   const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
@@ -96,7 +76,7 @@ struct Totals {
 
 /// All terms with starts in the ranges, cut into pieces at multiples of kPiece and added in order.
 Totals total_over(const AnchoredPhase& phase,
-                  const TypeFacts& f,
+                  const DeviationRow& f,
                   std::uint64_t m,
                   const std::vector<Starts>& ranges) {
   const std::uint64_t pieces = phase.points / kPiece + 1;
@@ -124,11 +104,10 @@ Totals total_over(const AnchoredPhase& phase,
 }
 
 std::vector<Starts> ranges_of(const AnchoredPhase& phase,
-                              const TypeFacts& f,
+                              const DeviationRow& f,
                               std::uint64_t m,
                               std::uint64_t reach) {
-  if (f.type ==
-      DeviationType::totdev)  // centred on the inner points of the record within its continuation
+  if (f.reflected)  // centred on the inner points of the record within its continuation
     return {{reach + 1 - m, phase.points - reach - 1 - m, 1}};
   std::vector<Starts> ranges;
   for (const Stretch& s : phase.stretches) {
@@ -139,7 +118,7 @@ std::vector<Starts> ranges_of(const AnchoredPhase& phase,
 }
 
 AllanPoint point_of(const Totals& total,
-                    const TypeFacts& f,
+                    const DeviationRow& f,
                     std::uint64_t m,
                     double dt_s,
                     double scale,
@@ -153,16 +132,16 @@ AllanPoint point_of(const Totals& total,
   if (f.of_sum) step *= factor;
   point.deviation = std::sqrt(total.sum / (f.divisor * static_cast<double>(total.terms))) / step;
   point.deviation /= scale;
-  if (f.type == DeviationType::tdev) point.deviation *= point.tau_s / std::sqrt(3.0);
+  if (f.as_time) point.deviation *= point.tau_s / std::sqrt(3.0);
   return point;
 }
 
-[[noreturn]] void too_short(const TypeFacts& f, std::uint64_t samples) {
-  const std::uint64_t needed = term_span(f.type, 1);
+[[noreturn]] void too_short(const DeviationRow& f, std::uint64_t samples) {
+  const std::uint64_t needed = f.span(1);
   throw Error({ErrorKind::numeric,
                "",
                "",
-               std::string(f.name) + " needs at least " + std::to_string(needed) +
+               std::string(f.word) + " needs at least " + std::to_string(needed) +
                    " consecutive samples; none of its terms fits the " + std::to_string(samples) +
                    " of this record",
                "",
@@ -210,7 +189,7 @@ void check(double dt_s, const AllanOptions& options) {
 }
 
 void fill_points(const AnchoredPhase& phase,
-                 const TypeFacts& f,
+                 const DeviationRow& f,
                  std::uint64_t reach,
                  const std::vector<std::uint64_t>& factors,
                  DataKind kind,
@@ -237,21 +216,11 @@ AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summe
 
 }  // namespace
 
-std::string_view name_of(DeviationType type) {
-  return facts(type).name;
-}
-
-std::optional<DeviationType> deviation_type(std::string_view name) {
-  for (const TypeFacts& f : kTypes)
-    if (f.name == name) return f.type;
-  return std::nullopt;
-}
-
 AllanCurve allan_deviation(std::span<const double> record,
                            double dt_s,
                            const AllanOptions& options) {
   check(dt_s, options);
-  const TypeFacts& f = facts(options.type);
+  const DeviationRow& f = deviation_row(options.type);
   const auto rate_samples = [&](std::uint64_t size) {
     return options.data == DataKind::rate || size == 0 ? size : size - 1;
   };
@@ -261,10 +230,10 @@ AllanCurve allan_deviation(std::span<const double> record,
   curve.samples = rate_samples(record.size());
   curve.missing = static_cast<std::uint64_t>(
       std::count_if(record.begin(), record.end(), [](double v) { return !std::isfinite(v); }));
-  const bool total = f.type == DeviationType::totdev;
+  const bool total = f.reflected;
   const auto used = total ? without_gaps(record, curve) : record;
   const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);
-  if (rate_samples(used.size()) < term_span(f.type, 1)) too_short(f, curve.samples);
+  if (rate_samples(used.size()) < f.span(1)) too_short(f, curve.samples);
   const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);

@@ -2,31 +2,20 @@
 // The Allan family of deviations of a record.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "libchar/allan/deviation_types.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
 
-enum class DeviationType { adev, oadev, mdev, tdev, hdev, ohdev, totdev };
-enum class DataKind {
-  rate,
-  phase
-};  ///< rate: N samples averaged over dt; phase: N + 1 points of the integral of the rate
-enum class TauGrid {
-  octave,
-  decade,
-  dense,
-  list
-};  ///< m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); given
-
-std::string_view name_of(DeviationType type);  ///< "oadev"
-std::optional<DeviationType> deviation_type(std::string_view name);
+/// rate: N samples averaged over dt; phase: N + 1 points of the integral of the rate
+enum class DataKind { rate, phase };
+/// m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); as listed
+enum class TauGrid { octave, decade, dense, list };
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor

@@ -51,7 +51,8 @@ void add_one_by_one(const double* z, std::size_t n, std::size_t width, double sc
   }
   const double sum =
       ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-  tally.sum += static_cast<long double>(sum) / scale / scale;
+  tally.sum += static_cast<long double>(sum) / static_cast<long double>(scale) /
+               static_cast<long double>(scale);
   tally.terms += terms;
 }
 

@@ -37,7 +37,7 @@ void add_intervals(AllanCurve& curve, const Mixture& theta) {
     point.ci95 = chi_square_interval(point.deviation, point.edf, kTwoSided);
     point.reliable = point.edf >= kReliableDof;
   }
-  if (curve.type == DeviationType::totdev) note_total_bias(curve, theta);
+  if (deviation_row(curve.type).reflected) note_total_bias(curve, theta);
 }
 
 }  // namespace libchar

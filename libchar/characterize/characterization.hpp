@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/fields.hpp"
 #include "libchar/core/progress.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/log/quality.hpp"
@@ -73,7 +73,7 @@ struct ChannelResult {
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
-  Json settings;                     ///< effective settings, for provenance
+  std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
   double seconds = 0;                ///< measured; kept apart from everything else in the outputs
 };

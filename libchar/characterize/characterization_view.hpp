@@ -40,7 +40,7 @@ struct ChannelView {
   std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
   std::vector<OtherOpinion> other_opinions;
-  std::vector<ConsumerNumber> consumers;                ///< which number goes where
+  std::vector<ConsumerNumber> consumers;             ///< which number goes where
   bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libchar/core/error.hpp"
@@ -30,8 +31,8 @@ Document scalar(Document::Kind kind, const std::string& text) {
   return node;
 }
 
-// What a plain scalar means: numbers as JSON has them; everything else stays a text.
-Document plain(const std::string& value) {
+// What an unquoted scalar means: numbers as JSON has them; everything else stays a text.
+Document unquoted(const std::string& value) {
   if (value == "true" || value == "false") {
     Document node = scalar(Document::Kind::boolean, value);
     node.boolean = value == "true";
@@ -70,10 +71,10 @@ class Builder : public YAML::EventHandler {
                 const std::string& tag,
                 YAML::anchor_t anchor,
                 const std::string& value) override {
-    const bool quoted = tag == "!";  // "!" marks a quoted text, "?" a plain one
+    const bool quoted = tag == "!";  // "!" marks a quoted text, "?" an unquoted one
     check(mark, quoted ? "" : tag, anchor);
     if (!quoted && value == "<<") refuse(mark, "merge keys are not read", value);
-    put(mark, quoted ? scalar(Document::Kind::text, value) : plain(value));
+    put(mark, quoted ? scalar(Document::Kind::text, value) : unquoted(value));
   }
   void OnSequenceStart(const YAML::Mark& mark,
                        const std::string& tag,
@@ -189,36 +190,6 @@ int line_indented_by_tab(std::string_view text) {
   return 0;
 }
 
-Document from_json(const Json& json) {
-  Document node;
-  switch (json.type()) {
-    case Json::value_t::object:
-      node.kind = Document::Kind::map;
-      for (const auto& [key, value] : json.items())
-        node.map.push_back({key, 0, 0, from_json(value)});
-      return node;
-    case Json::value_t::array:
-      node.kind = Document::Kind::list;
-      for (const Json& value : json) node.list.push_back(from_json(value));
-      return node;
-    case Json::value_t::string:
-      return scalar(Document::Kind::text, json.get<std::string>());
-    case Json::value_t::boolean:
-      node = scalar(Document::Kind::boolean, json.dump());
-      node.boolean = json.get<bool>();
-      return node;
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned:
-    case Json::value_t::number_float:
-      node = scalar(Document::Kind::number, json.dump());
-      node.number = json.get<double>();
-      node.whole = !json.is_number_float();
-      return node;
-    default:
-      return node;
-  }
-}
-
 Json number_json(const Document& node) {
   const char* const end = node.text.data() + node.text.size();
   if (node.whole) {
@@ -261,8 +232,9 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
   }
 }
 
-Document parse_json_document(std::string_view text, const std::string& file) {
-  return from_json(parse_json(text, file));
+Document parse_document(std::string_view text, const std::string& file) {
+  return file.ends_with(".json") ? parse_json_document(text, file)
+                                 : parse_yaml_document(text, file);
 }
 
 Json as_json(const Document& node) {

@@ -23,7 +23,7 @@ struct Document {
   std::string text;    ///< of a text; of another scalar, as it is written
   std::vector<Document> list;
   std::vector<DocumentEntry> map;  ///< in the order of the file
-  int line = 0, column = 0;        ///< from 1; 0 when unknown (JSON)
+  int line = 0, column = 0;        ///< from 1; 0 when unknown
 
   const DocumentEntry* find(std::string_view key) const;
 };
@@ -40,8 +40,14 @@ struct DocumentEntry {
 /// Throws Error(input) with FILE:LINE:COL.
 Document parse_yaml_document(std::string_view text, const std::string& file);
 
-/// The same tree from JSON (parse_json's rules); without places.
+/// The same tree from JSON, by parse_json's rules. Throws Error(input) with FILE:LINE:COL (byte N).
 Document parse_json_document(std::string_view text, const std::string& file);
+
+/// JSON when `file` ends in .json, else YAML.
+Document parse_document(std::string_view text, const std::string& file);
+
+/// Reads a whole small text file: a regular one of at most 16 MiB. Throws Error(input).
+std::string read_document_text(const std::string& path);
 
 /// The document without its places.
 Json as_json(const Document& document);

@@ -1,7 +1,7 @@
 #pragma once
-// JSON at the borders: nlohmann's type, with the guards it lacks.
+// JSON at the borders: nlohmann's type, with the guards it lacks. Whoever builds a document includes <nlohmann/json.hpp>.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +17,9 @@ Json parse_json(std::string_view text, const std::string& file);
 /// JSON has no infinity and no NaN: what is not finite, or not there, is null; a status beside it says why.
 Json json_number(double value);
 Json json_number(const std::optional<double>& value);
+
+/// The text itself when it is valid UTF-8, else escaped by `printable`: JSON carries nothing else.
+std::string json_text(std::string_view text);
 
 /// The document with every string that is not UTF-8 escaped by `printable`.
 Json with_valid_text(Json document);

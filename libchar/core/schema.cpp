@@ -50,6 +50,16 @@ std::string number_hint(const std::string& text) {
   return "";
 }
 
+template <class T>
+std::optional<T> integer(const Document& value) {
+  T number{};
+  const char* const end = value.text.data() + value.text.size();
+  if (value.kind != Document::Kind::number || !value.whole) return std::nullopt;
+  const auto r = std::from_chars(value.text.data(), end, number);
+  if (r.ec != std::errc() || r.ptr != end) return std::nullopt;
+  return number;
+}
+
 }  // namespace
 
 std::string shown(const Document& value) {
@@ -139,17 +149,27 @@ std::optional<double> MapReader::maybe_number(std::string_view key, NumberRange 
   return checked(key, *value, range);
 }
 
-std::uint64_t MapReader::count(std::string_view key) const {
+std::uint64_t MapReader::count(std::string_view key, NumberRange range) const {
   const Document& value = require(key);
-  std::uint64_t natural = 0;
-  const char* const end = value.text.data() + value.text.size();
-  if (value.kind == Document::Kind::number && value.whole) {
-    const auto r = std::from_chars(value.text.data(), end, natural);
-    if (r.ec == std::errc() && r.ptr == end) return natural;
-  }
+  const auto natural = integer<std::uint64_t>(value);
+  if (!natural)
+    fail("E0541",
+         where(value),
+         fmt::format("{}: expected a whole number of at least {}",
+                     path_of(key),
+                     shortest(std::max(range.lowest, 0.0))),
+         shown(value),
+         "");
+  checked(key, value, range);
+  return *natural;
+}
+
+std::int64_t MapReader::whole(std::string_view key) const {
+  const Document& value = require(key);
+  if (const auto number = integer<std::int64_t>(value)) return *number;
   fail("E0541",
        where(value),
-       fmt::format("{}: expected a whole number of at least 0", path_of(key)),
+       fmt::format("{}: expected a whole number of 64 bits", path_of(key)),
        shown(value),
        "");
 }

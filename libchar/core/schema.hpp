@@ -39,7 +39,9 @@ class MapReader {
   double number(std::string_view key, NumberRange range = kAnyNumber) const;
   double number_or(std::string_view key, double fallback, NumberRange range = kAnyNumber) const;
   std::optional<double> maybe_number(std::string_view key, NumberRange range = kAnyNumber) const;
-  std::uint64_t count(std::string_view key) const;
+  std::uint64_t count(std::string_view key, NumberRange range = kNotNegative) const;
+  /// A whole number of either sign.
+  std::int64_t whole(std::string_view key) const;
   std::uint64_t count_or(std::string_view key, std::uint64_t fallback) const;
   std::string text(std::string_view key) const;
   std::string text_or(std::string_view key, std::string fallback) const;

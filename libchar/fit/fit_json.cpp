@@ -1,5 +1,7 @@
 #include "libchar/fit/fit_json.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/core/units.hpp"
 
 namespace libchar {

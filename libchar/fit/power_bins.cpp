@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"

@@ -21,6 +21,12 @@
 #include "libchar/fusion/algorithms/tilt_kalman.hpp"
 #include "libchar/fusion/algorithms/tilt_tuned.hpp"
 
+// A build may bring algorithms of its own, which stand first: their header by -include, their
+// entries by -D'LIBCHAR_MORE_ALGORITHMS=entry<Mine>(),'.
+#ifndef LIBCHAR_MORE_ALGORITHMS
+#define LIBCHAR_MORE_ALGORITHMS
+#endif
+
 namespace libchar::fusion {
 namespace {
 
@@ -41,7 +47,7 @@ constexpr Entry entry() {
 
 // The order of reports: baselines, blind methods, taught methods, bounds.
 constexpr std::array kAlgorithms{
-    entry<Mean>(),
+    LIBCHAR_MORE_ALGORITHMS entry<Mean>(),
     entry<Median>(),
     entry<InverseVariance>(),
     entry<Minque>(),

@@ -79,6 +79,12 @@ std::vector<LogFormat> log_formats() {
   return descriptions;
 }
 
+std::string readable_files() {
+  std::vector<std::string_view> files;
+  for (const Format* format : by_name()) files.push_back(format->about.brief);
+  return fmt::format("{}", fmt::join(files, ", "));
+}
+
 std::vector<std::string> format_words() {
   std::vector<std::string> words = {"auto"};
   for (const Format* format : by_name()) words.emplace_back(format->about.name);

@@ -11,6 +11,7 @@ namespace libchar {
 struct LogFormat {
   std::string_view name;   ///< the word for it in options: "csv"
   std::string_view title;  ///< as tables of formats list it: "CSV"
+  std::string_view brief;  ///< its files in a help text: ".csv"
   std::vector<std::string_view>
       suffixes;                ///< files of this format by their name, whatever they hold
   std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it
@@ -22,6 +23,9 @@ struct LogFormat {
 
 /// All of them, in the order in which files are asked whether they are of this format.
 std::vector<LogFormat> log_formats();
+
+/// ".csv, .npy, raw with sidecar": the files that are read, for help texts.
+std::string readable_files();
 
 /// What an option that names a format to read may say: "auto" and the names in alphabetical order.
 std::vector<std::string> format_words();

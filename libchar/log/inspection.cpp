@@ -5,8 +5,10 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/text.hpp"
+#include "libchar/log/recording_json.hpp"
 
 namespace libchar {
 namespace {
@@ -35,61 +37,6 @@ class Meters final : public BlockSink {
   tbb::task_arena arena_;
   std::vector<QualityMeter> meters_;
 };
-
-Json channel_json(const Channel& channel, const ChannelQuality& q) {
-  Json out;
-  out["name"] = printable(channel.name);
-  out["unit"] = printable(channel.unit);
-  out["missing"] = q.missing;
-  out["samples"] = q.samples;
-  out["integer"] = channel.integer;
-  out["mean"] = json_number(q.mean);
-  out["standard_deviation"] = json_number(q.standard_deviation);
-  out["minimum"] = json_number(q.minimum);
-  out["maximum"] = json_number(q.maximum);
-  out["resolution"] = json_number(q.resolution);
-  out["distinct_values"] = q.distinct_values;
-  out["saturated"] = q.saturated;
-  out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] =
-      q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
-  out["float32"] = q.float32;
-  out["suggestions"] = q.suggestions;
-  return out;
-}
-
-Json recording_json(const Inspection& inspection) {
-  const LogInfo& info = inspection.info;
-  const TimeBase& time = info.time;
-  Json out;
-  out["file"] = printable(info.file);
-  out["sha256"] = info.sha256.empty() ? Json(nullptr) : Json(info.sha256);
-  out["bytes"] = info.bytes;
-  out["log_format"] = info.format;
-  out["rows"] = info.rows;
-  out["samples"] = info.samples;
-  out["channels"] = Json::array();
-  for (std::size_t c = 0; c < info.channels.size(); ++c)
-    out["channels"].push_back(channel_json(info.channels[c], inspection.quality[c]));
-  out["rate_hz"] = time.rate_hz > 0 ? json_number(time.rate_hz) : Json(nullptr);
-  out["jitter_s"] = json_number(time.jitter_s);
-  out["max_deviation_s"] = json_number(time.max_deviation_s);
-  out["gaps"] = time.gaps;
-  out["missing_samples"] = time.missing_samples;
-  out["time"] = {{"column", printable(time.column)},
-                 {"unit", time.unit},
-                 {"unit_guessed", time.unit_guessed},
-                 {"from_stamps", time.from_stamps},
-                 {"start_ns", time.start_ns ? Json(*time.start_ns) : Json(nullptr)}};
-  out["repairs"] = Json::object();
-  for (const Warning& w : info.warnings.list()) out["repairs"][w.code] = w.count;
-  for (const auto& [key, texts] :
-       {std::pair{"guesses", &info.guesses}, std::pair{"dialect", &info.dialect}}) {
-    out[key] = Json::array();
-    for (const std::string& text : *texts) out[key].push_back(printable(text));
-  }
-  return out;
-}
 
 std::string duration(double seconds) {
   const std::string text =
@@ -145,7 +92,7 @@ Json inspection_json(const std::vector<Inspection>& inspections) {
   document["version"] = 1;
   document["recordings"] = Json::array();
   for (const Inspection& inspection : inspections)
-    document["recordings"].push_back(recording_json(inspection));
+    document["recordings"].push_back(recording_json(inspection.info, inspection.quality));
   return document;
 }
 

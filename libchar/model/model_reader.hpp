@@ -21,8 +21,4 @@ SensorModel read_model_file(const std::string& path);
 /// version, which may stand there all the same.
 SensorModel sensor_model_of(const Document& node, const std::string& file, const std::string& path);
 
-/// Reads a whole small text file. Throws Error(input): absent, a folder, no regular file, too
-/// large.
-std::string read_document_text(const std::string& path);
-
 }  // namespace libchar

@@ -9,7 +9,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/interval.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/fields.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/error_meter.hpp"
@@ -123,7 +123,7 @@ struct ReplayResult {
   Scene scene;
   std::vector<LogInfo> logs;  ///< the recording, the reference's own log; empty for a simulation
   std::vector<std::string> command;  ///< as typed; set by the caller
-  Json settings;                     ///< effective ones, for provenance
+  std::vector<Entry> settings;       ///< effective ones, for provenance
   std::vector<std::string> plan;     ///< sentences: what was read, learnt, run, skipped and why
   double rate_hz = 0;                ///< of the instants that are fused
   std::uint64_t instants = 0;        ///< of the run

@@ -1,5 +1,7 @@
 #include "libchar/report/escape.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -85,10 +87,6 @@ std::string csv_cell(std::string_view text) {
   if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
   replace_all(out, "\"", "\"\"");
   return '"' + out + '"';
-}
-
-std::string json_text(std::string_view text) {
-  return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
 }
 
 std::string markdown_text(std::string_view text) {

@@ -32,7 +32,4 @@ std::string csv_cell(std::string_view text);
 /// For Markdown: no mark of it becomes a tag, link, column or line.
 std::string markdown_text(std::string_view text);
 
-/// The text itself when it is valid UTF-8, else with visible escapes: JSON carries nothing else.
-std::string json_text(std::string_view text);
-
 }  // namespace libchar

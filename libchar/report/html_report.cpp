@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
@@ -161,7 +162,7 @@ std::string provenance(const Characterization& result) {
   if (!log.guesses.empty())
     out += "<h4>Guessed, not read</h4>\n" + bullet_list(log.guesses, "cautions");
   out += "</div>\n<div>\n" + time_base(log) + warnings_part(log.warnings) + "</div>\n</div>\n";
-  out += settings_details(result.settings);
+  out += settings_details(json_of(result.settings));
   return out + "</section>\n";
 }
 

@@ -15,7 +15,5 @@ Json spectrum_channel_json(const Channel& channel,
 Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
                            const ModelCurve* model = nullptr);
-Json quality_channel_json(const Channel& channel, const ChannelQuality& quality);
-Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 
 }  // namespace libchar

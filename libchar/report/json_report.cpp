@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/characterize/verification.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/verification_json.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
@@ -43,7 +45,7 @@ Json derived_json(const ChannelView& view) {
 }
 
 Json quality_json(const ChannelResult& channel) {
-  Json out = quality_channel_json(channel.channel, channel.quality);
+  Json out = channel_json(channel.channel, channel.quality);
   out["lines"] = Json::array();
   for (const SpectralLine& line : channel.lines) {
     out["lines"].push_back({{"frequency_hz", line.frequency_hz},
@@ -70,9 +72,8 @@ Json fit_or_reason(const ChannelView& view) {
 
 Json json_without_times(const CharacterizationView& view) {
   const Characterization& result = *view.result;
-  Json out = frame("characterization");
-  add_provenance(out, result.command, {result.log});
-  out["config"] = result.settings.is_null() ? Json::object() : result.settings;
+  Json out = document_head("characterization", result.command, {&result.log});
+  out["config"] = json_of(result.settings);
   out["verdict"] = json_text(view.verdict);
 
   std::vector<ChannelQuality> qualities;

@@ -26,9 +26,5 @@ std::string csv_curves(const Characterization& result);
 
 /// The pieces of JSON that the verbs share (keys: docs/json.md).
 Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
-/// tool, command, input (path, sha256, bytes), warnings: the frame around every document.
-void add_provenance(Json& document,
-                    const std::vector<std::string>& command,
-                    const std::vector<LogInfo>& logs);
 
 }  // namespace libchar

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/units.hpp"
-#include "libchar/core/version.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
@@ -112,73 +112,6 @@ Json spectrum_channel_json(const Channel& channel,
   out["enbw_hz"] = json_number(spectrum.enbw_hz);
   out["notes"] = strings(spectrum.notes);
   return out;
-}
-
-Json quality_channel_json(const Channel& channel, const ChannelQuality& q) {
-  Json out = named(channel);
-  out["missing"] = q.missing;
-  out["samples"] = q.samples;
-  out["mean"] = json_number(q.mean);
-  out["standard_deviation"] = json_number(q.standard_deviation);
-  out["minimum"] = q.samples > 0 ? json_number(q.minimum) : Json(nullptr);
-  out["maximum"] = q.samples > 0 ? json_number(q.maximum) : Json(nullptr);
-  out["resolution"] = json_number(q.resolution);
-  out["distinct_values"] = q.distinct_values;
-  out["saturated"] = q.saturated;
-  out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] =
-      q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
-  out["float32"] = q.float32;
-  out["float32_step"] = json_number(q.float32_step);
-  out["suggestions"] = strings(q.suggestions);
-  return out;
-}
-
-Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities) {
-  Json out = {{"file", json_text(log.file)},
-              {"sha256", log.sha256},
-              {"rows", log.rows},
-              {"channels", Json::array()}};
-  for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i) {
-    out["channels"].push_back(quality_channel_json(log.channels[i], qualities[i]));
-  }
-  out["rate_hz"] = log.time.rate_hz > 0 ? json_number(log.time.rate_hz) : Json(nullptr);
-  out["jitter_s"] = json_number(log.time.jitter_s);
-  out["gaps"] = log.time.gaps;
-  out["repairs"] = Json::object();
-  for (const Warning& w : log.warnings.list()) out["repairs"][w.code] = w.count;
-  out["format"] = log.format;
-  out["bytes"] = log.bytes;
-  out["samples"] = log.samples;
-  out["missing_samples"] = log.time.missing_samples;
-  out["max_deviation_s"] = json_number(log.time.max_deviation_s);
-  out["rate_from_stamps"] = log.time.from_stamps;
-  out["time_column"] = json_text(log.time.column);
-  out["time_unit"] = json_text(log.time.unit);
-  out["time_unit_guessed"] = log.time.unit_guessed;
-  out["start_ns"] = log.time.start_ns ? Json(*log.time.start_ns) : Json(nullptr);
-  out["dialect"] = strings(log.dialect);
-  out["guesses"] = strings(log.guesses);
-  return out;
-}
-
-void add_provenance(Json& document,
-                    const std::vector<std::string>& command,
-                    const std::vector<LogInfo>& logs) {
-  document["tool"] = {{"name", "sensorchar"}, {"version", version()}};
-  document["command"] = strings(command);
-  document["input"] = Json::array();
-  document["warnings"] = Json::array();
-  for (const LogInfo& log : logs) {
-    document["input"].push_back(
-        {{"path", json_text(log.file)}, {"sha256", log.sha256}, {"bytes", log.bytes}});
-    for (const Warning& w : log.warnings.list()) {
-      document["warnings"].push_back({{"code", w.code},
-                                      {"message", json_text(w.message)},
-                                      {"count", w.count},
-                                      {"where", strings(w.places)}});
-    }
-  }
 }
 
 }  // namespace libchar

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
@@ -14,9 +15,9 @@
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/detail/replay_tables.hpp"
+#include "libchar/report/detail/replay_words.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/replay_json.hpp"
-#include "libchar/report/detail/replay_words.hpp"
 
 namespace libchar {
 namespace {
@@ -288,7 +289,7 @@ std::string provenance(const ReplayView& view) {
                                             " more for the scores without a reference"
                                       : "") +
            "</details>\n";
-  return out + settings_details(r.settings) + "</section>\n";
+  return out + settings_details(json_of(r.settings)) + "</section>\n";
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/text.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/outputs.hpp"
 
@@ -291,10 +293,11 @@ Json replay_json_without_times(const ReplayView& view) {
 
 Json replay_json(const ReplayView& view) {
   const ReplayResult& result = *view.result;
-  Json out = {{"format", "replay-report"}, {"version", 1}};
-  add_provenance(out, result.command, result.logs);
+  std::vector<const LogInfo*> logs;
+  for (const LogInfo& log : result.logs) logs.push_back(&log);
+  Json out = document_head("replay-report", result.command, logs);
   for (const Json& warning : warnings_json(result.warnings)) out["warnings"].push_back(warning);
-  out["config"] = result.settings.is_null() ? Json::object() : result.settings;
+  out["config"] = json_of(result.settings);
   out["scene"] = scene_json(view);
   out["verdict"] = paragraph(view.steady_verdict);
   out["verdict_with_costs"] = paragraph(view.verdict);

@@ -75,7 +75,7 @@ struct Scene {
       fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
-  std::vector<SceneAlgorithm> algorithms;  ///< empty: all that the scene can feed
+  std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets
   std::vector<std::string> files;          ///< every file that was named and found, resolved
   Warnings warnings;
 };

@@ -6,10 +6,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "libchar/core/error.hpp"
+#include "tests/support/places.hpp"
 
 using namespace libchar;
 
@@ -96,6 +100,32 @@ void check_same_bits(const AllanCurve& a, const AllanCurve& b, double factor) {
 TEST_CASE("names and types") {
   for (const DeviationType type : kAll) CHECK(deviation_type(name_of(type)) == type);
   CHECK_FALSE(deviation_type("allan"));
+}
+
+TEST_CASE("the table of deviations stands in the order of its enum, and the page has each word") {
+  std::ifstream file(test::source_folder() / "docs" / "theory" / "allan.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const auto rows = deviation_rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CAPTURE(rows[i].word);
+    CHECK(static_cast<std::size_t>(rows[i].type) == i);
+    CHECK(&deviation_row(rows[i].type) == &rows[i]);
+    CHECK(page.find('`' + std::string(rows[i].word) + '`') != std::string::npos);
+    CHECK(deviation_words()[i] == rows[i].word);
+  }
+}
+
+TEST_CASE("as many samples as one term spans make one point, one fewer none") {
+  for (const DeviationRow& row : deviation_rows()) {
+    CAPTURE(row.word);
+    AllanOptions options;
+    options.type = row.type;
+    std::vector<double> record(row.span(1));
+    for (std::size_t i = 0; i < record.size(); ++i) record[i] = static_cast<double>(i * i);
+    CHECK(allan_deviation(record, 1, options).points.size() >= 1);
+    record.pop_back();
+    CHECK_THROWS_AS(allan_deviation(record, 1, options), Error);
+  }
 }
 
 TEST_CASE("numbers of terms follow the formulas") {

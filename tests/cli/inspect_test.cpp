@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/json.hpp"
 #include "tests/support/run.hpp"

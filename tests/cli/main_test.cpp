@@ -126,19 +126,3 @@ TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
     CHECK_FALSE(std::filesystem::exists(out));
   }
 }
-
-TEST_CASE("a verb is one file: the program finds it without being told of it anywhere else") {
-  // Built of the same objects as the program, with tests/cli/verbs/count_words.cpp beside its verbs.
-  const std::string program = std::filesystem::path(test::program())
-                                  .replace_filename("sensorchar_with_count_words")
-                                  .string();
-  const auto help = test::run_words({program, "--help"});
-  CHECK(help.code == 0);
-  CHECK_THAT(help.out, Contains("convert") && Contains("count-words"));
-  CHECK_THAT(test::run_words({program, "count-words", "--help"}).out, Contains("--json"));
-  CHECK(test::run_words({program, "count-words", "one", "two"}).out == "2\n");
-  const auto json = test::run_words({program, "count-words", "one", "--json"});
-  CHECK_THAT(json.out, Contains("\"format\": \"words\"") && Contains("\"words\": 1"));
-  CHECK_THAT(test::run_words({program, "cont-words"}).err, Contains("did you mean count-words?"));
-  CHECK(test::run({"count-words"}).code == 2);
-}

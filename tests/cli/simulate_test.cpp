@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/json.hpp"
 #include "libchar/core/moments.hpp"

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/schema.hpp"
@@ -67,6 +68,28 @@ TEST_CASE("document: JSON gives the same tree") {
   CHECK(as_json(json).dump() == R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})");
   CHECK(json.find("a")->value.whole);
   CHECK_FALSE(json.find("b")->value.list[0].find("x")->value.whole);
+}
+
+TEST_CASE("document: JSON knows the places of its keys and values") {
+  const Document json = parse_json_document(
+      "\xEF\xBB\xBF{\"a\": -1.5e3, \"b\":\n [true,{\"q\\\"\": \"x\\\\\"}, null,7],\n\"c\":[]}\n",
+      "f");
+  const auto place = [](const auto& node) { return std::pair(node.line, node.column); };
+  CHECK(place(json) == std::pair(1, 1));
+  CHECK(place(*json.find("a")) == std::pair(1, 2));
+  CHECK(place(json.find("a")->value) == std::pair(1, 7));
+  CHECK(json.find("a")->value.text == "-1.5e3");
+  CHECK(place(*json.find("b")) == std::pair(1, 15));
+  const Document& list = json.find("b")->value;
+  CHECK(place(list) == std::pair(2, 2));
+  CHECK(place(list.list[0]) == std::pair(2, 3));
+  CHECK(place(list.list[1]) == std::pair(2, 8));
+  CHECK(place(list.list[1].map[0]) == std::pair(2, 9));
+  CHECK(list.list[1].map[0].key == "q\"");
+  CHECK(place(list.list[1].map[0].value) == std::pair(2, 16));
+  CHECK(place(list.list[2]) == std::pair(2, 24));
+  CHECK(place(list.list[3]) == std::pair(2, 29));
+  CHECK(place(json.find("c")->value) == std::pair(3, 5));
 }
 
 TEST_CASE("schema: refusals name place, key and the nearest valid key") {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "tests/support/shared.hpp"

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/json.hpp"

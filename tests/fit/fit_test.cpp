@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"

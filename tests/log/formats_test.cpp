@@ -65,6 +65,7 @@ TEST_CASE(
 TEST_CASE("words and suffixes for options come from the table") {
   CHECK(format_words() == std::vector<std::string>{"auto", "csv", "npy", "raw"});
   CHECK(written_format_words() == format_words());
+  CHECK(readable_files() == ".csv, .npy, raw with sidecar");
   CHECK(written_suffixes() == ".csv, .npy, .f64, .f32, .bin, .raw");
   CHECK(format_to_write("LOG.CSV", {}) == "csv");
   CHECK_THROWS_WITH(format_to_write("log.tsv", {}), Catch::Contains("end the name in one of .csv"));

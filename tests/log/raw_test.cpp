@@ -2,10 +2,11 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/sidecar.hpp"
-#include "libchar/log/binary/yaml_guard.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/rows.hpp"
 #include "tests/support/shared.hpp"
@@ -131,7 +132,8 @@ TEST_CASE("a missing sidecar is answered with one to copy; two are one too many"
 
 TEST_CASE("sidecars are refused with the key at fault") {
   const std::string front = R"({"dtype": "f64", "endian": "little", )";
-  CHECK_THAT(said(front + R"("channels": -1})"), Catch::Contains("(key channels)"));
+  CHECK_THAT(said(front + R"("channels": -1})"),
+             Catch::Contains("x.json:1:50") && Catch::Contains("channels:"));
   CHECK_THAT(said(front + R"("channels": 1000000000})"),
              Catch::Contains("more than the limit of 100000"));
   CHECK_THAT(said(front + R"("channels": []})"), Catch::Contains("empty"));
@@ -141,18 +143,32 @@ TEST_CASE("sidecars are refused with the key at fault") {
              Catch::Contains("did you mean scale?"));
   CHECK_THAT(said(front + R"("channels": [{"name": "a", "scale": 0}]})"),
              Catch::Contains("scale of 0"));
-  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 0})"), Catch::Contains("(key rate_hz)"));
-  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": "100"})"), Catch::Contains("(key rate_hz)"));
+  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 0})"),
+             Catch::Contains("x.json:1:64") && Catch::Contains("rate_hz:"));
+  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": "100"})"),
+             Catch::Contains("rate_hz: expected"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 1e400})"), Catch::Contains("got \"1e400\""));
   CHECK_THAT(said(front + R"("channels": 1, "offset": -8})"),
              Catch::Contains("a channel's values"));
-  CHECK_THAT(said(front + R"("channels": 1, "rows": 1.5})"), Catch::Contains("(key rows)"));
+  CHECK_THAT(said(front + R"("channels": 1, "rows": 1.5})"), Catch::Contains("rows: expected"));
   CHECK_THAT(said(front + R"("channels": 1, "t0_ns": 18446744073709551615})"),
-             Catch::Contains("(key t0_ns)"));
-  CHECK_THAT(said(R"({"dtype": "f64", "channels": 1})"), Catch::Contains("(key endian)"));
-  CHECK_THAT(said(R"({"channels": 1})"), Catch::Contains("(key dtype)"));
-  CHECK_THAT(said("[1]"), Catch::Contains("expected keys and values"));
+             Catch::Contains("t0_ns: expected"));
+  CHECK_THAT(said(R"({"dtype": "f64", "channels": 1})"),
+             Catch::Contains("endian: the key is missing"));
+  CHECK_THAT(said(R"({"channels": 1})"), Catch::Contains("dtype: the key is missing"));
+  CHECK_THAT(said("[1]"), Catch::Contains("map of keys and values"));
   CHECK(said(R"({"dtype": "u8", "channels": 1})") == "accepted");
+}
+
+TEST_CASE("a wrong key of a sidecar is named with line and column, in JSON as in YAML") {
+  const std::string json = "{\n  \"dtype\": \"u8\",\n  \"chanels\": 1\n}";
+  CHECK(said(json) ==
+        "x.json:3:3: error E0540: unknown key; got \"chanels\"; hint: did you mean channels?");
+  CHECK_THAT(said("dtype: u8\nchanels: 1\n", false), Catch::StartsWith("x.json:2:1: error E0540"));
+  CHECK_THAT(said("{\"dtype\": \"u8\",\n \"channels\": [{\"name\": \"a\"},\n  {\"nmae\": \"b\"}]}"),
+             Catch::StartsWith("x.json:3:4: error E0540: unknown key in channels[1]"));
+  CHECK_THAT(said("{\"dtype\": \"u8\", \"channels\": 1,\n\"order\": \"planer\"}"),
+             Catch::StartsWith("x.json:2:10: error E0544"));
 }
 
 TEST_CASE("YAML is read without the parts that bite") {
@@ -167,10 +183,10 @@ TEST_CASE("YAML is read without the parts that bite") {
   CHECK_THAT(refused(std::string(200, '[')), Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("\tdtype: f64\n"), Catch::Contains("not valid YAML"));
   CHECK_THAT(refused(""), Catch::Contains("empty"));
-  const Json node = parse_guarded_yaml(
-      "a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
-      "18446744073709551615\n",
-      "x");
+  const Json node = as_json(
+      parse_yaml_document("a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
+                          "18446744073709551615\n",
+                          "x"));
   CHECK(node["a"] == "010");
   CHECK(node["b"] == "0x10");
   CHECK(node["c"] == -3);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "libchar/replay/detail/thinned_tracks.hpp"
 #include "libchar/replay/verdict.hpp"

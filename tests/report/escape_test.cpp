@@ -1,6 +1,7 @@
 #include "libchar/report/escape.hpp"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/report/synthetic.hpp"

@@ -3,12 +3,15 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/export/consumers.hpp"
+#include "libchar/log/inspection.hpp"
+#include "libchar/log/inspection.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
@@ -223,4 +226,26 @@ TEST_CASE("verdict: says what is fine, what is not, and where") {
         std::string::npos);
   result.channels.clear();
   CHECK(verdict_of(result) == "The recording holds no channel to characterize.");
+}
+
+TEST_CASE("inspect and the report describe a recording by the same keys and values") {
+  const Characterization result = test::synthetic_imu();
+  Inspection inspection;
+  inspection.info = result.log;
+  inspection.info.channels.clear();
+  for (const ChannelResult& c : result.channels) {
+    inspection.info.channels.push_back(c.channel);
+    inspection.quality.push_back(c.quality);
+  }
+  const Json inspected = inspection_json({inspection})["recordings"][0];
+  CHECK(inspected == json_report(result)["recording"]);
+  for (const char* key : {"file", "sha256", "rows", "rate_hz", "time", "log_format", "format"})
+    CHECK(inspected.contains(key));
+  CHECK(inspected["channels"][0].contains("integer"));
+  CHECK(inspected["channels"][0].contains("float32_step"));
+}
+
+TEST_CASE("warnings of the report name their file") {
+  const Json report = json_report(test::synthetic_imu());
+  CHECK(report["warnings"][0]["file"] == report["input"][0]["path"]);
 }

@@ -210,8 +210,10 @@ inline Characterization synthetic_imu() {
   bad.quality.difference_kurtosis = 29.8;
   bad.quality.suggestions = {"14 samples stand at 19.6133: widen the range"};
   for (ChannelResult& c : result.channels) c.quality.missing = 37;
-  result.settings = {{"allan", {{"type", "oadev"}, {"grid", "octave"}}},
-                     {"spectrum", {{"window", "hann"}, {"segment", 50000}, {"overlap", 0.5}}}};
+  result.settings = {
+      part_entry("allan", {{"type", "oadev"}, {"grid", "octave"}}),
+      part_entry("spectrum",
+                 {{"window", "hann"}, {"segment", std::uint64_t{50000}}, {"overlap", 0.5}})};
   result.command = {"sensorchar", "characterize", "recordings/imu_2h.csv", "-o", "out dir"};
   result.seconds = 1.25;
   return result;
@@ -256,7 +258,7 @@ inline Characterization hostile() {
   }
   result.log.file = hostile_names()[1] + hostile_names()[0];
   result.log.time.column = result.log.time.unit = result.log.format = hostile_names()[0];
-  result.settings["note"] = hostile_names()[1];
+  result.settings.push_back({"note", hostile_names()[1]});
   return result;
 }
 

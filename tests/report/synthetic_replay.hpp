@@ -128,7 +128,7 @@ inline ReplayResult synthetic_replay(std::size_t sensors = 5, std::size_t inputs
   log.warnings.add("gap", "grid points without a row are kept as missing", "line 4211", 37);
   r.logs = {log};
   r.command = {"sensorchar", "replay", "scenes/table.yaml", "-o", "out dir"};
-  r.settings = {{"seed", 1}};
+  r.settings = {{"seed", std::uint64_t{1}}};
   r.plan = {"reads 6 channels", "learning on 10000 instants", "runs everything"};
   r.rate_hz = 1000;
   r.instants = 100000;
@@ -253,7 +253,7 @@ inline ReplayResult hostile_replay() {
   r.scene.name = hostile_names()[1] + hostile_names()[0];
   r.scene.file = r.logs[0].file = hostile_names()[0];
   r.inputs[0].name = r.inputs[0].unit = r.reference_use = hostile_names()[2];
-  r.settings["note"] = hostile_names()[1];
+  r.settings.push_back({"note", hostile_names()[1]});
   for (AlgorithmResult& a : r.algorithms)
     if (!a.ran) a.why = hostile_names()[0];
   r.algorithms[0].label = hostile_names()[1];

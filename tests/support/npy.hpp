@@ -31,7 +31,7 @@ inline Array npy(const std::filesystem::path& path) {
   const std::string header = bytes.substr(10, length);
   if (header.find("'<f8'") == std::string::npos ||
       header.find("'fortran_order': False") == std::string::npos)
-    throw std::runtime_error("not plain doubles: " + header);
+    throw std::runtime_error("not little-endian doubles in C order: " + header);
   Array array;
   const std::string shape = header.substr(header.find('(') + 1);
   std::size_t used = 0;

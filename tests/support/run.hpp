@@ -1,5 +1,5 @@
 #pragma once
-// Runs the built program as people do, and keeps what it said.
+// Runs the built program as a user does, and keeps what it printed.
 
 #include <fcntl.h>
 #include <sys/wait.h>

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "analysis_options.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/report/outputs.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -94,9 +97,8 @@ void run_allan(Session& session, const AllanVerb& verb) {
 std::function<void()> add_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<AllanVerb>();
   options
-      .add_text("LOG",
-                verb->log,
-                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .add_text(
+          "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options.add_text("-o,--output", verb->output, "write there instead of to stdout");
   options.add_flag("--force", verb->force, "overwrite the output file");

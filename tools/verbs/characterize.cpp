@@ -4,16 +4,19 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "analysis_options.hpp"
 #include "fit_table.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/outputs.hpp"
 #include "output_files.hpp"
@@ -92,11 +95,11 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
   for (const std::string& log : verb.logs) {
     Characterization result = characterize(log, options, session.terminal);
     result.command = session.command;
-    result.settings = settings_json(options);
+    result.settings = settings_of(options);
     if (verb.verify) {
       VerifyOptions how;
       how.seed = verb.seed;
-      result.settings["verify"] = {{"seed", verb.seed}};
+      result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
       agrees = verify(result, options, how, session.terminal) && agrees;
     }
     session.terminal.clear();
@@ -137,7 +140,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_texts("LOG",
                  verb->logs,
-                 "recordings (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+                 "recordings (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options
       .add_text(

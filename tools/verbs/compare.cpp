@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"

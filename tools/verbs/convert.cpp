@@ -5,10 +5,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "reading_options.hpp"
@@ -141,12 +143,12 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "file to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+                "file to write; its suffix says the format (" + libchar::written_suffixes() + ")")
       .required()
       .value_name("FILE");
   options.add_choice("--as",
                      verb->writing.format,
-                     {"auto", "csv", "npy", "raw"},
+                     libchar::written_format_words(),
                      "format to write (default: auto, by the suffix)");
   options.add_choice("--dtype",
                      verb->writing.dtype,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "analysis_options.hpp"
@@ -16,6 +17,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/model/model_file.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -210,8 +212,9 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("LOG|CURVE",
                 verb->input,
-                "recording (.csv, .npy, raw with sidecar), or with --curve a table: averaging "
-                "time or frequency, then values")
+                "recording (" + readable_files() +
+                    "), or with --curve a table: averaging "
+                    "time or frequency, then values")
       .required();
   options.add_choice(
       "--curve",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/inspection.hpp"

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
@@ -261,9 +263,8 @@ void run_psd(Session& session, const PsdVerb& verb) {
 std::function<void()> add_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<PsdVerb>();
   options
-      .add_text("LOG",
-                verb->log,
-                "recording (.csv, .npy, raw with sidecar; - reads CSV from standard input)")
+      .add_text(
+          "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options.add_text("-o,--output", verb->output, "write there instead of to stdout")
       .value_name("FILE");

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "fault_words.hpp"
@@ -17,11 +18,12 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/replay/verdict.hpp"
+#include "libchar/replay/algorithm_words.hpp"
+#include "libchar/replay/replay_view.hpp"
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
-#include "libchar/report/detail/replay_words.hpp"
+#include "libchar/report/replay_text.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "numbers.hpp"
 #include "output_files.hpp"
@@ -181,65 +183,15 @@ class EstimateFile final : public EstimateSink {
   std::uint64_t done_ = 0;
 };
 
-std::string cell(double value, int digits) {
-  return std::isfinite(value) ? significant(value, digits) : "-";
-}
-
-std::string text_for_people(const ReplayResult& r) {
-  const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
-  const char* error = r.has_reference ? "RMSE" : "leave-one-out";
-  std::string text = fmt::format("{}: {} sensors, {} instants at {} Hz\n",
-                                 printable(r.scene.name.empty() ? r.scene.file : r.scene.name),
-                                 r.sensors.size(),
-                                 r.instants,
-                                 significant(r.rate_hz, 6));
-  if (r.lag_estimated)
-    text +=
-        fmt::format("the sensors lag the reference by {} s (estimated)\n", significant(r.lag_s, 3));
-  if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
-    text += fmt::format(
-        "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);
-  text += fmt::format("\n{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}\n",
-                      "algorithm",
-                      error,
-                      "95 %",
-                      "regret",
-                      "ns/sample",
-                      "memory");
-  for (const AlgorithmResult* a : ranked(r))
-    text += fmt::format(
-        "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
-        printable(a->label),
-        cell(a->rmse, 5),
-        std::isfinite(a->rmse_ci95.low)
-            ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
-            : "-",
-        !std::isfinite(a->regret) ? "-"
-        : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
-                                  : significant(1 + a->regret, 3) + " x",
-        cell(a->ns_per_sample, 3),
-        people_bytes(a->peak_bytes),
-        a->bound             ? "  (bound)"
-        : a->as_good_as_best ? "  *"
-                             : "");
-  text += "\n* the best method, and those whose difference from it is not resolved\n";
-  for (const SkippedAlgorithms& s : skipped_algorithms(r))
-    text += fmt::format("skipped {}: {}\n",
-                        printable(fmt::format("{}", fmt::join(s.labels, ", "))),
-                        printable(s.reason));
-  text += "\n" + printable(replay_verdict(r)) + "\n";
-  return text;
-}
-
-Json settings_json(const ReplayVerb& verb, const ReplayResult& result) {
-  Json out = {{"seed", verb.seed},
-              {"window_s", json_number(result.window_s)},
-              {"allan", !verb.no_allan},
-              {"no_skip", verb.no_skip},
-              {"no_faults", verb.no_faults},
-              {"faults", Json::array()}};
-  for (const std::string& fault : verb.faults) out["faults"].push_back(printable(fault));
-  return out;
+std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& result) {
+  std::vector<std::string> faults;
+  for (const std::string& fault : verb.faults) faults.push_back(printable(fault));
+  return {{"seed", verb.seed},
+          {"window_s", finite_or_null(result.window_s)},
+          {"allan", !verb.no_allan},
+          {"no_skip", verb.no_skip},
+          {"no_faults", verb.no_faults},
+          {"faults", std::move(faults)}};
 }
 
 // What runs, what it needs and what can be set.
@@ -316,18 +268,20 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   ReplayResult result = replay(scene, options, session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
-  result.settings = settings_json(verb, result);
+  result.settings = settings_of(verb, result);
   session.terminal.warn(result.warnings, verb.scene);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
-  const std::vector<OutputFile> outputs = {{files[0], replay_html(result)},
-                                           {files[1], dump_json(replay_json(result))},
-                                           {files[2], replay_markdown(result)}};
+  const ReplayView view = replay_view(result);
+  const Json document = replay_json(view);
+  const std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
+                                           {files[1], dump_json(document)},
+                                           {files[2], replay_markdown(view)}};
   write_outputs(outputs, folder, inputs, verb.force, [&] {
     if (estimates)
       for (const std::string& file : estimates->finish()) files.push_back(file);
   });
-  if (verb.json) return print(dump_json(replay_json(result)));
-  print(text_for_people(result));
+  if (verb.json) return print(dump_json(document));
+  print(replay_text(view));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
   print(written + "\n");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "fault_words.hpp"
@@ -14,13 +15,14 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "libchar/scene/scene.hpp"
-#include "libchar/scene/scene_file.hpp"
 #include "libchar/scene/detail/scene_paths.hpp"
 #include "libchar/scene/detail/scene_signal.hpp"
+#include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "libchar/scene/scene_writer.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "numbers.hpp"
@@ -400,7 +402,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "log to write; its suffix says the format (.csv, .npy, .f64, .f32, .bin, .raw)")
+                "log to write; its suffix says the format (" + written_suffixes() + ")")
       .required()
       .value_name("LOG");
   options.add_duration("--duration", verb->duration_s, "length of the recording (90, 90s, 1.5h)");
@@ -451,7 +453,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-scene", verb->no_scene, "write no scene");
   options.add_choice("--as",
                      verb->writing.format,
-                     {"auto", "csv", "npy", "raw"},
+                     written_format_words(),
                      "format to write (default: auto, by the suffix)");
   options.add_choice("--dtype",
                      verb->writing.dtype,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kBlock = AnchoredPhase::kBlock;
 
-Twofold two_sum(double a, double b) {
+DoubleDouble two_sum(double a, double b) {
   const double s = a + b, t = s - a;
   return {s, (a - (s - t)) + (b - t)};
 }
@@ -71,7 +71,7 @@ void find_stretches(std::span<const double> record, std::uint64_t reach, Anchore
 /// local2 and W from local, A and X.
 void sum_again(AnchoredPhase& phase) {
   const double length = kBlock;
-  Twofold base;
+  DoubleDouble base;
   for (std::uint64_t b = 0; b < phase.base2.size(); ++b) {
     phase.base2[b] = base;
     double sum = 0;
@@ -81,13 +81,13 @@ void sum_again(AnchoredPhase& phase) {
       sum += phase.local[p];
     }
     base = base + phase.base[b] * length + phase.anchor[b] * (length * (length - 1) / 2) +
-           Twofold{sum, 0};
+           DoubleDouble{sum, 0};
   }
 }
 
 /// Value of the polynomial part at local position j + t: c[0] + c[1] t + c[2] t^2.
 struct Polynomial {
-  std::array<Twofold, 3> c;
+  std::array<DoubleDouble, 3> c;
   void add(double weight, const Polynomial& other) {
     for (std::size_t k = 0; k < 3; ++k) c[k] = c[k] + other.c[k] * weight;
   }
@@ -96,8 +96,8 @@ struct Polynomial {
 Polynomial polynomial(const AnchoredPhase& phase, std::uint64_t position, bool of_sum) {
   const std::uint64_t b = position / kBlock;
   const double j = static_cast<double>(position % kBlock);
-  const Twofold a = phase.anchor[b];
-  if (!of_sum) return {{phase.base[b] + a * j, a, Twofold{}}};
+  const DoubleDouble a = phase.anchor[b];
+  if (!of_sum) return {{phase.base[b] + a * j, a, DoubleDouble{}}};
   return {{phase.base2[b] + phase.base[b] * j + a * (j * (j - 1) / 2),
            phase.base[b] + a * (j - 0.5),
            a * 0.5}};
@@ -107,14 +107,14 @@ constexpr double kWeights[2][4] = {{1, -2, 1, 0}, {-1, 3, -3, 1}};
 
 }  // namespace
 
-Twofold operator+(Twofold a, Twofold b) {
-  const Twofold high = two_sum(a.high, b.high);
-  const Twofold low = two_sum(a.low, b.low);
-  const Twofold sum = two_sum(high.high, high.low + low.high);
+DoubleDouble operator+(DoubleDouble a, DoubleDouble b) {
+  const DoubleDouble high = two_sum(a.high, b.high);
+  const DoubleDouble low = two_sum(a.low, b.low);
+  const DoubleDouble sum = two_sum(high.high, high.low + low.high);
   return two_sum(sum.high, sum.low + low.low);
 }
 
-Twofold operator*(Twofold a, double k) {
+DoubleDouble operator*(DoubleDouble a, double k) {
   const double product = a.high * k;
   return two_sum(product, std::fma(a.high, k, -product) + a.low * k);
 }
@@ -123,7 +123,7 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
   AnchoredPhase phase = empty_phase(rate.size() + 1, balancing_scale(rate), summed);
   const double scale = phase.scale, origin = first_finite(rate, 0) * scale;
   find_stretches(rate, 1, phase);
-  Twofold base;
+  DoubleDouble base;
   double anchor = origin;
   for (std::uint64_t b = 0; b < phase.base.size(); ++b) {
     const auto block = rate.subspan(b * kBlock, std::min(kBlock, rate.size() - b * kBlock));
@@ -131,7 +131,7 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
     double total = 0;
     for (const double y : block) total += finite_or(y * scale, anchor) - anchor;
     const double mean = total / static_cast<double>(std::max<std::size_t>(block.size(), 1));
-    phase.anchor[b] = two_sum(anchor, -origin) + Twofold{mean, 0};
+    phase.anchor[b] = two_sum(anchor, -origin) + DoubleDouble{mean, 0};
     phase.base[b] = base;
     double sum = 0;
     double* local = phase.local.data() + b * kBlock;
@@ -140,7 +140,7 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
       sum += (finite_or(block[j] * scale, anchor) - anchor) - mean;
     }
     if (block.size() < kBlock) local[block.size()] = sum;
-    base = base + phase.anchor[b] * static_cast<double>(kBlock) + Twofold{sum, 0};
+    base = base + phase.anchor[b] * static_cast<double>(kBlock) + DoubleDouble{sum, 0};
   }
   if (summed) sum_again(phase);
   return phase;

@@ -9,11 +9,11 @@
 namespace libchar {
 
 /// A sum of two doubles, high + low, |low| <= ulp(high)/2: twice the digits (Dekker 1971).
-struct Twofold {
+struct DoubleDouble {
   double high = 0, low = 0;
 };
-Twofold operator+(Twofold a, Twofold b);
-Twofold operator*(Twofold a, double k);
+DoubleDouble operator+(DoubleDouble a, DoubleDouble b);
+DoubleDouble operator*(DoubleDouble a, double k);
 
 /// Half-open range of indices.
 struct Stretch {
@@ -21,7 +21,7 @@ struct Stretch {
 };
 
 /// Phase x_p = y_0 + … + y_{p-1} of a rate record (or a phase record itself) and, for the modified
-/// variance, its own sum W_p = x_0 + … + x_{p-1}, each stored as  base of the block (twofold) +
+/// variance, its own sum W_p = x_0 + … + x_{p-1}, each stored as  base of the block (as two doubles) +
 /// polynomial + small local rest (double):
 ///   x_{bL+j} = X_b + j A_b + local_{bL+j},
 ///   W_{bL+j} = W_b + j X_b + j(j-1)/2 A_b + local2_{bL+j},
@@ -34,8 +34,8 @@ struct AnchoredPhase {
   double scale = 1;                              ///< power of two by which all was multiplied
   bool summed = false;                           ///< local2 and W are there
   std::vector<double> local, local2;
-  std::vector<Twofold> anchor, base, base2;  ///< A_b, X_b, W_b
-  std::vector<Stretch> stretches;            ///< of phase points between missing samples
+  std::vector<DoubleDouble> anchor, base, base2;  ///< A_b, X_b, W_b
+  std::vector<Stretch> stretches;                 ///< of phase points between missing samples
   std::uint64_t missing = 0;
 };
 

@@ -30,8 +30,8 @@ struct Family {
 };
 
 Family family_of(DeviationType type) {
-  return {type == DeviationType::hdev || type == DeviationType::ohdev,
-          type == DeviationType::mdev || type == DeviationType::tdev};
+  const DeviationRow& row = deviation_row(type);
+  return {row.order == 3 && !row.of_sum, row.of_sum};
 }
 
 PerTerm covariance(Family family, double m, double lag, double dt) {
@@ -114,7 +114,7 @@ double equivalent_dof(DeviationType type,
                       double dt_s) {
   assert(m >= 1 && terms >= 1 && stride >= 1 && dt_s > 0);
   const double factor = static_cast<double>(m), count = static_cast<double>(terms);
-  if (type == DeviationType::totdev) return total_dof(theta, factor, count, dt_s);
+  if (deviation_row(type).reflected) return total_dof(theta, factor, count, dt_s);
   return discrete_dof(family_of(type), theta, factor, count, static_cast<double>(stride), dt_s);
 }
 

@@ -13,11 +13,9 @@ constexpr std::uint64_t kDenseUpTo = 1000;  // every m
 constexpr double kDensePerDecade = 200;     // beyond
 
 /// Largest m that leaves one term.
-std::uint64_t largest_factor(DeviationType type, std::uint64_t samples) {
-  if (type == DeviationType::totdev) return samples > 0 ? samples - 1 : 0;
-  std::uint64_t m = samples / 2 + 1;
-  if (type != DeviationType::adev && type != DeviationType::oadev) m = samples / 3 + 1;
-  while (m > 0 && term_span(type, m) > samples) --m;
+std::uint64_t largest_factor(const DeviationRow& row, std::uint64_t samples) {
+  std::uint64_t m = samples / (row.reflected ? 1 : static_cast<std::uint64_t>(row.order)) + 1;
+  while (m > 0 && row.span(m) > samples) --m;
   return m;
 }
 
@@ -76,21 +74,6 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
 
 }  // namespace
 
-std::uint64_t term_span(DeviationType type, std::uint64_t m) {
-  switch (type) {
-    case DeviationType::mdev:
-    case DeviationType::tdev:
-      return 3 * m - 1;
-    case DeviationType::hdev:
-    case DeviationType::ohdev:
-      return 3 * m;
-    case DeviationType::totdev:
-      return m + 1;
-    default:
-      return 2 * m;
-  }
-}
-
 std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
                                              double dt_s,
                                              std::uint64_t samples,
@@ -100,7 +83,7 @@ std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
   // A hair of slack: tau_max and tau_min are decimal numbers, the multiples of dt are not.
   const double slack = 1 + 1e-9;
   const std::uint64_t largest = static_cast<std::uint64_t>(
-      std::min(static_cast<double>(largest_factor(options.type, samples)),
+      std::min(static_cast<double>(largest_factor(deviation_row(options.type), samples)),
                std::max(1.0, std::floor(tau_max / dt_s * slack))));
   std::vector<std::uint64_t> factors =
       options.grid == TauGrid::list

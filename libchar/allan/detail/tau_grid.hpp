@@ -7,10 +7,6 @@
 
 namespace libchar {
 
-/// Samples that one term of a deviation spans at averaging factor m, e.g. 2 m; 3 m - 1 for the
-/// modified ones.
-std::uint64_t term_span(DeviationType type, std::uint64_t m);
-
 /// Ascending averaging factors of the grid that `options` asks for in a record of `samples` rate
 /// samples. Listed times that the record is too short for are left out and noted. Throws
 /// Error(usage) for a time that is not positive and finite.

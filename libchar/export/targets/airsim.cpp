@@ -4,6 +4,8 @@
 // bias instability B. A key that is left out keeps AirSim's MPU-6000, so an absent walk is written
 // as 0.
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"

@@ -3,6 +3,8 @@
 // finds named values by name but takes the first value of the document for value0: nothing may
 // stand in front of it.
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"

@@ -1,5 +1,7 @@
 // The sensor model itself as JSON, for programs without a format of their own.
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/export/detail/target_list.hpp"
 #include "libchar/model/model_json.hpp"
 

@@ -37,7 +37,7 @@ struct Solution {
   Mixture theta{};
   TermMatrix covariance = TermMatrix::Zero();
   double chi2 = 0;
-  bool settled = false;
+  bool converged = false;
 };
 
 std::optional<Solution> solve(const AllanCurve& curve,
@@ -58,7 +58,7 @@ std::optional<Solution> solve(const AllanCurve& curve,
   }
   Solution solution{start, TermMatrix::Zero(), 0, false};
   constexpr int kMost = 50, kDampAfter = 25;
-  for (int round = 0; round < kMost && !solution.settled; ++round) {
+  for (int round = 0; round < kMost && !solution.converged; ++round) {
     const std::optional<Eigen::MatrixXd> factor = cholesky_factor(covariance.at(solution.theta));
     if (!factor) return std::nullopt;
     const Eigen::MatrixXd whitened = solve_lower(*factor, design);
@@ -81,7 +81,7 @@ std::optional<Solution> solve(const AllanCurve& curve,
     solution.theta = next;
     solution.covariance = inverse_of(gram, terms);
     solution.chi2 = (target - whitened * vector(next)).squaredNorm();
-    solution.settled = moved < 1e-8;
+    solution.converged = moved < 1e-8;
   }
   return solution;
 }
@@ -115,7 +115,7 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
   } else if (second.agrees) {
     second.sentence = "agrees";
   }
-  if (!solution.settled) second.sentence += " (the reweighting did not settle in 50 rounds)";
+  if (!solution.converged) second.sentence += " (the reweighting did not settle in 50 rounds)";
 }
 
 }  // namespace
@@ -125,8 +125,8 @@ std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
                                             AllanCovarianceCache* cache) {
   const AllanCurve kept = usable(curve, first);
   const std::size_t terms = count_of(only_positive(first.theta));
-  const bool plain = kept.type == DeviationType::oadev || kept.type == DeviationType::adev;
-  if (!plain || terms == 0 || kept.points.size() < terms + 1) return std::nullopt;
+  if (!deviation_row(kept.type).is_allan() || terms == 0 || kept.points.size() < terms + 1)
+    return std::nullopt;
   AllanCovarianceCache own;
   const auto covariance = (cache != nullptr ? *cache : own).of(kept);
   const std::optional<Solution> solution = solve(kept, *covariance, first.theta);

@@ -23,7 +23,7 @@ constexpr double kRelevant =
     1.2;  // ratio of deviations below which a difference is not worth a word
 constexpr double kFewestDof = 2;
 
-struct Clash {
+struct Contradiction {
   double tau_s = 0, model = 0;
   Interval measured;
   double ratio = 1;
@@ -44,12 +44,12 @@ std::size_t largest_term(const Mixture& theta, double m, double dt_s) {
 }
 
 // The point where the model stands highest above what was measured.
-std::optional<Clash> worst_clash(const NoiseFit& fit, const AllanCurve& allan) {
+std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const AllanCurve& allan) {
   AllanCurve curve = allan;
   add_intervals(curve, fit.theta);
   // Where a low-pass colours the curve the plain model is not comparable (within 1 % only beyond 150 time constants).
   const double from_s = fit.bandwidth_hz ? 150 / (2 * std::numbers::pi * *fit.bandwidth_hz) : 0;
-  std::optional<Clash> worst;
+  std::optional<Contradiction> worst;
   for (const AllanPoint& point : curve.points) {
     if (point.tau_s < from_s || point.edf < kFewestDof || !(point.deviation > 0)) continue;
     const auto m = static_cast<double>(point.m);
@@ -57,7 +57,8 @@ std::optional<Clash> worst_clash(const NoiseFit& fit, const AllanCurve& allan) {
     const Interval interval = chi_square_interval(point.deviation, point.edf, kConfidence);
     const double ratio = model / point.deviation;
     if (model <= interval.high || ratio < kRelevant || (worst && ratio <= worst->ratio)) continue;
-    worst = Clash{point.tau_s, model, interval, ratio, largest_term(fit.theta, m, allan.dt_s)};
+    worst =
+        Contradiction{point.tau_s, model, interval, ratio, largest_term(fit.theta, m, allan.dt_s)};
   }
   return worst;
 }
@@ -70,18 +71,18 @@ void doubt(NoiseFit& fit, std::size_t term, const std::string& sentence) {
 }  // namespace
 
 void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
-  if (allan.type != DeviationType::oadev && allan.type != DeviationType::adev) return;
-  if (const auto clash = worst_clash(fit, allan))
+  if (!deviation_row(allan.type).is_allan()) return;
+  if (const auto worst = worst_contradiction(fit, allan))
     doubt(fit,
-          clash->term,
+          worst->term,
           fmt::format("At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
                       "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
                       "{} is not borne out there and is marked undetermined.",
-                      clash->tau_s,
-                      clash->model,
-                      clash->measured.low,
-                      clash->measured.high,
-                      people_name(static_cast<Term>(clash->term))));
+                      worst->tau_s,
+                      worst->model,
+                      worst->measured.low,
+                      worst->measured.high,
+                      people_name(static_cast<Term>(worst->term))));
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& first = fit.term[t];

@@ -60,7 +60,7 @@ Mixture step_goal(const CurveProblem& problem,
 
 /// The sum of squares is flat to rounding within 1e-8 of the minimum; the step itself goes on to
 /// shrink. Follows it while it does.
-void settle(const CurveProblem& problem,
+void refine(const CurveProblem& problem,
             const TermSet& free,
             const Mixture& fixed,
             CurveSolution& solution) {
@@ -124,7 +124,7 @@ CurveSolution solve_curve(const CurveProblem& problem, const TermSet& free, cons
       break;
     }
   }
-  if (solution.converged) settle(problem, free, fixed, solution);
+  if (solution.converged) refine(problem, free, fixed, solution);
   return solution;
 }
 

@@ -102,8 +102,8 @@ void ReweightedVariances::start(const double* y) {
 /// alone would need 1/gamma instants for each factor e.
 void ReweightedVariances::start_from_pairs() {
   const std::size_t n = v_.size();
-  const double nobody = std::numeric_limits<double>::infinity();
-  std::fill(v_.begin(), v_.end(), nobody);
+  const double unused = std::numeric_limits<double>::infinity();
+  std::fill(v_.begin(), v_.end(), unused);
   for (std::size_t i = 1; i < n; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       double sum = 0, count = 0;
@@ -120,10 +120,10 @@ void ReweightedVariances::start_from_pairs() {
       v_[j] = std::min(v_[j], half);
     }
   double largest = 0;
-  for (const double v : v_) largest = v < nobody ? std::max(largest, v) : largest;
+  for (const double v : v_) largest = v < unused ? std::max(largest, v) : largest;
   const double lowest = std::max(largest * kSmallestRatio, rounding_);
   for (std::size_t i = 0; i < n; ++i) {
-    v_[i] = v_[i] < nobody ? std::max(v_[i], lowest) : std::max(largest, lowest);
+    v_[i] = v_[i] < unused ? std::max(v_[i], lowest) : std::max(largest, lowest);
     inverse_[i] = 1 / v_[i];
   }
   instants_ = kFirstInstants;

@@ -150,6 +150,7 @@ Format npy_format() {
   Format row;
   row.about.name = "npy";
   row.about.title = "NumPy";
+  row.about.brief = ".npy";
   row.about.suffixes = {".npy"};
   row.about.names = "structured arrays";
   row.about.units = "no";

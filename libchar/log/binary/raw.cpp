@@ -102,6 +102,7 @@ Format raw_format() {
   Format row;
   row.about.name = "raw";
   row.about.title = "raw binary + sidecar";
+  row.about.brief = "raw with sidecar";
   row.about.suffixes = {
       ".f64", ".f32", ".i16", ".i32", ".i8", ".i64", ".u8", ".u16", ".u32", ".u64", ".bin", ".raw"};
   row.about.otherwise = "any with a sidecar";

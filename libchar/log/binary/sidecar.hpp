@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/fields.hpp"
 #include "libchar/log/binary/number_type.hpp"
 
 namespace libchar {
@@ -29,12 +30,15 @@ struct Sidecar {
   bool planar = false;
 };
 
+/// The rows that reader, writer and docs/formats.md share.
+const Fields<Sidecar>& sidecar_fields();
+
 /// Path of the sidecar that stands beside `log`, "" when there is none. Throws Error(input) when
 /// there are two.
 std::string find_sidecar(const std::string& log);
 
-/// Reads one sidecar (JSON by the suffix .json, else YAML). Throws Error(input) with the place and
-/// the nearest known key.
+/// Reads one sidecar (JSON by the suffix .json, else YAML). Throws Error(input) with line, column
+/// and the nearest known key.
 Sidecar read_sidecar(const std::string& path);
 Sidecar parse_sidecar(std::string_view text, const std::string& file, bool json);
 

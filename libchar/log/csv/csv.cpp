@@ -429,6 +429,7 @@ Format csv_format() {
   Format row;
   row.about.name = "csv";
   row.about.title = "CSV";
+  row.about.brief = ".csv";
   row.about.suffixes = {".csv", ".tsv", ".txt", ".dat"};
   row.about.otherwise = "`-`";
   row.about.names = "yes";

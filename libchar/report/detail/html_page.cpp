@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"

@@ -13,26 +13,6 @@
 namespace libchar {
 namespace {
 
-std::string deviation_title(DeviationType type) {
-  switch (type) {
-    case DeviationType::adev:
-      return "Allan deviation";
-    case DeviationType::oadev:
-      return "Overlapping Allan deviation";
-    case DeviationType::mdev:
-      return "Modified Allan deviation";
-    case DeviationType::tdev:
-      return "Time deviation";
-    case DeviationType::hdev:
-      return "Hadamard deviation";
-    case DeviationType::ohdev:
-      return "Overlapping Hadamard deviation";
-    case DeviationType::totdev:
-      return "Total deviation";
-  }
-  return "";
-}
-
 std::string spectrum_title(const Spectrum& s) {
   const char* sides = s.sides == Sides::one ? "One-sided" : "Two-sided";
   switch (s.scaling) {
@@ -115,7 +95,7 @@ std::string curve_plots(const ChannelView& view, std::size_t index) {
   if (view.draws_allan)
     out += plot_figure("allan",
                        index,
-                       {deviation_title(c.allan.type),
+                       {std::string(deviation_row(c.allan.type).title),
                         std::string(name_of(c.allan.type)),
                         view.unit.empty() ? "U" : view.unit,
                         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "

@@ -10,8 +10,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/escape.hpp"
 #include "libchar/report/detail/replay_words.hpp"
+#include "libchar/report/escape.hpp"
 
 namespace libchar {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {

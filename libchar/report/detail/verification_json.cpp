@@ -1,5 +1,7 @@
 #include "libchar/report/detail/verification_json.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/report/escape.hpp"
 #include "libchar/report/json_pieces.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 
 namespace libchar {
@@ -109,19 +110,7 @@ SignalSpec read_signal(const Document& node,
   spec.kind = any.word("kind", signal_kinds());
   refuse_keys_of_other_kinds(node, any, spec.kind);
   const MapReader at(node, file, path, keys_of(spec.kind));
-  spec.offset = at.number_or("offset", 0);
-  spec.value = at.number_or("value", 0);
-  spec.amplitude = at.number_or("amplitude", spec.amplitude);
-  spec.frequency_hz = at.number_or("frequency_hz", spec.frequency_hz, kNotNegative);
-  spec.phase_rad = at.number_or("phase_rad", 0);
-  spec.from_hz = at.number_or("from_hz", spec.from_hz, kNotNegative);
-  spec.to_hz = at.number_or("to_hz", spec.to_hz, kNotNegative);
-  spec.standard_deviation = at.number_or("standard_deviation", 1, kNotNegative);
-  spec.bandwidth_hz = at.number_or("bandwidth_hz", 0, kNotNegative);
-  spec.renew_s = at.number_or("renew_s", 0, kNotNegative);
-  spec.repeat = at.number_or("repeat", 0, {0, 1, false});
-  spec.step = at.number_or("step", 1, kNotNegative);
-  spec.slope = at.number_or("slope", 0);
+  read_fields(signal_fields(), at, spec);
   const std::vector<std::string>& own = signal_keys(spec.kind);
   // These say what the signal is: without them it would be zero, and nobody would notice.
   for (const char* key : {"value", "slope"})

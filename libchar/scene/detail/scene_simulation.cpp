@@ -7,6 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_signal.hpp"
 
@@ -144,74 +145,30 @@ std::string scene_recording_of(const MapReader& at,
                                ReadOptions& reading,
                                Scene& scene) {
   if (is_scalar(at.require(key))) return scene_file_of(at, key, folder, scene);
-  const MapReader map = at.map(key,
-                               {"file",
-                                "rate_hz",
-                                "resample_hz",
-                                "delimiter",
-                                "decimal",
-                                "header",
-                                "encoding",
-                                "names",
-                                "units",
-                                "time_column",
-                                "time_unit",
-                                "skip_rows",
-                                "format",
-                                "from_s",
-                                "to_s",
-                                "overflow_as_missing",
-                                "skip_repeated_header"});
-  reading.rate_hz = map.maybe_number("rate_hz", kPositive);
+  std::vector<std::string> keys = keys_of(scene_reading_fields());
+  keys.insert(keys.begin(), {"file", "resample_hz"});
+  const MapReader map = at.map(key, keys);
+  read_fields(scene_reading_fields(), map, reading);
   const auto resample_hz = map.maybe_number("resample_hz", kPositive);
   if (resample_hz && (&reading != &scene.reading || reading.rate_hz))
     map.refuse("resample_hz",
                reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
                                : "a reference is interpolated in any case");
   if (resample_hz) scene.resample_hz = resample_hz;
-  reading.delimiter = map.text_or("delimiter", "auto");
   const std::vector<std::string> words = {"auto", "tab", "space"};
   if (reading.delimiter.size() != 1 &&
       std::find(words.begin(), words.end(), reading.delimiter) == words.end())
     map.refuse("delimiter", "expected auto, tab, space or one character");
-  reading.decimal = map.word_or("decimal", {"auto", "point", "comma"}, "auto");
-  reading.header = map.word_or("header", {"auto", "yes", "no"}, "auto");
-  reading.encoding = map.word_or("encoding", {"utf-8", "latin1"}, "utf-8");
-  if (map.has("names")) reading.names = map.texts("names");
-  if (map.has("units")) reading.units = map.texts("units");
-  reading.time_column = map.text_or("time_column", "auto");
-  reading.time_unit = map.word_or("time_unit", {"auto", "s", "ms", "us", "ns"}, "auto");
-  reading.skip_rows = map.count_or("skip_rows", 0);
-  reading.format = map.word_or("format", {"auto", "csv", "npy", "raw"}, "auto");
-  reading.from_s = map.maybe_number("from_s", kNotNegative);
-  reading.to_s = map.maybe_number("to_s", kPositive);
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
     refuse_scene("E0740", map, "to_s", "the recording is read from a time to a later one");
-  reading.overflow_as_missing = map.flag_or("overflow_as_missing", false);
-  reading.skip_repeated_header = map.flag_or("skip_repeated_header", false);
   return scene_file_of(map, "file", folder, scene);
 }
 
 ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& folder, Scene& scene) {
-  const MapReader at = top.map("simulate",
-                               {"rate_hz",
-                                "duration_s",
-                                "samples",
-                                "seed",
-                                "oversampling",
-                                "truth",
-                                "truth_bandwidth_hz",
-                                "temperature",
-                                "low_pass_start"});
+  const MapReader at = top.map("simulate", keys_of(simulation_fields()));
   ArraySimulation s;
-  s.rate_hz = at.number("rate_hz", kPositive);
+  read_fields(simulation_fields(), at, s);
   s.samples = samples_of(at, s.rate_hz);
-  s.seed = at.count_or("seed", 1);
-  s.oversampling = at.count_or("oversampling", 1);
-  if (s.oversampling < 1 || s.oversampling > 1024)
-    at.refuse("oversampling", "expected a whole number from 1 to 1024");
-  s.truth_bandwidth_hz = at.maybe_number("truth_bandwidth_hz", kPositive);
-  s.low_pass_starts_at_zero = at.word_or("low_pass_start", {"steady", "zero"}, "steady") == "zero";
   if (at.has("truth")) read_truth(at, s, folder, scene);
   if (at.has("temperature"))
     s.temperature = signal_of(

@@ -119,17 +119,17 @@ const double* RowScratch::mirror_of(const double* first_row) {
   return moved_.get();
 }
 
-std::shared_ptr<RowShop> RowShop::of(std::size_t half) {
+std::shared_ptr<RowPool> RowPool::of(std::size_t half) {
   static std::mutex mutex;
-  static std::map<std::size_t, std::weak_ptr<RowShop>> shops;
+  static std::map<std::size_t, std::weak_ptr<RowPool>> pools;
   const std::lock_guard lock(mutex);
-  std::weak_ptr<RowShop>& known = shops[half];
-  std::shared_ptr<RowShop> shop = known.lock();
-  if (!shop) known = shop = std::make_shared<RowShop>(half);
-  return shop;
+  std::weak_ptr<RowPool>& known = pools[half];
+  std::shared_ptr<RowPool> pool = known.lock();
+  if (!pool) known = pool = std::make_shared<RowPool>(half);
+  return pool;
 }
 
-std::unique_ptr<RowScratch> RowShop::borrow() {
+std::unique_ptr<RowScratch> RowPool::borrow() {
   {
     const std::lock_guard lock(mutex_);
     if (!idle_.empty()) {
@@ -141,7 +141,7 @@ std::unique_ptr<RowScratch> RowShop::borrow() {
   return std::make_unique<RowScratch>(tables);
 }
 
-void RowShop::give_back(std::unique_ptr<RowScratch> scratch) {
+void RowPool::give_back(std::unique_ptr<RowScratch> scratch) {
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(scratch));
 }

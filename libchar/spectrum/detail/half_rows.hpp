@@ -63,7 +63,7 @@ class RowScratch {
   /// Rows of X of two segments, the second one `second()` doubles behind the first.
   double* bins(std::size_t index) { return bins_.get() + index * bin_pitch(); }
   std::size_t second() const { return tables_.n2 + kPadding; }
-  /// A row of bins that is nobody's, of two segments.
+  /// A row of bins without a place of its own, of two segments.
   double* spare(std::size_t index) { return bins(kBinRows + index); }
   static constexpr std::size_t kBinRows = 8, kSpareRows = 2;
 
@@ -76,10 +76,10 @@ class RowScratch {
 };
 
 /// What halves of one length share.
-class RowShop {
+class RowPool {
  public:
-  static std::shared_ptr<RowShop> of(std::size_t half);
-  explicit RowShop(std::size_t half) : tables(half) {}
+  static std::shared_ptr<RowPool> of(std::size_t half);
+  explicit RowPool(std::size_t half) : tables(half) {}
   std::unique_ptr<RowScratch> borrow();
   void give_back(std::unique_ptr<RowScratch> scratch);
   const RowTables tables;

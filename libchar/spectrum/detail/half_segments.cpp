@@ -59,7 +59,7 @@ void HalfSegments::SumsFreed::operator()(Sums* sums) const {
 }
 
 struct HalfSegments::State {
-  std::shared_ptr<RowShop> shop;
+  std::shared_ptr<RowPool> pool;
   AlignedDoubles z;           // of the half before: even bins, then odd bins
   double z_top = 0;           // its bin h
   AlignedDoubles block_sums;  // even bins, then odd bins; when first asked for
@@ -67,7 +67,7 @@ struct HalfSegments::State {
   bool joined = false;        // z is there
   double before_mean = 0;
 
-  explicit State(std::size_t half) : shop(RowShop::of(half)), z(aligned_zeros(2 * half)) {}
+  explicit State(std::size_t half) : pool(RowPool::of(half)), z(aligned_zeros(2 * half)) {}
   const double* samples_of(const Half& half);
   Used push(Half a, Half b, Sums* first, Sums* second, bool remember);
   void natural(const double* sums, double top, std::vector<double>& out) const;
@@ -253,13 +253,13 @@ void Pass::run() {
 /// Zeros for a half that is not there or not whole: its partner has nothing to do with it.
 const double* HalfSegments::State::samples_of(const Half& half) {
   if (half.samples != nullptr && std::isfinite(half.mean)) return half.samples;
-  if (!nothing) nothing = aligned_zeros(shop->tables.h);
+  if (!nothing) nothing = aligned_zeros(pool->tables.h);
   return nothing.get();
 }
 
 HalfSegments::Used HalfSegments::State::push(
     Half a, Half b, Sums* first, Sums* second, bool remember) {
-  const std::size_t h = shop->tables.h;
+  const std::size_t h = pool->tables.h;
   const bool a_whole = a.samples != nullptr && std::isfinite(a.mean);
   const bool b_whole = b.samples != nullptr && std::isfinite(b.mean);
   const Used used{joined && a_whole, a_whole && b_whole};
@@ -269,7 +269,7 @@ HalfSegments::Used HalfSegments::State::push(
   if ((block_a || block_b) && !block_sums) block_sums = aligned_zeros(h);
   if (a_whole || b_whole) {
     const double *const samples_a = samples_of(a), *const samples_b = samples_of(b);
-    auto scratch = shop->borrow();
+    auto scratch = pool->borrow();
     const Pass::Work work{{samples_a, samples_b, a_whole ? a.mean : 0, b_whole ? b.mean : 0},
                           before_mean,
                           z.get(),
@@ -282,8 +282,8 @@ HalfSegments::Used HalfSegments::State::push(
                           second == nullptr ? nullptr : second->values.get(),
                           first == nullptr ? nullptr : &first->top,
                           second == nullptr ? nullptr : &second->top};
-    Pass(shop->tables, *scratch, work).run();
-    shop->give_back(std::move(scratch));
+    Pass(pool->tables, *scratch, work).run();
+    pool->give_back(std::move(scratch));
   }
   if (remember) {
     joined = b_whole;
@@ -293,7 +293,7 @@ HalfSegments::Used HalfSegments::State::push(
 }
 
 void HalfSegments::State::natural(const double* sums, double top, std::vector<double>& out) const {
-  const RowTables& t = shop->tables;
+  const RowTables& t = pool->tables;
   const std::size_t bins = t.n2 / 2;
   out.resize(t.h + 1);
   for (std::size_t r = 0; r < t.n1; ++r)
@@ -318,7 +318,7 @@ HalfSegments::HalfSegments(HalfSegments&&) noexcept = default;
 HalfSegments& HalfSegments::operator=(HalfSegments&&) noexcept = default;
 
 std::size_t HalfSegments::half() const {
-  return state_->shop->tables.h;
+  return state_->pool->tables.h;
 }
 
 HalfSegments::Half HalfSegments::half_at(const double* samples, bool block) const {

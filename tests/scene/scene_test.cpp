@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/document.hpp"
 #include "libchar/model/model_file.hpp"

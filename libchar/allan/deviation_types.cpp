@@ -1,0 +1,52 @@
+#include "libchar/allan/deviation_types.hpp"
+
+namespace libchar {
+namespace {
+
+using Type = DeviationType;
+
+// clang-format off
+constexpr DeviationRow kRows[] = {
+    // type       word      title                             order sum   div over  time  reflected
+    {Type::adev,   "adev",   "Allan deviation",                2, false, 2, false, false, false},
+    {Type::oadev,  "oadev",  "Overlapping Allan deviation",    2, false, 2, true,  false, false},
+    {Type::mdev,   "mdev",   "Modified Allan deviation",       3, true,  2, true,  false, false},
+    {Type::tdev,   "tdev",   "Time deviation",                 3, true,  2, true,  true,  false},
+    {Type::hdev,   "hdev",   "Hadamard deviation",             3, false, 6, false, false, false},
+    {Type::ohdev,  "ohdev",  "Overlapping Hadamard deviation", 3, false, 6, true,  false, false},
+    {Type::totdev, "totdev", "Total deviation",                2, false, 2, true,  false, true},
+};
+// clang-format on
+
+}  // namespace
+
+std::uint64_t DeviationRow::span(std::uint64_t m) const {
+  if (reflected) return m + 1;
+  return static_cast<std::uint64_t>(order) * m - (of_sum ? 1 : 0);
+}
+
+std::span<const DeviationRow> deviation_rows() {
+  return kRows;
+}
+
+const DeviationRow& deviation_row(DeviationType type) {
+  return kRows[static_cast<std::size_t>(type)];
+}
+
+std::string_view name_of(DeviationType type) {
+  return deviation_row(type).word;
+}
+
+std::optional<DeviationType> deviation_type(std::string_view name) {
+  for (const DeviationRow& row : kRows)
+    if (row.word == name) return row.type;
+  return std::nullopt;
+}
+
+std::vector<std::string> deviation_words() {
+  std::vector<std::string> words;
+  for (const DeviationRow& row : kRows) words.emplace_back(row.word);
+  return words;
+}
+
+}  // namespace libchar

@@ -1,0 +1,55 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "libchar/core/document.hpp"
+#include "libchar/core/error.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
+
+[[noreturn]] void cannot_read(const std::string& path,
+                              const std::string& why,
+                              const std::string& hint = "") {
+  throw Error({ErrorKind::input, "E0551", path, why, "", hint});
+}
+
+}  // namespace
+
+std::string read_document_text(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) {
+    const int reason = errno;
+    cannot_read(path, std::string("cannot be read: ") + std::strerror(reason));
+  }
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } closer{descriptor};
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || S_ISDIR(status.st_mode))
+    cannot_read(path, "is a folder, a file was expected");
+  if (!S_ISREG(status.st_mode)) cannot_read(path, "is no regular file");
+  if (static_cast<std::size_t>(status.st_size) > kMaxBytes)
+    cannot_read(path,
+                fmt::format("{} bytes exceed the limit of {}", status.st_size, kMaxBytes),
+                "is this a log? a model or scene file is a short text");
+  std::string text(static_cast<std::size_t>(status.st_size), '\0');
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t got = ::read(descriptor, text.data() + done, text.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  text.resize(done);
+  return text;
+}
+
+}  // namespace libchar

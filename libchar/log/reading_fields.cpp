@@ -1,0 +1,76 @@
+#include "libchar/log/reading_fields.hpp"
+
+#include "libchar/log/formats.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
+constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
+constexpr Word kEncodings[] = {{"utf-8"}, {"latin1"}};
+constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}};
+
+// auto and the names of the table of formats.
+const std::vector<Word>& format_choices() {
+  static const std::vector<std::string> names = format_words();
+  static const std::vector<Word> words = [] {
+    std::vector<Word> out;
+    for (const std::string& name : names) out.push_back({name});
+    return out;
+  }();
+  return words;
+}
+
+}  // namespace
+
+const Fields<ReadOptions>& reading_fields() {
+  static const Fields<ReadOptions> rows = {
+      field<&ReadOptions::channels>(
+          "channels", {.meaning = "names or c0, c1… of those to read", .otherwise = "all"}),
+      field<&ReadOptions::rate_hz>(
+          "rate_hz",
+          {.unit = "Hz", .range = kPositive, .meaning = "sampling rate of a log without stamps"}),
+      field<&ReadOptions::delimiter>(
+          "delimiter", {.meaning = "auto, tab, space or one character (CSV)", .otherwise = "auto"}),
+      field<&ReadOptions::decimal>(
+          "decimal", {.words = kDecimals, .meaning = "decimal mark (CSV)", .otherwise = "auto"}),
+      field<&ReadOptions::header>("header",
+                                  {.words = kHeaders,
+                                   .meaning = "is the first line one of names (CSV)",
+                                   .otherwise = "auto",
+                                   .quoted = true}),
+      field<&ReadOptions::encoding>(
+          "encoding", {.words = kEncodings, .meaning = "of the header", .otherwise = "utf-8"}),
+      field<&ReadOptions::names>(
+          "names", {.meaning = "new names of the channels", .otherwise = "as in the log"}),
+      field<&ReadOptions::units>(
+          "units", {.meaning = "of the channels, or one for all", .otherwise = "as in the log"}),
+      field<&ReadOptions::time_column>(
+          "time_column", {.meaning = "auto, none, a name or c0", .otherwise = "auto"}),
+      field<&ReadOptions::time_unit>(
+          "time_unit", {.words = kTimeUnits, .meaning = "of the stamps", .otherwise = "auto"}),
+      field<&ReadOptions::skip_rows>(
+          "skip_rows", {.meaning = "lines in front of the header (CSV)", .otherwise = "0"}),
+      field<&ReadOptions::format>(
+          "format", {.words = format_choices(), .meaning = "of the file", .otherwise = "auto"}),
+      field<&ReadOptions::from_s>("from_s",
+                                  {.unit = "s",
+                                   .range = kNotNegative,
+                                   .meaning = "first instant used, after the first stamp",
+                                   .otherwise = "the first"}),
+      field<&ReadOptions::to_s>("to_s",
+                                {.unit = "s",
+                                 .range = kPositive,
+                                 .meaning = "first instant not used",
+                                 .otherwise = "the end"}),
+      field<&ReadOptions::overflow_as_missing>(
+          "overflow_as_missing",
+          {.meaning = "a number out of a double's range counts as missing", .otherwise = "false"}),
+      field<&ReadOptions::skip_repeated_header>(
+          "skip_repeated_header",
+          {.meaning = "header lines inside the data are skipped", .otherwise = "false"}),
+  };
+  return rows;
+}
+
+}  // namespace libchar

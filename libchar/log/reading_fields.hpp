@@ -1,0 +1,12 @@
+#pragma once
+// The reading options as keys: of a scene's recording, and of the settings that a report records.
+
+#include "libchar/core/fields.hpp"
+#include "libchar/log/read.hpp"
+
+namespace libchar {
+
+/// How the samples of a file are to be read; threads, block size and hash change no result and have no key.
+const Fields<ReadOptions>& reading_fields();
+
+}  // namespace libchar

@@ -1,0 +1,27 @@
+#pragma once
+// What a document says about the recordings it comes from: one description for every verb. Keys may be added; none changes
+// its meaning or goes.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/json.hpp"
+#include "libchar/log/quality.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar {
+
+/// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
+/// "warnings":[{file,code,message,count,where}…]}: the head of every document that is made from logs.
+Json document_head(std::string_view format,
+                   const std::vector<std::string>& command,
+                   const std::vector<const LogInfo*>& logs);
+
+/// Name, unit and what the samples of a channel say about the instrument.
+Json channel_json(const Channel& channel, const ChannelQuality& quality);
+
+/// File, channels, time base and repairs; `qualities` has one element a channel of `log`.
+Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
+
+}  // namespace libchar

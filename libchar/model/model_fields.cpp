@@ -1,0 +1,306 @@
+#include "libchar/model/model_fields.hpp"
+
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/model/detail/noise_term.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr Word kAxes[] = {{"x"}, {"y"}, {"z"}, {""}};
+constexpr Word kPoint[] = {{"point"}};
+constexpr Word kDensities[] = {{"one-sided"}, {"two-sided"}};
+constexpr Word kSamplings[] = {
+    {"per-sample",
+     static_cast<int>(NoiseSampling::per_sample),
+     "noise is made at rate_hz, then low-passed with the signal"},
+    {"band-limited",
+     static_cast<int>(NoiseSampling::band_limited),
+     "continuous white noise, low-passed before sampling: aliases included"},
+};
+constexpr Word kStarts[] = {
+    {"stationary", static_cast<int>(NoiseStart::stationary)},
+    {"zero", static_cast<int>(NoiseStart::zero), "flicker starts at the first sample"},
+};
+constexpr Word kFlickerMethods[] = {{"recursive"}, {"rv-truncated-iir"}};
+
+// ---- keys that are no single member ----
+
+void read_unit(const MapReader& at, std::string_view key, SensorModel& model) {
+  model.unit = at.text_or(key, "");
+}
+
+void write_unit(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
+  Entry entry{std::string(row.key), model.unit};
+  if (model.unit.empty())
+    entry = {std::string(row.key), {}, "the log names none: U below", false, false};
+  out.push_back(std::move(entry));
+}
+
+void read_output_unit(const MapReader& at, std::string_view key, Sensitivity& sensitivity) {
+  sensitivity.unit = at.text_or(key, "");
+}
+
+void write_output_unit(const Field& row, const Sensitivity& sensitivity, std::vector<Entry>& out) {
+  Entry entry{std::string(row.key), sensitivity.unit};
+  if (sensitivity.unit.empty()) entry = {std::string(row.key), {}, "", false, false};
+  out.push_back(std::move(entry));
+}
+
+void read_saturation(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (!at.has(key)) return;
+  const auto ends = at.interval(key);
+  if (!(ends.first < ends.second)) at.refuse(key, "expected [low, high] with low below high");
+  model.saturation_low = ends.first;
+  model.saturation_high = ends.second;
+}
+
+void write_saturation(const Field& row, const SensorModel& m, std::vector<Entry>& out) {
+  if (m.saturation_low && m.saturation_high)
+    out.push_back({std::string(row.key),
+                   std::vector<double>{*m.saturation_low, *m.saturation_high},
+                   std::string(row.text.comment)});
+}
+
+void read_valid_tau(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (at.has(key)) std::tie(model.tau_min_s, model.tau_max_s) = at.interval(key);
+}
+
+void write_valid_tau(const Field& row, const SensorModel& m, std::vector<Entry>& out) {
+  if (m.tau_max_s > 0)
+    out.push_back({std::string(row.key),
+                   std::vector<double>{m.tau_min_s, m.tau_max_s},
+                   std::string(row.text.comment)});
+}
+
+// In front of what the conversions said.
+void read_remarks(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (!at.has(key)) return;
+  const std::vector<std::string> read = at.texts(key);
+  model.remarks.insert(model.remarks.begin(), read.begin(), read.end());
+}
+
+void write_remarks(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
+  if (model.remarks.empty()) return;
+  Entry entry{std::string(row.key), model.remarks};
+  entry.form = Entry::Form::block;
+  out.push_back(std::move(entry));
+}
+
+Row<SensorModel> term_row(Term term, std::string_view meaning) {
+  auto row = custom<SensorModel, read_term, write_term>(
+      kTermNames[static_cast<std::size_t>(term)].key, "number or map", {.meaning = meaning});
+  if (term == Term::white) row.field.below = term_fields().rows;
+  return row;
+}
+
+// ---- parts ----
+
+const Fields<ScaleFactor>& scale_factor_fields() {
+  static const Fields<ScaleFactor> rows = {
+      field<&ScaleFactor::value>("value", {.meaning = "output per input", .otherwise = "1"}),
+      field<&ScaleFactor::spread>("spread",
+                                  {.range = kNotNegative,
+                                   .meaning = "standard deviation from device to device",
+                                   .otherwise = "0"}),
+      field<&ScaleFactor::tc1_per_k>("tc1_per_k", {.unit = "1/K", .meaning = "linear in ΔT"}),
+      field<&ScaleFactor::tc2_per_k2>("tc2_per_k2", {.unit = "1/K²", .meaning = "square in ΔT"}),
+  };
+  return rows;
+}
+
+const Fields<Nonlinearity>& nonlinearity_fields() {
+  static const Fields<Nonlinearity> rows = {
+      field<&Nonlinearity::quadratic>("quadratic", {.unit = "1/U", .meaning = "c₁"}),
+      field<&Nonlinearity::quadratic_tc_per_k>("quadratic_tc_per_k",
+                                               {.unit = "1/K", .meaning = "of c₁"}),
+      field<&Nonlinearity::cubic>("cubic", {.unit = "1/U²", .meaning = "c₂"}),
+      field<&Nonlinearity::cubic_tc_per_k>("cubic_tc_per_k", {.unit = "1/K", .meaning = "of c₂"}),
+  };
+  return rows;
+}
+
+const Fields<Bias>& bias_fields() {
+  static const Fields<Bias> rows = {
+      field<&Bias::value>("value", {.unit = "U", .meaning = "at the reference temperature"}),
+      field<&Bias::spread>("spread",
+                           {.unit = "U",
+                            .range = kNotNegative,
+                            .meaning = "standard deviation from device to device"}),
+      field<&Bias::tc1_per_k>("tc1_per_k", {.unit = "U/K", .meaning = "linear in ΔT"}),
+      field<&Bias::tc2_per_k2>("tc2_per_k2", {.unit = "U/K²", .meaning = "square in ΔT"}),
+  };
+  return rows;
+}
+
+const Fields<Sensitivity>& sensitivity_fields() {
+  static const Fields<Sensitivity> rows = {
+      field<&Sensitivity::gain>("gain", {.meaning = "output unit per U", .otherwise = "1"}),
+      custom<Sensitivity, read_output_unit, write_output_unit>(
+          "unit", "text", {.meaning = "of the output", .otherwise = "U"}),
+  };
+  return rows;
+}
+
+const Fields<SensorModel>& recording_fields() {
+  static const Fields<SensorModel> rows = {
+      field<&SensorModel::recording_file>("file", {.meaning = "name", .written = Written::always}),
+      field<&SensorModel::recording_sha256>(
+          "sha256", {.meaning = "of its bytes", .written = Written::always}),
+      field<&SensorModel::duration_s>(
+          "duration_s",
+          {.unit = "s", .range = kNotNegative, .meaning = "length", .written = Written::always}),
+  };
+  return rows;
+}
+
+}  // namespace
+
+const Fields<SensorModel>& model_fields() {
+  static const Fields<SensorModel> rows = {
+      constant<SensorModel>("format", std::string("sensor-model"), {.meaning = "sensor-model"}),
+      constant<SensorModel>("version", std::uint64_t{1}, {.meaning = "1"}),
+      tool_row<SensorModel>(),
+      field<&SensorModel::channel>("channel",
+                                   {.meaning = "name of its samples",
+                                    .otherwise = "the file's name",
+                                    .written = Written::always}),
+      custom<SensorModel, read_unit, write_unit>(
+          "unit", "text", {.meaning = "U, the unit of the input", .otherwise = "none"}),
+      field<&SensorModel::kind>(
+          "kind", {.meaning = "gyroscope, accelerometer…", .otherwise = "said by the unit"}),
+      field<&SensorModel::axis>(
+          "axis", {.words = kAxes, .meaning = "axis", .otherwise = "said by the name"}),
+      field<&SensorModel::rate_hz>("rate_hz",
+                                   {.unit = "Hz",
+                                    .range = kNotNegative,
+                                    .meaning = "sampling rate",
+                                    .otherwise = "`simulate --rate`",
+                                    .written = Written::always}),
+      constant<SensorModel>(
+          "sampling",
+          std::string("point"),
+          {.words = kPoint,
+           .comment = "samples at an instant, not averages over the sampling interval"}),
+      constant<SensorModel>(
+          "density",
+          std::string("two-sided"),
+          {.words = kDensities,
+           .comment = "a data sheet's noise density is one-sided: sqrt(2) times white_noise",
+           .meaning = "side of every value per √Hz",
+           .otherwise = "needed where a value is per √Hz"}),
+      empty_line<SensorModel>(),
+      term_row(Term::white, "Q; each term has these keys"),
+      term_row(Term::flicker, "B"),
+      term_row(Term::walk, "K"),
+      term_row(Term::quantization, "Qz"),
+      term_row(Term::ramp, "R"),
+      field<&SensorModel::noise_sampling>("noise_sampling",
+                                          {.words = kSamplings,
+                                           .meaning = "see below",
+                                           .otherwise = "per-sample",
+                                           .written = Written::always}),
+      field<&SensorModel::noise_start>(
+          "noise_start",
+          {.words = kStarts,
+           .meaning = "flicker has always run, or starts with the record as published",
+           .otherwise = "stationary"}),
+      field<&SensorModel::flicker_method>(
+          "flicker_method",
+          {.words = kFlickerMethods,
+           .meaning = "the truncated filter of [RV app. A] is for comparison",
+           .otherwise = "recursive"}),
+      field<&SensorModel::white_hold_s>(
+          "white_hold_s",
+          {.unit = "s",
+           .range = kPositive,
+           .comment = "white noise is renewed this often and held",
+           .meaning = "white noise is renewed this often and held, as [RV 3.3] did",
+           .otherwise = "every sample"}),
+      field<&SensorModel::flicker_hold_s>("flicker_hold_s",
+                                          {.unit = "s",
+                                           .range = kPositive,
+                                           .comment = "flicker is made at this step and held",
+                                           .otherwise = "every sample"}),
+      empty_line<SensorModel>(),
+      part<&SensorModel::scale_factor>(
+          "scale_factor",
+          scale_factor_fields(),
+          {.comment = "N(value, spread) a device, times 1 + tc1 dT + tc2 dT^2",
+           .meaning = "N(value, spread) a device × (1 + tc1 ΔT + tc2 ΔT²)",
+           .otherwise = "1",
+           .form = Entry::Form::flow}),
+      part<&SensorModel::nonlinearity>(
+          "nonlinearity",
+          nonlinearity_fields(),
+          {.comment = "of the input x: quadratic (1 + tc dT) x^2 + cubic (1 + tc dT) x^3",
+           .meaning = "c₁(1 + tc ΔT)x² + c₂(1 + tc ΔT)x³ of the raw input",
+           .otherwise = "none",
+           .form = Entry::Form::flow}),
+      part<&SensorModel::bias>(
+          "bias",
+          bias_fields(),
+          {.comment = "N(value, spread) a device, plus tc1 dT + tc2 dT^2, in {U}",
+           .meaning = "N(value, spread) a device + tc1 ΔT + tc2 ΔT², in U",
+           .otherwise = "0",
+           .form = Entry::Form::flow}),
+      field<&SensorModel::reference_temperature_degc>(
+          "reference_temperature_degc",
+          {.unit = "°C", .meaning = "ΔT = temperature − this", .otherwise = "25"}),
+      field<&SensorModel::bandwidth_hz>(
+          "bandwidth_hz",
+          {.unit = "Hz",
+           .range = kPositive,
+           .comment = "corner of a first-order low-pass behind the noise",
+           .otherwise = "none"}),
+      custom<SensorModel, read_saturation, write_saturation>(
+          "saturation",
+          "[low, high]",
+          {.comment = "ends of the range, in {U}",
+           .meaning = "in U, before the sensitivity",
+           .otherwise = "none"}),
+      part<&SensorModel::sensitivity>("sensitivity",
+                                      sensitivity_fields(),
+                                      {.comment = "output = gain times the above",
+                                       .meaning = "output = gain × the above, in `unit`",
+                                       .otherwise = "1",
+                                       .form = Entry::Form::flow}),
+      field<&SensorModel::resolution>(
+          "resolution",
+          {.range = kPositive,
+           .comment = "least step between two values of the output, in {output}",
+           .meaning = "quantization step of the output",
+           .otherwise = "none"}),
+      field<&SensorModel::mean>(
+          "mean",
+          {.comment = "of the recording, in {U}; holds the true input at rest as well as the bias",
+           .meaning = "of the recording; simulations do not read it",
+           .written = Written::always}),
+      empty_line<SensorModel>(),
+      field<&SensorModel::obtained>("obtained",
+                                    {.meaning = "where the numbers come from",
+                                     .otherwise = "written by hand",
+                                     .written = Written::always}),
+      field<&SensorModel::method>(
+          "method", {.meaning = "how they were computed", .written = Written::always}),
+      level<SensorModel>("recording",
+                         recording_fields(),
+                         {.meaning = "what was fitted", .written = Written::always}),
+      custom<SensorModel, read_valid_tau, write_valid_tau>(
+          "valid_tau_s",
+          "[low, high]",
+          {.comment = "averaging times, in seconds, that the recording covers reliably"}),
+      custom<SensorModel, read_remarks, write_remarks>(
+          "remarks", "list of texts", {.meaning = "conversions, findings of the fit"}),
+  };
+  return rows;
+}
+
+std::vector<Entry> model_entries(const SensorModel& m) {
+  const std::string u = m.unit.empty() ? "U" : printable(m.unit);
+  const std::string output = m.sensitivity.unit.empty() ? u : printable(m.sensitivity.unit);
+  return entries_of(model_fields(), m, {{"U", u}, {"output", output}});
+}
+
+}  // namespace libchar

@@ -1,0 +1,69 @@
+#include "libchar/report/replay_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/replay/verdict.hpp"
+
+namespace libchar {
+namespace {
+
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? significant(value, digits) : "-";
+}
+
+}  // namespace
+
+std::string replay_text(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
+  const char* error = r.has_reference ? "RMSE" : "leave-one-out";
+  std::string text = fmt::format("{}: {} sensors, {} instants at {} Hz\n",
+                                 printable(view.title),
+                                 r.sensors.size(),
+                                 r.instants,
+                                 significant(r.rate_hz, 6));
+  if (r.lag_estimated)
+    text +=
+        fmt::format("the sensors lag the reference by {} s (estimated)\n", significant(r.lag_s, 3));
+  if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
+    text += fmt::format(
+        "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);
+  text += fmt::format("\n{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}\n",
+                      "algorithm",
+                      error,
+                      "95 %",
+                      "regret",
+                      "ns/sample",
+                      "memory");
+  for (const AlgorithmView* v : view.ranked) {
+    const AlgorithmResult* a = v->result;
+    text += fmt::format(
+        "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
+        printable(a->label),
+        cell(a->rmse, 5),
+        std::isfinite(a->rmse_ci95.low)
+            ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
+            : "-",
+        !std::isfinite(a->regret) ? "-"
+        : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
+                                  : significant(1 + a->regret, 3) + " x",
+        cell(a->ns_per_sample, 3),
+        people_bytes(a->peak_bytes),
+        a->bound             ? "  (bound)"
+        : a->as_good_as_best ? "  *"
+                             : "");
+  }
+  text += "\n* the best method, and those whose difference from it is not resolved\n";
+  for (const SkippedAlgorithms& s : view.skipped)
+    text += fmt::format("skipped {}: {}\n",
+                        printable(fmt::format("{}", fmt::join(s.labels, ", "))),
+                        printable(s.reason));
+  text += "\n" + printable(fmt::format("{}", fmt::join(view.verdict, " "))) + "\n";
+  return text;
+}
+
+}  // namespace libchar

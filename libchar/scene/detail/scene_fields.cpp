@@ -1,0 +1,236 @@
+#include "libchar/scene/detail/scene_fields.hpp"
+
+#include "libchar/log/reading_fields.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr NumberRange kOversampling{1, 1024, false};
+constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
+
+const std::vector<Word>& kind_words() {
+  static const std::vector<Word> words = [] {
+    std::vector<Word> all;
+    for (const std::string& kind : fault_kinds())
+      all.push_back({kind, static_cast<int>(fault_kind(kind))});
+    return all;
+  }();
+  return words;
+}
+
+// Beside the value of a member: read and written by whoever knows the rest of the scene.
+template <class T>
+void read_elsewhere(const MapReader&, std::string_view, T&) {}
+template <class T>
+void written_elsewhere(const Field&, const T&, std::vector<Entry>&) {}
+
+template <class T>
+Row<T> elsewhere(std::string_view key, std::string_view kind, const FieldText& text) {
+  return custom<T, read_elsewhere<T>, written_elsewhere<T>>(key, kind, text);
+}
+
+}  // namespace
+
+const std::vector<std::string>& scene_keys() {
+  static const std::vector<std::string> keys = {"format",
+                                                "version",
+                                                "name",
+                                                "tool",
+                                                "recording",
+                                                "simulate",
+                                                "sensors",
+                                                "reference",
+                                                "tilt",
+                                                "learning",
+                                                "evaluation",
+                                                "rest",
+                                                "fault_free_s",
+                                                "faults",
+                                                "simulated",
+                                                "algorithms"};
+  return keys;
+}
+
+const Fields<SceneSensor>& sensor_fields() {
+  static const Fields<SceneSensor> rows = {
+      field<&SceneSensor::name>("name",
+                                {.meaning = "of the sensor; the channel's when it is left out",
+                                 .written = Written::always}),
+      field<&SceneSensor::channel>("channel",
+                                   {.meaning = "of the recording", .otherwise = "the name"}),
+      field<&SceneSensor::h>(
+          "h",
+          {.meaning =
+               "row of the observation matrix: one weight a truth signal or reference channel",
+           .otherwise = "`1`"}),
+      field<&SceneSensor::scale>("scale",
+                                 {.meaning = "the recording's samples are multiplied by it on "
+                                             "reading: a unit, or −1 for an axis turned round",
+                                  .otherwise = "1"}),
+      field<&SceneSensor::noise>("noise",
+                                 {.range = kPositive,
+                                  .meaning = "standard deviation of a sample's noise",
+                                  .otherwise = "said by the model, or measured"}),
+      elsewhere<SceneSensor>(
+          "model",
+          "path, or the keys of a model",
+          {.meaning = "a model file (`docs/models.md`), the keys of one, or `none`. A simulated "
+                      "sensor needs it; `none` is a perfect one"}),
+      elsewhere<SceneSensor>("count",
+                             "whole number",
+                             {.meaning = "of a simulation: so many devices of one model, called "
+                                         "NAME1, NAME2…, each with its own draws and noise"}),
+  };
+  return rows;
+}
+
+const Fields<FaultText>& fault_fields() {
+  static const Fields<FaultText> rows = {
+      field<&FaultText::sensor>(
+          "sensor", {.meaning = "its name", .written = Written::always, .required = true}),
+      field<&FaultText::kind>("kind",
+                              {.words = kind_words(),
+                               .meaning = "what goes wrong",
+                               .written = Written::always,
+                               .required = true}),
+      field<&FaultText::value>("value",
+                               {.meaning = "factor, offset, slope, limit or standard deviation"}),
+      field<&FaultText::from_s>("from_s",
+                                {.unit = "s",
+                                 .range = kNotNegative,
+                                 .meaning = "first instant of the fault",
+                                 .otherwise = "0",
+                                 .written = Written::always}),
+      field<&FaultText::to_s>("to_s",
+                              {.unit = "s",
+                               .range = kPositive,
+                               .meaning = "first instant after it",
+                               .otherwise = "the end"}),
+  };
+  return rows;
+}
+
+const Fields<ArraySimulation>& simulation_fields() {
+  static const Fields<ArraySimulation> rows = {
+      field<&ArraySimulation::rate_hz>("rate_hz",
+                                       {.unit = "Hz",
+                                        .range = kPositive,
+                                        .meaning = "sampling rate",
+                                        .written = Written::always,
+                                        .required = true}),
+      elsewhere<ArraySimulation>("duration_s", "s", {.meaning = "length"}),
+      elsewhere<ArraySimulation>("samples", "whole number", {.meaning = "length, instead"}),
+      field<&ArraySimulation::seed>("seed",
+                                    {.meaning = "0 to 2⁶⁴ − 1; same seed, same samples",
+                                     .otherwise = "1",
+                                     .written = Written::always}),
+      field<&ArraySimulation::oversampling>(
+          "oversampling",
+          {.range = kOversampling,
+           .meaning = "everything up to the quantization runs so many times as fast, so that "
+                      "aliases are in the samples",
+           .otherwise = "1"}),
+      elsewhere<ArraySimulation>("truth",
+                                 "list of signals",
+                                 {.meaning = "a signal or a list of them", .otherwise = "zero"}),
+      field<&ArraySimulation::truth_bandwidth_hz>(
+          "truth_bandwidth_hz",
+          {.unit = "Hz",
+           .range = kPositive,
+           .meaning =
+               "the truth columns are given through a first-order low-pass, as the sensors see it",
+           .otherwise = "as it is"}),
+      elsewhere<ArraySimulation>(
+          "temperature", "signal", {.meaning = "in °C", .otherwise = "each model's reference"}),
+      field<&ArraySimulation::low_pass_starts_at_zero>(
+          "low_pass_start",
+          {.words = kLowPassStarts,
+           .meaning = "steady: low-passes start in the steady state of the first sample; zero: as "
+                      "published",
+           .otherwise = "steady"}),
+  };
+  return rows;
+}
+
+const Fields<SignalSpec>& signal_fields() {
+  static const Fields<SignalSpec> rows = {
+      field<&SignalSpec::offset>("offset", {.meaning = "added", .otherwise = "0"}),
+      field<&SignalSpec::value>("value", {.meaning = "constant", .written = Written::always}),
+      field<&SignalSpec::amplitude>("amplitude", {.meaning = "± this", .otherwise = "1"}),
+      field<&SignalSpec::frequency_hz>("frequency_hz",
+                                       {.unit = "Hz", .range = kNotNegative, .otherwise = "1"}),
+      field<&SignalSpec::phase_rad>("phase_rad", {.unit = "rad", .otherwise = "0"}),
+      field<&SignalSpec::from_hz>(
+          "from_hz",
+          {.unit = "Hz", .range = kNotNegative, .meaning = "chirp", .otherwise = "0.01"}),
+      field<&SignalSpec::to_hz>(
+          "to_hz", {.unit = "Hz", .range = kNotNegative, .meaning = "chirp", .otherwise = "1"}),
+      field<&SignalSpec::standard_deviation>(
+          "standard_deviation", {.range = kNotNegative, .meaning = "noise", .otherwise = "1"}),
+      field<&SignalSpec::bandwidth_hz>(
+          "bandwidth_hz",
+          {.unit = "Hz", .range = kNotNegative, .meaning = "noise", .otherwise = "white"}),
+      field<&SignalSpec::renew_s>(
+          "renew_s",
+          {.unit = "s", .range = kNotNegative, .meaning = "uniform", .otherwise = "every sample"}),
+      field<&SignalSpec::repeat>("repeat",
+                                 {.range = {0, 1, false},
+                                  .meaning = "uniform: probability that the old value stays",
+                                  .otherwise = "0"}),
+      field<&SignalSpec::step>(
+          "step",
+          {.unit = "U/√s", .range = kNotNegative, .meaning = "random_walk", .otherwise = "1"}),
+      field<&SignalSpec::slope>("slope",
+                                {.unit = "U/s", .meaning = "ramp", .written = Written::always}),
+  };
+  return rows;
+}
+
+const Fields<ReadOptions>& scene_reading_fields() {
+  static const Fields<ReadOptions> rows = selected(reading_fields(),
+                                                   {"rate_hz",
+                                                    "delimiter",
+                                                    "decimal",
+                                                    "header",
+                                                    "encoding",
+                                                    "names",
+                                                    "units",
+                                                    "time_column",
+                                                    "time_unit",
+                                                    "skip_rows",
+                                                    "format",
+                                                    "from_s",
+                                                    "to_s",
+                                                    "overflow_as_missing",
+                                                    "skip_repeated_header"},
+                                                   Written::when_set);
+  return rows;
+}
+
+const Fields<SimulatedFrom>& simulated_fields() {
+  static const Fields<SimulatedFrom> rows = {
+      field<&SimulatedFrom::seed>("seed",
+                                  {.meaning = "it was simulated with", .written = Written::always}),
+      field<&SimulatedFrom::oversampling>(
+          "oversampling", {.range = kOversampling, .meaning = "likewise", .otherwise = "1"}),
+      elsewhere<SimulatedFrom>("faults", "list", {.meaning = "that its samples hold"}),
+  };
+  return rows;
+}
+
+const Fields<TiltText>& tilt_fields() {
+  static const Fields<TiltText> rows = always(Fields<TiltText>{
+      field<&TiltText::gyroscope>("gyroscope", {.meaning = "its sensor", .required = true}),
+      field<&TiltText::accelerometer_x>("accelerometer_x",
+                                        {.meaning = "its sensor", .required = true}),
+      field<&TiltText::accelerometer_z>("accelerometer_z",
+                                        {.meaning = "its sensor", .required = true}),
+  });
+  return rows;
+}
+
+bool is_valueless(FaultKind kind) {
+  return kind == FaultKind::stuck || kind == FaultKind::dropout;
+}
+
+}  // namespace libchar

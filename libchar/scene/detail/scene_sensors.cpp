@@ -1,0 +1,164 @@
+// The block `sensors` of a scene file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "libchar/core/text.hpp"
+#include "libchar/model/model_reader.hpp"
+#include "libchar/scene/detail/scene_fields.hpp"
+#include "libchar/scene/detail/scene_parts.hpp"
+
+namespace libchar {
+namespace {
+
+const std::string kNeedsModel = "a simulated sensor needs a model";
+const std::string kModelHint =
+    "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor";
+
+// Without the mistake of taking a letter's case for a difference.
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  return text;
+}
+
+class SensorsReader {
+ public:
+  SensorsReader(const MapReader& top, const SceneFolder& folder, Scene& scene)
+      : top_(top), folder_(folder), scene_(scene) {}
+
+  SensorIndex read() {
+    const auto& list = top_.list("sensors");
+    if (list.empty()) refuse_scene("E0736", top_, "sensors", "expected at least one sensor");
+    if (list.size() > kMostSensors) refuse_number(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) sensor(list[i], fmt::format("sensors[{}]", i));
+    check_names();
+    return std::move(index_);
+  }
+
+ private:
+  using Place = SensorIndex::Place;
+
+  [[noreturn]] void refuse(const char* code,
+                           const Place& place,
+                           const std::string& what,
+                           const std::string& hint = "") const {
+    refuse_scene_value(code, top_, *place.node, place.path, what, hint);
+  }
+
+  [[noreturn]] void refuse_number(std::uint64_t number) const {
+    refuse_scene(
+        "E0736",
+        top_,
+        "sensors",
+        fmt::format("{} sensors are more than the {} that a scene may have", number, kMostSensors));
+  }
+
+  void sensor(const Document& node, const std::string& path) {
+    SceneSensor sensor;
+    if (is_scalar(node)) {
+      if (scene_.simulate) refuse("E0743", {&node, path}, kNeedsModel, kModelHint);
+      sensor.name = sensor.channel = node.text;
+      return add(sensor, {&node, path});
+    }
+    const MapReader at(node, folder_.scene, path, keys_of(sensor_fields()));
+    const char* named = at.has("name") || !at.has("channel") ? "name" : "channel";
+    const Place place{&at.require(named), at.path_of(named)};
+    read_fields(sensor_fields(), at, sensor);
+    sensor.name = at.text(named);
+    sensor.channel = at.text_or("channel", sensor.name);
+    if (at.has("channel"))
+      check_scene_text(top_, at.require("channel"), at.path_of("channel"), scene_);
+    if (sensor.h.empty()) refuse_scene("E0741", at, "h", "expected one weight a true input");
+    if (at.has("model")) sensor.model = model(at);
+    if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
+    check_simulated(at);
+    if (at.has("count")) return devices(sensor, at, place);
+    add(sensor, place);
+  }
+
+  void check_simulated(const MapReader& at) const {
+    if (!scene_.simulate) return;
+    if (at.has("scale")) at.refuse("scale", "the samples of a simulation are used as they are");
+    if (at.has("channel")) at.refuse("channel", "a simulated sensor's channel has its name");
+    if (!at.has("model")) refuse_scene("E0743", at, "model", kNeedsModel, kModelHint);
+  }
+
+  // NAME1 … NAMEn from one model.
+  void devices(SceneSensor sensor, const MapReader& at, const Place& place) {
+    if (!scene_.simulate)
+      at.refuse("count", "a recording has the sensors it has", "name each of them");
+    const std::uint64_t count = at.count("count");
+    if (count == 0) at.refuse("count", "expected at least one device");
+    if (count > kMostSensors) refuse_number(count);
+    const std::string name = sensor.name;
+    for (std::uint64_t i = 1; i <= count; ++i) {
+      sensor.name = sensor.channel = name + std::to_string(i);
+      add(sensor, place);
+    }
+  }
+
+  void add(const SceneSensor& sensor, const Place& place) {
+    if (scene_.sensors.size() >= kMostSensors) refuse_number(scene_.sensors.size() + 1);
+    if (place.node->kind == Document::Kind::null || sensor.name.empty())
+      refuse("E0737", place, "a sensor needs a name");
+    check_scene_text(top_, *place.node, place.path, scene_);
+    index_.places.push_back(place);
+    scene_.sensors.push_back(sensor);
+  }
+
+  std::optional<SensorModel> model(const MapReader& at) {
+    const Document& node = at.require("model");
+    if (!is_scalar(node)) return sensor_model_of(node, folder_.scene, at.path_of("model"));
+    if (node.text == "none") return std::nullopt;
+    const std::string path = scene_file_of(at, "model", folder_, scene_);
+    const auto known = models_.find(path);
+    if (known != models_.end()) return known->second;
+    return models_.emplace(path, read_model_file(path)).first->second;
+  }
+
+  // Equal names are refused; names that differ by capitals only are counted.
+  void check_names() {
+    std::map<std::string, std::size_t> small;
+    for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
+      const std::string& name = scene_.sensors[i].name;
+      if (!index_.by_name.emplace(name, i).second)
+        refuse("E0737",
+               index_.places[i],
+               fmt::format("two sensors have the name {}", printable(name, 40)));
+      if (!small.emplace(lower(name), i).second)
+        scene_.warnings.add("case_clash",
+                            "names of sensors differ by capitals only",
+                            top_.where(*index_.places[i].node));
+    }
+  }
+
+  const MapReader& top_;
+  const SceneFolder& folder_;
+  Scene& scene_;
+  SensorIndex index_;
+  std::map<std::string, SensorModel> models_;
+};
+
+}  // namespace
+
+SensorIndex read_scene_sensors(const MapReader& top, const SceneFolder& folder, Scene& scene) {
+  return SensorsReader(top, folder, scene).read();
+}
+
+std::size_t sensor_index(const MapReader& at,
+                         std::string_view key,
+                         const Scene& scene,
+                         const SensorIndex& index) {
+  const std::string name = at.text(key);
+  const auto found = index.by_name.find(name);
+  if (found != index.by_name.end()) return found->second;
+  std::vector<std::string> names;
+  for (const SceneSensor& sensor : scene.sensors) names.push_back(sensor.name);
+  return index_of_name(at, key, name, names, "a sensor of this scene");
+}
+
+}  // namespace libchar

@@ -1,0 +1,86 @@
+// When things happen in a scene: windows, faults, what a simulated recording holds.
+
+#include <fmt/format.h>
+
+#include "libchar/scene/detail/scene_fields.hpp"
+#include "libchar/scene/detail/scene_parts.hpp"
+
+namespace libchar {
+namespace {
+
+// [from, to]; `end` stands for the end of the recording.
+std::optional<TimeWindow> window_of(const MapReader& top, const char* key) {
+  if (!top.has(key)) return std::nullopt;
+  const auto& ends = top.list(key);
+  TimeWindow window;
+  const auto number = [&](const Document& node) {
+    if (node.kind != Document::Kind::number)
+      refuse_scene_value("E0740", top, node, key, "expected a number");
+    return node.number;
+  };
+  if (ends.size() != 2)
+    refuse_scene("E0740", top, key, "expected [from, to] in seconds, or [from, end]");
+  window.from_s = number(ends[0]);
+  if (ends[1].text != "end") window.to_s = number(ends[1]);
+  if (window.from_s < 0 || !(window.from_s < window.to_s))
+    refuse_scene("E0740", top, key, "expected 0 <= from < to");
+  return window;
+}
+
+SensorFault fault_of(const MapReader& at, const Scene& scene, const SensorIndex& index) {
+  SensorFault fault;
+  fault.sensor = sensor_index(at, "sensor", scene, index);
+  FaultText text;
+  read_fields(fault_fields(), at, text);
+  fault.kind = text.kind;
+  const bool valueless = is_valueless(fault.kind);
+  if (valueless && at.has("value"))
+    refuse_scene(
+        "E0739", at, "value", fmt::format("a fault of kind {} has no value", name_of(fault.kind)));
+  const bool size = fault.kind == FaultKind::noise || fault.kind == FaultKind::saturation;
+  if (!valueless) fault.value = at.number("value", size ? kNotNegative : kAnyNumber);
+  fault.from_s = text.from_s;
+  if (text.to_s) fault.to_s = *text.to_s;
+  if (!(fault.from_s < fault.to_s))
+    refuse_scene("E0740", at, "to_s", "a fault lasts from a time to a later one");
+  return fault;
+}
+
+std::vector<SensorFault> faults_of(const MapReader& from,
+                                   const Scene& scene,
+                                   const SensorIndex& index) {
+  std::vector<SensorFault> out;
+  if (!from.has("faults")) return out;
+  const auto& list = from.list("faults");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    out.push_back(fault_of(MapReader(list[i],
+                                     from.file(),
+                                     fmt::format("{}[{}]", from.path_of("faults"), i),
+                                     keys_of(fault_fields())),
+                           scene,
+                           index));
+  return out;
+}
+
+SimulatedFrom simulated_of(const MapReader& top, const Scene& scene, const SensorIndex& index) {
+  if (scene.simulate)
+    refuse_scene("E0735", top, "simulated", "tells what a recording holds; this scene has none");
+  const MapReader at = top.map("simulated", keys_of(simulated_fields()));
+  SimulatedFrom from;
+  read_fields(simulated_fields(), at, from);
+  from.faults = faults_of(at, scene, index);
+  return from;
+}
+
+}  // namespace
+
+void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& scene) {
+  scene.learning = window_of(top, "learning");
+  scene.evaluation = window_of(top, "evaluation");
+  scene.rest = window_of(top, "rest");
+  scene.fault_free_s = top.maybe_number("fault_free_s", kPositive);
+  scene.faults = faults_of(top, scene, index);
+  if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
+}
+
+}  // namespace libchar

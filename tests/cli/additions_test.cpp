@@ -1,0 +1,68 @@
+// What docs/contributing.md says that adding costs: a program with one fusion algorithm, log format, export target and verb
+// more, each from its own file in tests/cli/additions, has them in its help, lists, JSON, work and messages. The pages' tests
+// compare with the same tables, so that an addition without its row in docs/ fails there.
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+test::Ran run_with_additions(std::vector<std::string> words) {
+  words.insert(words.begin(),
+               std::filesystem::path(test::program())
+                   .replace_filename("sensorchar_with_additions")
+                   .string());
+  return test::run_words(words);
+}
+
+}  // namespace
+
+TEST_CASE("a verb is one file: help, work, JSON and messages have it") {
+  const auto help = run_with_additions({"--help"});
+  CHECK(help.code == 0);
+  CHECK_THAT(help.out, Contains("convert") && Contains("count-words"));
+  CHECK_THAT(run_with_additions({"count-words", "--help"}).out, Contains("--json"));
+  CHECK(run_with_additions({"count-words", "one", "two"}).out == "2\n");
+  const auto json = run_with_additions({"count-words", "one", "--json"});
+  CHECK_THAT(json.out, Contains("\"format\": \"words\"") && Contains("\"words\": 1"));
+  CHECK_THAT(run_with_additions({"cont-words"}).err, Contains("did you mean count-words?"));
+  CHECK(test::run({"count-words"}).code == 2);
+}
+
+TEST_CASE("a log format is a file and a line: help, suffix and work have it") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "a.readings").string();
+  std::ofstream(log) << "t,x\n0,1\n1,2\n2,4\n";
+  CHECK_THAT(run_with_additions({"inspect", "--help"}).out, Contains("readings"));
+  const auto json = run_with_additions({"inspect", log, "--format", "readings", "--json"});
+  INFO(json.err);
+  REQUIRE(json.code == 0);
+  CHECK(libchar::parse_json(json.out, "").at("recordings")[0].at("rows") == 3);
+  CHECK_THAT(test::run({"inspect", "--help"}).out, !Contains("readings"));
+}
+
+TEST_CASE("a fusion algorithm is a file and a line: list, plan and report have it") {
+  CHECK_THAT(run_with_additions({"replay", "--list"}).out, Contains("last-channel"));
+  const std::string scene = test::fixture("scenes/rv-5.1-fault-free.yaml").string();
+  CHECK_THAT(run_with_additions({"replay", scene, "--explain"}).out, Contains("last-channel"));
+  CHECK_THAT(test::run({"replay", "--list"}).out, !Contains("last-channel"));
+}
+
+TEST_CASE("an export target is a file and a line: list, work and messages have it") {
+  CHECK_THAT(run_with_additions({"model", "--list"}).out, Contains("names"));
+  const test::TemporaryFolder folder;
+  const std::string model = (folder / "m.sensor.yaml").string();
+  std::ofstream(model) << "format: sensor-model\nversion: 1\nchannel: gyro_x\nunit: rad/s\n";
+  const auto names = run_with_additions({"model", model, "--to", "names"});
+  INFO(names.err);
+  CHECK(names.out == "gyro_x\n");
+  CHECK_THAT(run_with_additions({"model", model, "--to", "name"}).err,
+             Contains("did you mean names?"));
+  CHECK(test::run({"model", model, "--to", "names"}).code == 2);
+}

@@ -1,0 +1,121 @@
+// One description of a document: what its rows read, write and say in a table.
+
+#include "libchar/core/fields.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/document.hpp"
+#include "libchar/core/error.hpp"
+
+using namespace libchar;
+
+namespace {
+
+enum class Colour { red, green };
+constexpr Word kColours[] = {{"red", 0}, {"green", 1, "the usual one"}};
+
+struct Lamp {
+  double power_w = 5;
+  Colour colour = Colour::red;
+  bool operator==(const Lamp&) const = default;
+};
+
+struct Room {
+  std::string name;
+  std::uint64_t doors = 1;
+  std::optional<double> height_m;
+  std::vector<double> widths_m;
+  Lamp lamp;
+  bool open = false;
+};
+
+const Fields<Lamp>& lamp_fields() {
+  static const Fields<Lamp> rows = {
+      field<&Lamp::power_w>("power_w", {.unit = "W", .range = kPositive, .meaning = "at 230 V"}),
+      field<&Lamp::colour>("colour", {.words = kColours, .meaning = "of the light"}),
+  };
+  return rows;
+}
+
+const Fields<Room>& room_fields() {
+  static const Fields<Room> rows = {
+      field<&Room::name>("name",
+                         {.meaning = "unique", .written = Written::always, .required = true}),
+      field<&Room::doors>("doors", {.comment = "for {name}", .written = Written::always}),
+      empty_line<Room>(),
+      field<&Room::height_m>("height_m", {.range = kPositive}),
+      field<&Room::widths_m>("widths_m"),
+      part<&Room::lamp>("lamp", lamp_fields(), {.form = Entry::Form::flow}),
+      field<&Room::lamp, &Lamp::colour>("light", {.words = kColours}),
+      field<&Room::open>("open"),
+  };
+  return rows;
+}
+
+Room read(const std::string& text, const std::string& file = "f.yaml") {
+  const Document document = parse_document(text, file);
+  Room room;
+  read_fields(room_fields(), MapReader(document, file, "", keys_of(room_fields())), room);
+  return room;
+}
+
+std::string refusal(const std::string& text, const std::string& file = "f.yaml") {
+  try {
+    read(text, file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("fields: what is written reads back, in YAML and in JSON") {
+  Room room;
+  room.name = "hall";
+  room.height_m = 0.1;
+  room.widths_m = {1, 1.0 / 3};
+  room.lamp = {7, Colour::green};
+  room.open = true;
+  const std::vector<Entry> entries = entries_of(room_fields(), room, {{"name", "people"}});
+  const std::string yaml = yaml_of(entries);
+  CHECK(yaml ==
+        "name: \"hall\"\ndoors: 1  # for people\n\nheight_m: 0.1\nwidths_m: [1.0, "
+        "0.3333333333333333]\nlamp: {power_w: 7.0, colour: green}\nlight: green  # the usual "
+        "one\nopen: true\n");
+  CHECK(
+      yaml_of(entries, "  ", false).starts_with("  name: \"hall\"\n  doors: 1\n  height_m: 0.1\n"));
+  for (const bool json : {false, true}) {
+    const Room back = json ? read(dump_json(json_of(entries)), "f.json") : read(yaml);
+    CHECK(back.name == room.name);
+    CHECK(back.height_m == room.height_m);
+    CHECK(back.widths_m == room.widths_m);
+    CHECK(back.lamp == room.lamp);
+    CHECK(back.open);
+  }
+}
+
+TEST_CASE("fields: what is as usual is not written, and absent keys leave what is there") {
+  CHECK(yaml_of(entries_of(room_fields(), Room{})) == "name: \"\"\ndoors: 1  # for {name}\n");
+  CHECK(read("name: a\n").lamp == Lamp{});
+  CHECK(json_of(entries_of(selected(room_fields(), {"open", "doors"}, Written::always), Room{}))
+            .dump() == R"({"open":false,"doors":1})");
+}
+
+TEST_CASE("fields: refusals name line, column and the nearest key or word") {
+  CHECK(refusal("doors: 2\n") == "f.yaml:1:1: error E0542: name is missing");
+  CHECK(
+      refusal("name: a\nlamp: {powr_w: 1}\n") ==
+      "f.yaml:2:8: error E0540: unknown key in lamp; got \"powr_w\"; hint: did you mean power_w?");
+  CHECK(refusal("{\"name\": \"a\",\n \"light\": \"gren\"}", "f.json")
+            .starts_with("f.json:2:11: error E0544: light: expected one of red, green"));
+  CHECK(refusal("name: a\nheight_m: 0\n").starts_with("f.yaml:2:11: error E0543"));
+  CHECK(refusal("name: a\nopen: 1\n").starts_with("f.yaml:2:7: error E0541"));
+}
+
+TEST_CASE("fields: the table of a page has a row a key") {
+  CHECK(markdown_table(lamp_fields()) ==
+        "| key | value | meaning |\n|---|---|---|\n| `power_w` | W | at 230 V |\n| `colour` | red, "
+        "green | of the light |\n");
+}
