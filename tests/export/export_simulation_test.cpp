@@ -272,7 +272,7 @@ TEST_CASE("simulated: gnss-ins-sim's steady bias in deg/h") {
            92);
 }
 
-TEST_CASE("simulated: the hump that stands for flicker reaches its floor where it should") {
+TEST_CASE("simulated: the maximum that stands for flicker reaches its floor where it should") {
   auto models = test::imu(
       {known(1e-4), known(1e-2), at_most(1e-5)}, {known(1e-3), known(0.1), at_most(1e-4)}, 20);
   ExportOptions options;

@@ -389,7 +389,7 @@ TEST_CASE("magnetometers and barometers where the consumer has a place for them"
         Approx(0.3 * std::sqrt(50)));
 }
 
-TEST_CASE("flicker becomes the Gauss-Markov bias with the same hump") {
+TEST_CASE("flicker becomes the Gauss-Markov bias with the same maximum") {
   // Q = 1e-3, B = 1e-4: white noise ends at Q^2 / (0.4413 B^2) = 226.6 s; the record at 1500 s.
   const auto m = test::model("gyr_x", "rad/s", {known(1e-3), known(1e-4), at_most(1e-7)});
   const PlacedModel placed{&m, 1};

@@ -55,7 +55,7 @@ struct GaussMarkov {
   std::string origin;    ///< how it was found
 };
 
-/// The process that stands for the bias of one axis: matched to the hump of flicker where flicker
+/// The process that stands for the bias of one axis: matched to the floor of flicker where flicker
 /// is what the record ends in, else a random walk with a correlation time of ten records.
 GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options);
 
