@@ -57,7 +57,7 @@ TEST_CASE("--segment takes samples, a time or N/4, in psd and in characterize") 
   const Json time = spectrum_settings({"--segment", "5s"}, folder);
   const Json samples = spectrum_settings({"--segment", "500"}, folder);
   CHECK(time["channels"] == samples["channels"]);
-  CHECK(time["config"]["spectrum"]["segment_s"] == 5);
+  CHECK(time.at("config").at("spectrum_segment_s") == 5);
   const Json quarter = spectrum_settings({"--segment", "N/4"}, folder);
   CHECK(quarter["channels"] == spectrum_settings({}, folder)["channels"]);
   CHECK(quarter["channels"] != samples["channels"]);
