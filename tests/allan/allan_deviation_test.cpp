@@ -98,8 +98,8 @@ void check_same_bits(const AllanCurve& a, const AllanCurve& b, double factor) {
 }  // namespace
 
 TEST_CASE("names and types") {
-  for (const DeviationType type : kAll) CHECK(find_enum<DeviationType>(name_of(type)) == type);
-  CHECK_FALSE(find_enum<DeviationType>("allan"));
+  for (const DeviationType type : kAll) CHECK(deviation_type(name_of(type)) == type);
+  CHECK_FALSE(deviation_type("allan"));
 }
 
 TEST_CASE("the table of deviations stands in the order of its enum, and the page has each word") {

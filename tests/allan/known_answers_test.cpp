@@ -50,7 +50,7 @@ void check_against(const Json& table, const std::vector<double>& rate, double li
   for (const auto& [m, row] : table.items())
     for (const auto& [name, answer] : row.items()) {
       INFO(name << " m = " << m);
-      const auto type = find_enum<DeviationType>(name);
+      const auto type = deviation_type(name);
       REQUIRE(type);
       const double truth = std::stod(answer.at(0).get<std::string>());
       const AllanCurve curve = allan_deviation(rate, 1, asking(*type, std::stod(m)));
@@ -78,7 +78,7 @@ TEST_CASE("SP 1065 1000-point suite, second computation") {
   for (const auto& [name, rows] : sets.items()) {
     std::string lower = name;
     for (char& c : lower) c = static_cast<char>(std::tolower(c));
-    const auto type = find_enum<DeviationType>(lower);
+    const auto type = deviation_type(lower);
     if (!type) continue;
     for (const auto& [m, answer] : rows.items()) {
       INFO(name << " m = " << m);
@@ -111,8 +111,8 @@ TEST_CASE("Stable32 tables of PHASE.DAT, every averaging time") {
         double tau = 0, alpha = 0, low = 0, sigma = 0;
         if (!(cells >> m >> tau >> terms >> alpha >> low >> sigma)) continue;
         INFO(path.filename().string() << " m = " << m);
-        const AllanCurve curve = allan_deviation(
-            phase, 1, asking(*find_enum<DeviationType>(name), double(m), DataKind::phase));
+        const AllanCurve curve =
+            allan_deviation(phase, 1, asking(*deviation_type(name), double(m), DataKind::phase));
         CHECK(curve.points.at(0).deviation == Approx(sigma).epsilon(1e-4));
         CHECK(curve.points.at(0).terms == terms);
         ++rows;
@@ -167,7 +167,7 @@ TEST_CASE("clock recordings against Stable32") {
         int rows = 0;
         double worst = 0;
         for (const auto& row : test::table(test::shared("data/" + name + ".stable32.csv"))) {
-          const auto type = find_enum<DeviationType>(row[0]);
+          const auto type = deviation_type(row[0]);
           if (!type) continue;
           const AllanCurve curve =
               allan_deviation(record, 1, asking(*type, std::stod(row[2]), data));
