@@ -121,7 +121,7 @@ const Fields<CharacterizeOptions>& characterize_fields() {
         part<&Options::reading>("reading", reading_settings()),
     };
     all = always(all);
-    all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}));
+    all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}).field);
     return all;
   }();
   return rows;

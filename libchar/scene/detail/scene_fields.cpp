@@ -10,8 +10,8 @@ constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
 const std::vector<Word>& kind_words() {
   static const std::vector<Word> words = [] {
     std::vector<Word> all;
-    for (const std::string& kind : fault_kinds())
-      all.push_back({kind, static_cast<int>(fault_kind(kind))});
+    for (const EnumWord<FaultKind>& row : enum_table<FaultKind>)
+      all.push_back({row.word, static_cast<int>(row.value)});
     return all;
   }();
   return words;

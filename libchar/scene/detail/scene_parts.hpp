@@ -45,6 +45,9 @@ std::size_t index_of_name(const MapReader& at,
                           const std::vector<std::string>& names,
                           const std::string& what);
 
+/// From 1 to 1024.
+void check_oversampling(const MapReader& at, std::uint64_t oversampling);
+
 // ---- files ----
 
 /// The path behind `key`, checked, and noted in `scene.files`.
