@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "libchar/core/text.hpp"
+#include "libchar/fusion/registry.hpp"
+#include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/verdict.hpp"
 
 namespace libchar {
@@ -63,6 +65,23 @@ std::string replay_text(const ReplayView& view) {
                         printable(fmt::format("{}", fmt::join(s.labels, ", "))),
                         printable(s.reason));
   text += "\n" + printable(fmt::format("{}", fmt::join(view.verdict, " "))) + "\n";
+  return text;
+}
+
+std::string algorithms_text() {
+  std::string text;
+  for (const fusion::Entry& entry : fusion::algorithms()) {
+    text += fmt::format("{:<28} {}\n", entry.card->name, entry.card->title);
+    for (const std::string& need : needs_in_words(*entry.card))
+      text += fmt::format("{:<28}   needs {}\n", "", need);
+    for (const fusion::Option& option : entry.options)
+      text += fmt::format("{:<28}   {} = {}{}  {}\n",
+                          "",
+                          option.name,
+                          significant(option.standard, 6),
+                          option.unit.empty() ? "" : " " + std::string(option.unit),
+                          option.meaning);
+  }
   return text;
 }
 

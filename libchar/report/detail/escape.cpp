@@ -34,11 +34,6 @@ std::string entities(std::string_view text) {
   return out;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
-
 }  // namespace
 
 std::string html_text(std::string_view text) {
@@ -78,8 +73,6 @@ std::string html_comment(std::string_view text) {
   for (std::size_t at = 0; (at = out.find("--", at)) != std::string::npos;)
     out.replace(at, 2, "- -");
   return out;
-}
-
 }
 
 std::string markdown_text(std::string_view text) {
