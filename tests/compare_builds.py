@@ -159,10 +159,24 @@ class Side:
         return found
 
 
+NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
+LAST_DIGITS = 1e-12
+
+
+def differs_in_last_digits(a, b):
+    """The same text but for numbers, and these are equal to LAST_DIGITS of their size."""
+    if NUMBER.sub("#", a) != NUMBER.sub("#", b):
+        return False
+    pairs = zip(NUMBER.findall(a), NUMBER.findall(b))
+    return all(x == y or abs(float(x) - float(y)) <= LAST_DIGITS * max(abs(float(x)), abs(float(y))) for x, y in pairs)
+
+
 def differences(a, b):
     for part in sorted(set(a) | set(b)):
         if part not in a or part not in b:
             yield part, "-" if part in a else "+", "file only in one"
+        elif a[part] != b[part] and differs_in_last_digits(a[part], b[part]):
+            yield part, "~", "last digits of numbers"
         elif a[part] != b[part]:
             for line in difflib.unified_diff(a[part].splitlines(), b[part].splitlines(), lineterm="", n=0):
                 if not line.startswith(("---", "+++", "@@")):
