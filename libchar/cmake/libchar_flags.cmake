@@ -12,8 +12,8 @@ target_compile_options(
             -Wshadow
             -Wconversion
             -Wno-sign-conversion
-            # GCC 12 warns falsely inside std::string (GCC bug 105329); what comes from a precompiled header is no system header to it.
-            $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>
+            # GCC 12 warns falsely inside std::string (GCC bug 105329) and Eigen; what comes from a precompiled header is no system header to it.
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>
             -Wdouble-promotion
             -Wold-style-cast
             -Wnon-virtual-dtor
