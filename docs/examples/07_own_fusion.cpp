@@ -7,18 +7,19 @@
 namespace fusion = libchar::fusion;
 
 struct Midrange {
-  static constexpr fusion::Card card{.name = "midrange",
-                                     .title = "Middle between the smallest and the largest",
-                                     .source = "this page",
-                                     .complexity = "O(n)"};
-  explicit Midrange(const fusion::Given&) {}
+  static constexpr fusion::Description description{
+      .name = "midrange",
+      .title = "Middle between the smallest and the largest",
+      .source = "this page",
+      .complexity = "O(n)"};
+  explicit Midrange(const fusion::Array&) {}
   fusion::Estimate step(const fusion::Sample& y) const {
     return fusion::Estimate::scalar((y.minCoeff() + y.maxCoeff()) / 2, 0);
   }
 };
 
 int main() {
-  fusion::Given array;
+  fusion::Array array;
   array.channels = 3;
   // Checks the contract when compiled.
   fusion::RunnerOf<Midrange> runner(array, fusion::Settings());

@@ -19,21 +19,21 @@ constexpr double kDoubtful = 1e-3;
 std::string in_habitual_unit(const Coefficient& c, Term term, const std::string& unit) {
   const auto habits = habitual_units(kTermNames[static_cast<std::size_t>(term)].key, unit);
   if (habits.empty()) return "";
-  return fmt::format(" ({} {})", people_value(c, habits[0].factor), habits[0].symbol);
+  return fmt::format(" ({} {})", value_text(c, habits[0].factor), habits[0].symbol);
 }
 
 std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const Coefficient& c = fit[term];
   const auto& name = kTermNames[static_cast<std::size_t>(term)];
   const std::string value =
-      people_value(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
+      value_text(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
   switch (c.status) {
     case Status::detected:
       return fmt::format("{} {} = {}, known to {} %.",
                          term_title(term),
                          name.letter,
                          value,
-                         people(100 * c.relative_sd, 2));
+                         number_text(100 * c.relative_sd, 2));
     case Status::undetermined:
       return fmt::format(
           "{} {} = {}, but undetermined: the record cannot tell it from another term, or "
@@ -86,7 +86,7 @@ std::string goodness_sentence(const Goodness& g) {
   const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}",
                                           significant(g.chi2, 4),
                                           significant(g.dof, 4),
-                                          people_probability(g.p));
+                                          probability_text(g.p));
   if (g.p >= 0.01) return "The model explains the spectrum within its scatter (" + figures + ").";
   if (g.p >= kDoubtful) return "The model explains the spectrum barely (" + figures + ").";
   return "The model does not explain the spectrum (" + figures +
@@ -103,7 +103,7 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     out.push_back(
         fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "
                     "of the model.",
-                    people(*fit.bandwidth_hz, 3)));
+                    number_text(*fit.bandwidth_hz, 3)));
   }
   return out;
 }
@@ -123,12 +123,12 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
     out.push_back(channel.verification->sentences.front());
   if (q.saturated > 0 && q.suggestions.empty())
     out.push_back(
-        fmt::format("{} samples stand at the end of the range.", people_count(q.saturated)));
+        fmt::format("{} samples stand at the end of the range.", count_text(q.saturated)));
   // Fewer cost nothing worth mentioning here: terms that touch them are left out.
   if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
     out.push_back(fmt::format("{} samples ({} %) are missing.",
-                              people_count(q.missing),
-                              people(100 * static_cast<double>(q.missing) / all, 2)));
+                              count_text(q.missing),
+                              number_text(100 * static_cast<double>(q.missing) / all, 2)));
   }
   out.insert(out.end(), q.suggestions.begin(), q.suggestions.end());
   return out;

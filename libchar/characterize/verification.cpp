@@ -104,10 +104,10 @@ std::vector<PointVerification> compare_points(const AllanCurve& recorded,
 }
 
 std::string term_sentence(const TermVerification& t, const std::string& name) {
-  const std::string found = t.simulated.value ? people_coefficient(t.simulated)
-                                              : "no " + name + ", " + people_value(t.simulated);
+  const std::string found = t.simulated.value ? coefficient_text(t.simulated)
+                                              : "no " + name + ", " + value_text(t.simulated);
   return fmt::format(
-      "{}: the model says {}, the simulated record gives {}", name, people_value(t.model), found);
+      "{}: the model says {}, the simulated record gives {}", name, value_text(t.model), found);
 }
 
 // The worst of a stretch of neighbouring averaging times that disagree.
@@ -120,15 +120,15 @@ std::vector<std::string> point_sentences(const std::vector<PointVerification>& p
     for (; end < points.size() && !points[end].agrees; ++end)
       if (std::abs(std::log(points[end].ratio)) > std::abs(std::log(worst)))
         worst = points[end].ratio;
-    const std::string where = end == i + 1 ? "at τ = " + people_seconds(points[i].tau_s)
+    const std::string where = end == i + 1 ? "at τ = " + duration_text(points[i].tau_s)
                                            : fmt::format("from τ = {} to {}",
-                                                         people_seconds(points[i].tau_s),
-                                                         people_seconds(points[end - 1].tau_s));
+                                                         duration_text(points[i].tau_s),
+                                                         duration_text(points[end - 1].tau_s));
     out.push_back(
         fmt::format("{} the recording's Allan deviation is {} % {} than the simulated one: the "
                     "model does not hold there",
                     where,
-                    people(100 * std::abs(worst - 1), 2),
+                    number_text(100 * std::abs(worst - 1), 2),
                     worst > 1 ? "higher" : "lower"));
     i = end;
   }

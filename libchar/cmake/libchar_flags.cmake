@@ -20,6 +20,10 @@ target_compile_options(
             -Woverloaded-virtual
             $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond
             -Wlogical-op>)
+if(LIBCHAR_UNITY)
+  # GCC takes a private struct of a source for one in a header when it is compiled with others.
+  target_compile_options(libchar_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(LIBCHAR_WERROR)
   target_compile_options(libchar_flags INTERFACE -Werror)
 endif()

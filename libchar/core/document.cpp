@@ -15,8 +15,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
-constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxKey = 1024;
 constexpr std::size_t kMaxKeys = 10000;  // a map is searched key by key
 
@@ -145,8 +143,8 @@ class Builder : public YAML::EventHandler {
   }
 
   void open(const YAML::Mark& mark, Document::Kind kind) {
-    if (stack_.size() >= kMaxDepth)
-      refuse(mark, fmt::format("is nested deeper than {} levels", kMaxDepth), "");
+    if (stack_.size() >= kMaxDocumentDepth)
+      refuse(mark, fmt::format("is nested deeper than {} levels", kMaxDocumentDepth), "");
     if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map &&
         !stack_.back().awaits_value)
       refuse(mark, "a list or map cannot be a key", "");
@@ -163,9 +161,10 @@ class Builder : public YAML::EventHandler {
 }
 
 void check_bytes(std::string_view text, const std::string& file) {
-  if (text.size() > kMaxBytes)
-    refuse_text(file,
-                fmt::format("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxBytes));
+  if (text.size() > kMaxDocumentBytes)
+    refuse_text(
+        file,
+        fmt::format("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes));
   if (first_invalid_utf8(text) != std::string_view::npos)
     refuse_text(fmt::format("{} (byte {})", file, first_invalid_utf8(text)), "is not valid UTF-8");
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {

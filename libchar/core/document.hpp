@@ -34,6 +34,10 @@ struct DocumentEntry {
   Document value;
 };
 
+/// Limits of one document, YAML and JSON alike.
+inline constexpr std::size_t kMaxDocumentBytes = std::size_t{16} << 20U;
+inline constexpr std::size_t kMaxDocumentDepth = 64;
+
 /// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys,
 /// duplicate keys or second document; depth <= 64, size <= 16 MiB, keys <= 1024 characters. A plain
 /// scalar that reads as a decimal number becomes one ("010", "0x10", ".inf" and "no" are texts).

@@ -12,8 +12,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
-
 [[noreturn]] void cannot_read(const std::string& path,
                               const std::string& why,
                               const std::string& hint = "") {
@@ -36,9 +34,9 @@ std::string read_document_text(const std::string& path) {
   if (::fstat(descriptor, &status) != 0 || S_ISDIR(status.st_mode))
     cannot_read(path, "is a folder, a file was expected");
   if (!S_ISREG(status.st_mode)) cannot_read(path, "is no regular file");
-  if (static_cast<std::size_t>(status.st_size) > kMaxBytes)
+  if (static_cast<std::size_t>(status.st_size) > kMaxDocumentBytes)
     cannot_read(path,
-                fmt::format("{} bytes exceed the limit of {}", status.st_size, kMaxBytes),
+                fmt::format("{} bytes exceed the limit of {}", status.st_size, kMaxDocumentBytes),
                 "is this a log? a model or scene file is a short text");
   std::string text(static_cast<std::size_t>(status.st_size), '\0');
   std::size_t done = 0;

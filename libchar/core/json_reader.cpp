@@ -17,9 +17,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
-constexpr std::size_t kMaxDepth = 64;
-
 constexpr std::string_view kMark = "\xEF\xBB\xBF";  // byte order mark
 
 struct Place {
@@ -194,11 +191,11 @@ class Guard : public nlohmann::json_sax<Json> {
     return true;
   }
   bool open(Document::Kind kind) {
-    if (stack_.size() >= kMaxDepth)
+    if (stack_.size() >= kMaxDocumentDepth)
       throw Error({ErrorKind::input,
                    "E0604",
                    file_,
-                   fmt::format("JSON is nested deeper than {} levels", kMaxDepth),
+                   fmt::format("JSON is nested deeper than {} levels", kMaxDocumentDepth),
                    "",
                    ""});
     stack_.push_back(&put(kind, "", byte() - 1));
@@ -223,12 +220,13 @@ class Guard : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Document parse_json_document(std::string_view text, const std::string& file) {
-  if (text.size() > kMaxBytes)
+  if (text.size() > kMaxDocumentBytes)
     throw Error(
         {ErrorKind::input,
          "E0605",
          file,
-         fmt::format("JSON file of {} bytes exceeds the limit of {}", text.size(), kMaxBytes),
+         fmt::format(
+             "JSON file of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes),
          "",
          ""});
   const std::string_view body = text.substr(text.starts_with(kMark) ? kMark.size() : 0);

@@ -13,7 +13,7 @@ inline constexpr std::size_t kTerms = 5;
 struct TermName {
   /// in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
   std::string_view key;
-  std::string_view letter;  ///< in text for people, beside the long name: Q, B, K, Qz, R
+  std::string_view letter;  ///< in texts, beside the long name: Q, B, K, Qz, R
   std::string_view ieee;    ///< IEEE 952 letter: N, B, K, Q, R
 };
 inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "Q", "N"},

@@ -26,7 +26,7 @@ std::string shortest_yaml(double value);
 /// printable are escaped. Bytes that are no UTF-8 cannot stand in YAML: they become \\xHH to read.
 std::string quoted_yaml(std::string_view text);
 
-/// `digits` significant digits for people ("0.0123", "1.23e-05").
+/// `digits` significant digits ("0.0123", "1.23e-05").
 std::string significant(double value, int digits);
 
 /// The candidate nearest to `word` by edit distance, if it is near enough to be a slip (distance <=

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGravity = 9.80665;  // standard gravity, m/s^2 (CGPM 1901)
 
-struct Row {
+struct UnitRow {
   const char* symbol;
   Quantity quantity;
   double to_si;
@@ -23,56 +23,57 @@ struct Row {
 };
 
 const std::array kUnits = {
-    Row{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
-    Row{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
-    Row{"deg/s",
-        Quantity::angular_rate,
-        kDegree,
-        "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
-    Row{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
-    Row{"deg/h",
+    UnitRow{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
+    UnitRow{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
+    UnitRow{"deg/s",
+            Quantity::angular_rate,
+            kDegree,
+            "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
+    UnitRow{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
+    UnitRow{
+        "deg/h",
         Quantity::angular_rate,
         kDegree / 3600,
         "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
-    Row{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
-    Row{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
-    Row{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
-    Row{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
-    Row{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
-    Row{"µg", Quantity::acceleration, 1e-6 * kGravity, "µg|ug|μg"},
-    Row{"Gal", Quantity::acceleration, 1e-2, "gal|cm/s2|cm/s^2"},
-    Row{"T", Quantity::magnetic_field, 1, "t|tesla"},
-    Row{"mT", Quantity::magnetic_field, 1e-3, "mt"},
-    Row{"µT", Quantity::magnetic_field, 1e-6, "µt|ut|μt|utesla"},
-    Row{"nT", Quantity::magnetic_field, 1e-9, "nt"},
-    Row{"Gauss", Quantity::magnetic_field, 1e-4, "gauss|gs"},
-    Row{"mGauss", Quantity::magnetic_field, 1e-7, "mgauss|mgs"},
-    Row{"Pa", Quantity::pressure, 1, "pa"},
-    Row{"hPa", Quantity::pressure, 100, "hpa|mbar"},
-    Row{"kPa", Quantity::pressure, 1000, "kpa"},
-    Row{"bar", Quantity::pressure, 1e5, "bar"},
-    Row{"°C", Quantity::temperature, 1, "°c|degc|celsius|c|degreesc|deg_c"},
-    Row{"K", Quantity::temperature, 1, "k|kelvin"},
-    Row{"°F", Quantity::temperature, 5.0 / 9, "°f|degf|fahrenheit"},
-    Row{"V", Quantity::voltage, 1, "v|volt|volts"},
-    Row{"mV", Quantity::voltage, 1e-3, "mv"},
-    Row{"µV", Quantity::voltage, 1e-6, "µv|uv|μv"},
-    Row{"deg", Quantity::angle, kDegree, "deg|°|degree|degrees"},
-    Row{"rad", Quantity::angle, 1, "rad"},
-    Row{"s", Quantity::time, 1, "s|sec|second|seconds"},
-    Row{"ms", Quantity::time, 1e-3, "ms|msec|milliseconds"},
-    Row{"µs", Quantity::time, 1e-6, "us|µs|μs|usec|microseconds"},
-    Row{"ns", Quantity::time, 1e-9, "ns|nsec|nanoseconds"},
-    Row{"min", Quantity::time, 60, "min|minutes"},
-    Row{"h", Quantity::time, 3600, "h|hr|hour|hours"},
-    Row{"Hz", Quantity::frequency, 1, "hz"},
-    Row{"kHz", Quantity::frequency, 1e3, "khz"},
-    Row{"MHz", Quantity::frequency, 1e6, "mhz"},
-    Row{"ppm", Quantity::concentration, 1e-6, "ppm"},
-    Row{"ppb", Quantity::concentration, 1e-9, "ppb"},
-    Row{"µg/m³", Quantity::concentration, 1, "µg/m3|ug/m3|μg/m3|ug/m^3"},
-    Row{"%", Quantity::ratio, 1e-2, "%|percent|%rh"},
-    Row{"1", Quantity::ratio, 1, "1|-|none"},
+    UnitRow{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
+    UnitRow{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
+    UnitRow{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
+    UnitRow{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
+    UnitRow{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
+    UnitRow{"µg", Quantity::acceleration, 1e-6 * kGravity, "µg|ug|μg"},
+    UnitRow{"Gal", Quantity::acceleration, 1e-2, "gal|cm/s2|cm/s^2"},
+    UnitRow{"T", Quantity::magnetic_field, 1, "t|tesla"},
+    UnitRow{"mT", Quantity::magnetic_field, 1e-3, "mt"},
+    UnitRow{"µT", Quantity::magnetic_field, 1e-6, "µt|ut|μt|utesla"},
+    UnitRow{"nT", Quantity::magnetic_field, 1e-9, "nt"},
+    UnitRow{"Gauss", Quantity::magnetic_field, 1e-4, "gauss|gs"},
+    UnitRow{"mGauss", Quantity::magnetic_field, 1e-7, "mgauss|mgs"},
+    UnitRow{"Pa", Quantity::pressure, 1, "pa"},
+    UnitRow{"hPa", Quantity::pressure, 100, "hpa|mbar"},
+    UnitRow{"kPa", Quantity::pressure, 1000, "kpa"},
+    UnitRow{"bar", Quantity::pressure, 1e5, "bar"},
+    UnitRow{"°C", Quantity::temperature, 1, "°c|degc|celsius|c|degreesc|deg_c"},
+    UnitRow{"K", Quantity::temperature, 1, "k|kelvin"},
+    UnitRow{"°F", Quantity::temperature, 5.0 / 9, "°f|degf|fahrenheit"},
+    UnitRow{"V", Quantity::voltage, 1, "v|volt|volts"},
+    UnitRow{"mV", Quantity::voltage, 1e-3, "mv"},
+    UnitRow{"µV", Quantity::voltage, 1e-6, "µv|uv|μv"},
+    UnitRow{"deg", Quantity::angle, kDegree, "deg|°|degree|degrees"},
+    UnitRow{"rad", Quantity::angle, 1, "rad"},
+    UnitRow{"s", Quantity::time, 1, "s|sec|second|seconds"},
+    UnitRow{"ms", Quantity::time, 1e-3, "ms|msec|milliseconds"},
+    UnitRow{"µs", Quantity::time, 1e-6, "us|µs|μs|usec|microseconds"},
+    UnitRow{"ns", Quantity::time, 1e-9, "ns|nsec|nanoseconds"},
+    UnitRow{"min", Quantity::time, 60, "min|minutes"},
+    UnitRow{"h", Quantity::time, 3600, "h|hr|hour|hours"},
+    UnitRow{"Hz", Quantity::frequency, 1, "hz"},
+    UnitRow{"kHz", Quantity::frequency, 1e3, "khz"},
+    UnitRow{"MHz", Quantity::frequency, 1e6, "mhz"},
+    UnitRow{"ppm", Quantity::concentration, 1e-6, "ppm"},
+    UnitRow{"ppb", Quantity::concentration, 1e-9, "ppb"},
+    UnitRow{"µg/m³", Quantity::concentration, 1, "µg/m3|ug/m3|μg/m3|ug/m^3"},
+    UnitRow{"%", Quantity::ratio, 1e-2, "%|percent|%rh"},
+    UnitRow{"1", Quantity::ratio, 1, "1|-|none"},
 };
 
 // Signs outside ASCII at the front of `text` and what they stand for.
@@ -142,7 +143,7 @@ std::optional<Unit> find_unit(std::string_view text) {
   // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a lone
   // capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
-  for (const Row& row : kUnits)
+  for (const UnitRow& row : kUnits)
     if (listed(row.spellings, wanted) &&
         !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
       return Unit{row.symbol, row.quantity, row.to_si};

@@ -11,9 +11,9 @@ namespace {
 
 // A coefficient raised to a power and converted; a limit stays a limit.
 std::string converted(const Coefficient& c, double factor, int power) {
-  if (power == 1) return people_value(c, factor);
-  if (c.value) return people(*c.value * *c.value * factor, 4);
-  if (c.upper95) return "≤ " + people(*c.upper95 * *c.upper95 * factor, 3);
+  if (power == 1) return value_text(c, factor);
+  if (c.value) return number_text(*c.value * *c.value * factor, 4);
+  if (c.upper95) return "≤ " + number_text(*c.upper95 * *c.upper95 * factor, 3);
   return "–";
 }
 

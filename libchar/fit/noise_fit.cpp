@@ -103,10 +103,10 @@ double median_ratio(const std::vector<FitResidual>& residual, std::size_t from, 
   return *middle;
 }
 
-/// Bins of a broad hump (vibration, a wandering line): on the scale of the model a quarter and six
+/// Bins of a broad peak (vibration, a wandering line): on the scale of the model a quarter and six
 /// standard deviations above the median of the ten bins before as well as of the ten after, so that
 /// a slope or a rising end is none.
-std::vector<PowerBin> without_humps(const Attempt& now) {
+std::vector<PowerBin> without_broad_peaks(const Attempt& now) {
   constexpr std::size_t kReach = 10;
   const std::vector<FitResidual>& residual = now.fit.residuals;
   std::vector<PowerBin> kept;
@@ -121,9 +121,9 @@ std::vector<PowerBin> without_humps(const Attempt& now) {
 }
 
 /// Humps are left out before anything else is read from the residuals.
-void answer_humps(Attempt& now) {
+void answer_broad_peaks(Attempt& now) {
   if (!(now.fit.goodness.p < kAlarmP)) return;
-  std::vector<PowerBin> kept = without_humps(now);
+  std::vector<PowerBin> kept = without_broad_peaks(now);
   const std::uint64_t count = now.bins.size() - kept.size();
   if (count == 0 || kept.size() < now.bins.size() / 2) return;
   now = attempt(std::move(kept), now.fit.rate_hz, now.fit.samples, now.options);
@@ -133,7 +133,7 @@ void answer_humps(Attempt& now) {
                    count,
                    count == 1 ? "" : "s",
                    count == 1 ? "its" : "their"),
-       fmt::format("{} bin{} of broad humps left out", count, count == 1 ? "" : "s"),
+       fmt::format("{} bin{} of broad peaks left out", count, count == 1 ? "" : "s"),
        count});
 }
 
@@ -292,7 +292,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         FitWorkspace* workspace) {
   Attempt now = attempt(bins, rate_hz, samples, options);
   if (options.remedies) {
-    answer_humps(now);
+    answer_broad_peaks(now);
     answer_high_frequencies(now);
     answer_low_frequencies(now);
   }

@@ -55,7 +55,7 @@ struct NoiseFit {
   std::optional<SecondOpinion> second_opinion;
   std::vector<Remedy> remedies;
   std::vector<FitResidual> residuals;
-  /// for people: "the record cannot tell bias instability from random walk…"
+  /// a sentence: "the record cannot tell bias instability from random walk…"
   std::vector<std::string> sentences;
   std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …
   bool converged = true;
@@ -87,7 +87,7 @@ struct FitWorkspace {
   AllanCovarianceCache covariances;
 };
 
-/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` feeds the second opinion (may be null).
+/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is what the second opinion is made of (may be null).
 /// Throws Error(numeric) when there are fewer bins than terms.
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         double rate_hz,

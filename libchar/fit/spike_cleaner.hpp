@@ -7,7 +7,7 @@
 
 namespace libchar {
 
-/// Feeds on samples in pieces of any size and gives them back cleaned, two samples late, the same
+/// Takes samples in pieces of any size and gives them back cleaned, two samples late, the same
 /// whatever the pieces. The limit comes from a pilot (the first samples are held back until it is
 /// full), or is given.
 class SpikeCleaner {

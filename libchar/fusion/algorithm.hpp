@@ -1,20 +1,20 @@
 #pragma once
-// The contract of a fusion algorithm: a plain struct with a card, a constructor from what is given,
+// The contract of a fusion algorithm: a plain struct with a description, a constructor from the array,
 // and `step`.
 //
 //   struct Mean {
-//     static constexpr Card card{.name = "mean", …};
-//     explicit Mean(const Given& given);
+//     static constexpr Description description{.name = "mean", …};
+//     explicit Mean(const Array& array);
 //     Estimate step(const Sample& y);
 //   };
 //
 // It may also have
 //   static constexpr std::array options{Option{…}…};
-//       and the constructor A(const Given&, const Settings&)
+//       and the constructor A(const Array&, const Settings&)
 //   void learn(const Sample& y, const Sample& truth);
-//       one instant of the learning window (card.needs says so)
+//       one instant of the learning window (description.needs says so)
 //   void skip(const Sample& y);
-//       instead of it where the truth is missing (or a sample, unless the card accepts that): for
+//       instead of it where the truth is missing (or a sample, unless the description accepts that): for
 //       those that count instants or follow time
 //   void finish_learning();
 //       after the last one; throws Error(numeric) when nothing can be learnt
@@ -33,8 +33,8 @@
 #include <string_view>
 
 #include "libchar/core/warnings.hpp"
+#include "libchar/fusion/array.hpp"
 #include "libchar/fusion/fault_log.hpp"
-#include "libchar/fusion/given.hpp"
 #include "libchar/fusion/options.hpp"
 
 namespace libchar::fusion {
@@ -88,9 +88,9 @@ struct Needs {
 };
 
 /// What the plan, the docs and the report print about an algorithm.
-struct Card {
+struct Description {
   std::string_view name;        ///< stable key: "inverse-variance"
-  std::string_view title;       ///< for people
+  std::string_view title;       ///< one line
   std::string_view source;      ///< where the equations stand
   std::string_view complexity;  ///< of a step
   Needs needs = {};
@@ -99,25 +99,25 @@ struct Card {
 };
 
 /// Empty: the algorithm can run on this. Else the sentence that a report prints.
-std::string why_not(const Card& card, const Given& given);
+std::string why_not(const Description& description, const Array& array);
 
 template <class A>
 concept Steps = requires(A a, const Sample& y) {
   { a.step(y) } -> std::same_as<Estimate>;
 };
 template <class A>
-concept HasCard = requires {
-  { A::card } -> std::convertible_to<const Card&>;
+concept HasDescription = requires {
+  { A::description } -> std::convertible_to<const Description&>;
 };
 template <class A>
 concept HasOptions = requires {
   {std::span<const Option>(A::options)};
 };
 template <class A>
-concept Made = (HasOptions<A> && std::constructible_from<A, const Given&, const Settings&>) ||
-               (!HasOptions<A> && std::constructible_from<A, const Given&>);
+concept Made = (HasOptions<A> && std::constructible_from<A, const Array&, const Settings&>) ||
+               (!HasOptions<A> && std::constructible_from<A, const Array&>);
 template <class A>
-concept Algorithm = HasCard<A> && Steps<A> && Made<A>;
+concept Algorithm = HasDescription<A> && Steps<A> && Made<A>;
 
 template <class A>
 concept Learns = requires(A a, const Sample& y, const Sample& truth) {

@@ -8,7 +8,7 @@
 
 namespace libchar::fusion {
 
-/// One row of an algorithm's table; feeds `--set NAME.OPTION=VALUE`, scenes, JSON and the pages on
+/// One row of an algorithm's table; serves `--set NAME.OPTION=VALUE`, scenes, JSON and the pages on
 /// algorithms.
 struct Option {
   std::string_view name;

@@ -31,21 +31,21 @@ namespace libchar::fusion {
 namespace {
 
 template <Algorithm A>
-std::unique_ptr<Runner> make(const Given& given, const Settings& settings) {
-  if (std::string sentence = why_not(A::card, given); !sentence.empty())
+std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
+  if (std::string sentence = why_not(A::description, array); !sentence.empty())
     throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
-  return std::make_unique<RunnerOf<A>>(given, settings);
+  return std::make_unique<RunnerOf<A>>(array, settings);
 }
 
 template <Algorithm A>
 constexpr Entry entry() {
   if constexpr (HasOptions<A>)
-    return {&A::card, A::options, &make<A>};
+    return {&A::description, A::options, &make<A>};
   else
-    return {&A::card, {}, &make<A>};
+    return {&A::description, {}, &make<A>};
 }
 
-// The order of reports: baselines, blind methods, taught methods, bounds.
+// The order of reports: baselines, blind methods, methods that learn from a reference, bounds.
 constexpr std::array kAlgorithms{
     LIBCHAR_MORE_ALGORITHMS entry<Mean>(),
     entry<Median>(),
@@ -81,14 +81,14 @@ std::span<const Entry> algorithms() {
 
 const Entry* find_algorithm(std::string_view name) {
   for (const Entry& candidate : kAlgorithms)
-    if (candidate.card->name == name) return &candidate;
+    if (candidate.description->name == name) return &candidate;
   return nullptr;
 }
 
 const Entry& algorithm(std::string_view name) {
   if (const Entry* found = find_algorithm(name)) return *found;
   std::vector<std::string> names;
-  for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.card->name);
+  for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.description->name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
                "E0853",

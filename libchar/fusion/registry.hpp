@@ -10,10 +10,10 @@
 namespace libchar::fusion {
 
 struct Entry {
-  const Card* card;
+  const Description* description;
   std::span<const Option> options;
   /// Throws Error(usage) when the algorithm cannot run on what is given (ask `why_not` first).
-  std::unique_ptr<Runner> (*make)(const Given&, const Settings&);
+  std::unique_ptr<Runner> (*make)(const Array&, const Settings&);
 };
 
 std::span<const Entry> algorithms();

@@ -20,9 +20,9 @@ using BlockOut = Eigen::Ref<Eigen::MatrixXd>;
 class Runner {
  public:
   virtual ~Runner() = default;
-  virtual const Card& card() const = 0;
+  virtual const Description& description() const = 0;
   /// Consecutive instants of the learning window with the true inputs (r rows). Instants whose
-  /// truth is NaN teach nothing, but their time has passed: leave none out.
+  /// truth is NaN carry nothing to learn, but their time has passed: leave none out.
   virtual void learn(const Block& samples, const Block& truth) = 0;
   virtual void finish_learning() = 0;
   /// Estimates and their variances, a column for each column of samples.
@@ -34,11 +34,11 @@ class Runner {
 };
 
 template <Algorithm A>
-A make_algorithm(const Given& given, const Settings& settings) {
+A make_algorithm(const Array& array, const Settings& settings) {
   if constexpr (HasOptions<A>)
-    return A(given, settings);
+    return A(array, settings);
   else
-    return A(given);
+    return A(array);
 }
 
 template <class A>
@@ -51,17 +51,19 @@ Settings default_settings() {
 
 template <Algorithm A>
 class RunnerOf final : public Runner {
-  static constexpr bool kLearns = A::card.needs.reference || A::card.needs.reference_throughout;
-  static_assert(kLearns == Learns<A>,
-                "card.needs.reference (or reference_throughout) and learn(y, truth) go together");
-  static_assert(HasOptions<A> || !std::constructible_from<A, const Given&, const Settings&>,
+  static constexpr bool kLearns =
+      A::description.needs.reference || A::description.needs.reference_throughout;
+  static_assert(
+      kLearns == Learns<A>,
+      "description.needs.reference (or reference_throughout) and learn(y, truth) go together");
+  static_assert(HasOptions<A> || !std::constructible_from<A, const Array&, const Settings&>,
                 "a constructor with Settings goes with a table `options`");
 
  public:
-  RunnerOf(const Given& given, const Settings& settings)
-      : inputs_(given.inputs()), algorithm_(make_algorithm<A>(given, settings)) {}
+  RunnerOf(const Array& array, const Settings& settings)
+      : inputs_(array.inputs()), algorithm_(make_algorithm<A>(array, settings)) {}
 
-  const Card& card() const override { return A::card; }
+  const Description& description() const override { return A::description; }
 
   void learn([[maybe_unused]] const Block& samples, [[maybe_unused]] const Block& truth) override {
     if constexpr (Learns<A>) {
@@ -69,7 +71,7 @@ class RunnerOf final : public Runner {
       for (Eigen::Index k = 0; k < samples.cols(); ++k) {
         const Sample y(samples.data() + k * samples.outerStride(), samples.rows());
         const Sample x(truth.data() + k * truth.outerStride(), truth.rows());
-        if (complete(x) && (A::card.needs.accepts_missing || complete(y)))
+        if (complete(x) && (A::description.needs.accepts_missing || complete(y)))
           algorithm_.learn(y, x);
         else if constexpr (Skips<A>)
           algorithm_.skip(y);
@@ -111,7 +113,7 @@ class RunnerOf final : public Runner {
 
  private:
   Estimate step(const Sample& y) {
-    if constexpr (!A::card.needs.accepts_missing)
+    if constexpr (!A::description.needs.accepts_missing)
       if (!complete(y)) return Estimate::none(inputs_);
     return algorithm_.step(y);
   }

@@ -6,8 +6,8 @@
 
 namespace libchar {
 
-std::vector<std::string> needs_in_words(const fusion::Card& card) {
-  const fusion::Needs& n = card.needs;
+std::vector<std::string> needs_in_words(const fusion::Description& description) {
+  const fusion::Needs& n = description.needs;
   std::vector<std::string> out;
   if (n.reference_throughout) out.emplace_back("the reference of the run itself");
   if (n.reference) out.emplace_back("a reference in a learning window");

@@ -9,7 +9,7 @@
 namespace libchar {
 
 /// What an algorithm asks of a scene, a phrase each; empty: nothing beyond the samples.
-std::vector<std::string> needs_in_words(const fusion::Card& card);
+std::vector<std::string> needs_in_words(const fusion::Description& description);
 
 /// Options that differ from the table's standard, "gamma = 0.99".
 std::string settings_in_words(const fusion::Settings& settings);

@@ -11,13 +11,12 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/replay/detail/likeness.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 Difference difference(const AlgorithmSummary& a, const AlgorithmSummary& b) {
   if (std::isnan(a.rmse) || std::isnan(b.rmse)) return Difference::unknown;

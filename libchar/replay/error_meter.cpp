@@ -10,13 +10,13 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::size_t kMostCells = 4096;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 ErrorCell merged(const ErrorCell& a, const ErrorCell& b) {
   return {a.n + b.n,

@@ -87,7 +87,7 @@ class Replay {
   }
 
   void prepare() {
-    frame_.given = &plan_.given;
+    frame_.array = &plan_.array;
     frame_.heap = workspace_.heap;
     frame_.rate_hz = instants_.info().rate_hz;
     frame_.start_s =
@@ -101,14 +101,14 @@ class Replay {
       if (algorithm.runs()) {
         runs_.emplace_back(algorithm, frame_);
         if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run())
-          blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.given));
+          blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.array));
         else
           blind_.push_back(nullptr);
       }
-    given_on_run_ = plan_.given;
-    given_on_run_.learning_samples = plan_.run_to - plan_.run_from;
+    array_on_run_ = plan_.array;
+    array_on_run_.learning_samples = plan_.run_to - plan_.run_from;
     optimum_frame_ = frame_;
-    optimum_frame_.given = &given_on_run_;
+    optimum_frame_.array = &array_on_run_;
     optimum_frame_.heap = nullptr;
     optimum_frame_.allan = optimum_frame_.tracks = false;
     optimum_.reserve(plan_.optimum.size());
@@ -132,7 +132,7 @@ class Replay {
   }
 
   void learn_on_run() {
-    PassProgress passing(progress_, "teaching the bounds");
+    PassProgress passing(progress_, "learning the bounds");
     ++passes_;
     instants_.pass(
         plan_.run_from,
@@ -193,7 +193,7 @@ class Replay {
                      const Eigen::MatrixXd& truth) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
     if (truth.rows() > 0) truths_ += truth.row(0).array().isFinite().count();
-    if (errors) expected_ = plan_.given.h() * truth;
+    if (errors) expected_ = plan_.array.h() * truth;
     std::vector<double> error(static_cast<std::size_t>(samples.cols()));
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
       SensorMeter& meter = sensors_[i];
@@ -288,7 +288,7 @@ class Replay {
   SensorKnowledge knowledge_;
   ReplayPlan plan_;
   RunFrame frame_, optimum_frame_;
-  fusion::Given given_on_run_;
+  fusion::Array array_on_run_;
   std::vector<AlgorithmRun> runs_, optimum_;
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
@@ -364,7 +364,7 @@ Replay::Scored Replay::scored(const AlgorithmRun& run,
   }
   if (!options_.allan)
     for (InputScore& input : result.inputs) input.allan = {};
-  judge_tracking(result, run, optimum_, so_far, plan_.given);
+  judge_tracking(result, run, optimum_, so_far, plan_.array);
   return out;
 }
 
@@ -410,7 +410,7 @@ ReplayResult Replay::collect() {
   std::vector<double> healthy_rms;
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
-  judge_optimum(out, optimum_, healthy_rms, plan_.given);
+  judge_optimum(out, optimum_, healthy_rms, plan_.array);
   judge_best(out, meters, scoring);
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {

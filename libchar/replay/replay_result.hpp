@@ -58,7 +58,7 @@ struct BlindScore {
 
 struct AlgorithmResult {
   std::string label;  ///< the name, with its options when one algorithm runs twice
-  const fusion::Card* card = nullptr;
+  const fusion::Description* description = nullptr;
   fusion::Settings settings;
   bool ran = false;
   std::string why;     ///< why it did not run, a sentence

@@ -8,14 +8,13 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/schema.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A report grows keys from version to version of the program: those we do not know are left alone.
 MapReader open_map(const Document& node, const std::string& file, const std::string& path) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/detail/thinned_tracks.hpp"
@@ -12,8 +13,6 @@
 
 namespace libchar {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // An algorithm that takes sensors out answers to each fault that the scene knows.
 std::vector<const FaultAnswer*> answers_of(const AlgorithmResult& a, std::size_t known) {
@@ -42,9 +41,9 @@ AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, st
   AlgorithmView out;
   out.result = &a;
   out.best = r.best && &r.algorithms[*r.best] == &a;
-  if (a.card != nullptr) {
-    out.learns = a.card->needs.reference;
-    out.needs = needs_in_words(*a.card);
+  if (a.description != nullptr) {
+    out.learns = a.description->needs.reference;
+    out.needs = needs_in_words(*a.description);
   }
   out.settings = settings_in_words(a.settings);
   out.weight_track = merged_bins(a.weight_track, divisor);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/replay/ranking.hpp"
 
@@ -22,7 +23,7 @@ std::string list_of(const std::vector<std::string>& names) {
 }
 
 bool learns(const AlgorithmResult& a) {
-  return a.card->needs.reference;
+  return a.description->needs.reference;
 }
 
 // The cheapest of those that cannot be told from the best.
@@ -35,7 +36,7 @@ const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
   return out;
 }
 
-std::string regret_for_people(const ReplayResult& r, double regret) {
+std::string regret_text(const ReplayResult& r, double regret) {
   const std::string optimum = "the optimum of " + optimum_of(r);
   // The best of a few filters may be the optimum itself.
   if (std::abs(regret) < 1e-9) return optimum;
@@ -51,22 +52,21 @@ std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
   std::string out = fmt::format("{} {}{}",
                                 r.has_reference ? "RMSE" : "leave-one-out RMS",
                                 r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "",
-                                people_error(a.rmse, r.inputs[0].unit));
+                                error_text(a.rmse, r.inputs[0].unit));
   if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
     out += fmt::format(
         " (95 %: {} to {})", significant(a.rmse_ci95.low, 4), significant(a.rmse_ci95.high, 4));
   for (std::size_t j = 1; j < std::min(a.inputs.size(), r.inputs.size()); ++j)
     out += fmt::format(
-        ", of {} {}", r.inputs[j].name, people_error(a.inputs[j].error.rmse, r.inputs[j].unit));
-  if (std::isfinite(a.regret)) out += ", " + regret_for_people(r, a.regret);
+        ", of {} {}", r.inputs[j].name, error_text(a.inputs[j].error.rmse, r.inputs[j].unit));
+  if (std::isfinite(a.regret)) out += ", " + regret_text(r, a.regret);
   return out;
 }
 
 std::string costs_of(const AlgorithmResult& a) {
   std::string out;
-  if (std::isfinite(a.ns_per_sample))
-    out += ", " + people_nanoseconds(a.ns_per_sample) + " a sample";
-  if (a.peak_bytes) out += ", " + people_bytes(a.peak_bytes) + " of memory";
+  if (std::isfinite(a.ns_per_sample)) out += ", " + nanoseconds_text(a.ns_per_sample) + " a sample";
+  if (a.peak_bytes) out += ", " + bytes_text(a.peak_bytes) + " of memory";
   return out;
 }
 
@@ -92,7 +92,7 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
       cheap->ns_per_sample < 0.8 * best.ns_per_sample)
     out += fmt::format(" Of these {} is the cheapest, {} a sample.",
                        cheap->label,
-                       people_nanoseconds(cheap->ns_per_sample));
+                       nanoseconds_text(cheap->ns_per_sample));
   return out;
 }
 
@@ -116,7 +116,7 @@ std::string bounds_sentence(const ReplayResult& r) {
   std::vector<std::string> bounds;
   for (const AlgorithmResult* a : ranked(r))
     if (a->bound && std::isfinite(a->rmse))
-      bounds.push_back(a->label + " " + people_error(a->rmse, r.inputs[0].unit));
+      bounds.push_back(a->label + " " + error_text(a->rmse, r.inputs[0].unit));
   return bounds.empty()
              ? ""
              : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) +
@@ -127,24 +127,6 @@ std::string bounds_sentence(const ReplayResult& r) {
 
 std::string optimum_of(const ReplayResult& r) {
   return r.scene.tilt ? "tilt filters" : "fixed weights";
-}
-
-std::string people_nanoseconds(double ns) {
-  if (!std::isfinite(ns)) return "–";
-  if (ns < 1e3) return significant(ns, 3) + " ns";
-  return ns < 1e6 ? significant(ns / 1e3, 3) + " µs" : significant(ns / 1e6, 3) + " ms";
-}
-
-std::string people_bytes(const std::optional<std::uint64_t>& bytes) {
-  if (!bytes) return "–";
-  const auto value = static_cast<double>(*bytes);
-  if (value < 1e4) return fmt::format("{} B", *bytes);
-  return value < 1e6 ? significant(value / 1e3, 3) + " kB" : significant(value / 1e6, 3) + " MB";
-}
-
-std::string people_error(double value, const std::string& unit) {
-  if (!std::isfinite(value)) return "–";
-  return significant(value, 4) + (unit.empty() ? "" : " " + unit);
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {

@@ -19,10 +19,4 @@ std::string replay_verdict(const ReplayResult& result, bool costs = true);
 /// What the optimum of this scene is: "fixed weights", "tilt filters".
 std::string optimum_of(const ReplayResult& result);
 
-/// "82 ns", "3.4 µs"; "17.1 MB"; "–" where nothing was measured.
-std::string people_nanoseconds(double ns);
-std::string people_bytes(const std::optional<std::uint64_t>& bytes);
-/// "0.0331 rad/s".
-std::string people_error(double value, const std::string& unit);
-
 }  // namespace libchar

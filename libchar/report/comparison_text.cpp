@@ -5,24 +5,20 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
 namespace {
-
-Json interval(const Interval& i) {
-  if (std::isnan(i.low) || std::isnan(i.high)) return nullptr;
-  return Json::array({json_number(i.low), json_number(i.high)});
-}
 
 Json side(const AlgorithmSummary* one) {
   if (one == nullptr) return nullptr;
   return {{"status", one->ran ? "ran" : "skipped"},
           {"why", one->ran ? Json(nullptr) : Json(json_text(one->why))},
           {"rmse", json_number(one->rmse)},
-          {"rmse_ci95", interval(one->rmse_ci95)},
+          {"rmse_ci95", interval_json(one->rmse_ci95)},
           {"regret", json_number(one->regret)},
           {"ns_per_sample", json_number(one->ns_per_sample)},
           {"peak_bytes", json_number(one->peak_bytes)}};
@@ -41,13 +37,9 @@ Json sentences(const std::vector<std::string>& list) {
   return out;
 }
 
-std::string number(double value) {
-  return std::isfinite(value) ? significant(value, 5) : "–";
-}
-
 std::string bytes(double value) {
-  return people_bytes(std::isfinite(value) ? std::optional(static_cast<std::uint64_t>(value))
-                                           : std::nullopt);
+  return bytes_text(std::isfinite(value) ? std::optional(static_cast<std::uint64_t>(value))
+                                         : std::nullopt);
 }
 
 double value(const AlgorithmSummary* one, double AlgorithmSummary::*member) {
@@ -56,7 +48,7 @@ double value(const AlgorithmSummary* one, double AlgorithmSummary::*member) {
 
 }  // namespace
 
-std::string people_change(double change) {
+std::string change_text(double change) {
   if (!std::isfinite(change)) return "–";
   if (change == 0) return "0 %";
   const double percent = 100 * change;
@@ -118,12 +110,12 @@ std::string comparison_markdown(const Comparison& c) {
     if (where == "skipped in both") continue;
     out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(row.label),
-                       number(value(row.a, &AlgorithmSummary::rmse)),
-                       number(value(row.b, &AlgorithmSummary::rmse)),
-                       people_change(row.rmse_change),
+                       significant_or_dash(value(row.a, &AlgorithmSummary::rmse), 5),
+                       significant_or_dash(value(row.b, &AlgorithmSummary::rmse), 5),
+                       change_text(row.rmse_change),
                        where.empty() ? std::string(name_of(row.difference)) : where,
-                       people_nanoseconds(value(row.a, &AlgorithmSummary::ns_per_sample)),
-                       people_nanoseconds(value(row.b, &AlgorithmSummary::ns_per_sample)),
+                       nanoseconds_text(value(row.a, &AlgorithmSummary::ns_per_sample)),
+                       nanoseconds_text(value(row.b, &AlgorithmSummary::ns_per_sample)),
                        bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
                        bytes(value(row.b, &AlgorithmSummary::peak_bytes)));
   }

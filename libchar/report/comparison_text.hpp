@@ -16,7 +16,7 @@ Json comparison_json(const Comparison& comparison);
 std::string comparison_markdown(const Comparison& comparison);
 
 /// "+4.62 %", "0 %"; "–" for no number.
-std::string people_change(double change);
+std::string change_text(double change);
 
 /// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty
 /// when it ran in both.

@@ -17,7 +17,7 @@
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_parts.hpp"
-#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {
@@ -30,17 +30,17 @@ std::string facts(const CharacterizationView& view) {
   out += fmt::format("<b>{}</b> {} · <b>{}</b> samples a channel",
                      result.channels.size(),
                      result.channels.size() == 1 ? "channel" : "channels",
-                     people_count(log.samples));
+                     count_text(log.samples));
   if (log.time.rate_hz > 0) {
     out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>",
                        significant(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
-                       html_text(people_seconds(view.duration_s)));
+                       html_text(duration_text(view.duration_s)));
   }
   if (log.time.gaps > 0) {
     out += fmt::format(" · <b>{}</b> gaps, <b>{}</b> samples missing",
-                       people_count(log.time.gaps),
-                       people_count(log.time.missing_samples));
+                       count_text(log.time.gaps),
+                       count_text(log.time.missing_samples));
   } else {
     out += " · no gaps";
   }
@@ -61,12 +61,12 @@ std::string overview_cell(const ChannelView& view, Term term) {
   const double factor = known ? habits[0].factor : 1;
   const std::string unit = known ? habits[0].symbol : term_unit(key, view.unit);
   const std::string mark = k.status == Status::undetermined ? "<span class=\"dim\"> ?</span>" : "";
-  const std::string whole = people_coefficient(k, factor);
+  const std::string whole = coefficient_text(k, factor);
   const std::string interval =
       k.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
   return fmt::format("<td class=\"n{}\">{} <span class=\"dim\">{}</span>{}{}</td>",
                      k.value ? "" : " limit",
-                     html_text(people_value(k, factor)),
+                     html_text(value_text(k, factor)),
                      html_text(unit),
                      mark,
                      interval);
@@ -84,13 +84,13 @@ std::string overview_row(const ChannelView& view, std::size_t index, double rate
   const AllanPoint* lowest = view.allan_minimum;
   out += lowest == nullptr ? "<td>–</td>"
                            : fmt::format("<td class=\"n\">{} <span class=\"dim\">at {}</span></td>",
-                                         html_text(people(lowest->deviation, 3)),
-                                         html_text(people_seconds(lowest->tau_s)));
+                                         html_text(number_text(lowest->deviation, 3)),
+                                         html_text(duration_text(lowest->tau_s)));
   const bool white = c.fit && (*c.fit)[Term::white].value;
   out += white ? "<td class=\"n\">" +
-                     html_text(people_value((*c.fit)[Term::white], std::sqrt(rate_hz))) + "</td>"
+                     html_text(value_text((*c.fit)[Term::white], std::sqrt(rate_hz))) + "</td>"
                : "<td>–</td>";
-  out += c.fit ? "<td class=\"n\">" + html_text(people_probability(c.fit->goodness.p)) + "</td>"
+  out += c.fit ? "<td class=\"n\">" + html_text(probability_text(c.fit->goodness.p)) + "</td>"
                : "<td>no fit</td>";
   out +=
       view.cautions.empty()
@@ -132,14 +132,14 @@ std::string time_base(const LogInfo& log) {
   if (t.from_stamps) {
     out += table_row(
         {"Jitter",
-         people_seconds(t.jitter_s) + " (robust standard deviation of stamp against grid)"});
-    out += table_row({"Largest deviation", people_seconds(t.max_deviation_s)});
+         duration_text(t.jitter_s) + " (robust standard deviation of stamp against grid)"});
+    out += table_row({"Largest deviation", duration_text(t.max_deviation_s)});
   }
   out += table_row(
       {"Gaps",
        t.gaps == 0
            ? "none"
-           : fmt::format("{}, {} samples", people_count(t.gaps), people_count(t.missing_samples))});
+           : fmt::format("{}, {} samples", count_text(t.gaps), count_text(t.missing_samples))});
   return out + "</tbody></table>\n";
 }
 
@@ -147,11 +147,10 @@ std::string provenance(const Characterization& result) {
   const LogInfo& log = result.log;
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
-      "class=\"halves\">\n<div>\n<h3>Input</h3>\n<table class=\"facts\"><tbody>\n";
+      "class=\"two-columns\">\n<div>\n<h3>Input</h3>\n<table class=\"facts\"><tbody>\n";
   out += table_row({"File", log.file});
   out += table_row({"Format", log.format});
-  out +=
-      table_row({"Size", people_count(log.bytes) + " bytes, " + people_count(log.rows) + " rows"});
+  out += table_row({"Size", count_text(log.bytes) + " bytes, " + count_text(log.rows) + " rows"});
   out += "<tr><th scope=\"row\">SHA-256</th><td class=\"hash\">" +
          html_text(log.sha256.empty() ? "not computed" : log.sha256) + "</td></tr>\n";
   out += table_row({"Tool", "sensorchar " + std::string(version())});

@@ -8,16 +8,12 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/verification_json.hpp"
-#include "libchar/report/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {
-
-Json frame(std::string_view format) {
-  return {{"format", format}, {"version", 1}};
-}
 
 Json read_off_json(const std::vector<ReadOff>& points) {
   Json out = Json::array();
@@ -85,7 +81,7 @@ Json json_without_times(const CharacterizationView& view) {
   }
   out["recording"] = recording_json(log, qualities);
 
-  Json allan = frame("allan"), spectrum = frame("spectrum"),
+  Json allan = json_frame("allan"), spectrum = json_frame("spectrum"),
        fit = noise_fit_document(Json::array()), quality = Json::object();
   const bool any = !result.channels.empty();
   allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);

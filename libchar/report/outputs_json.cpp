@@ -7,15 +7,11 @@
 
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {
-
-Json interval(const Interval& i) {
-  return Json::array({json_number(i.low), json_number(i.high)});
-}
 
 Json strings(const std::vector<std::string>& texts) {
   Json out = Json::array();
@@ -43,11 +39,16 @@ void add_model(Json& out, const ModelCurve& model) {
   out["asymptotes"] = asymptotes_json(model.asymptotes);
 }
 
-Json frame(std::string_view format) {
+}  // namespace
+
+Json json_frame(std::string_view format) {
   return {{"format", format}, {"version", 1}};
 }
 
-}  // namespace
+Json interval_json(const Interval& interval) {
+  if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;
+  return Json::array({json_number(interval.low), json_number(interval.high)});
+}
 
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const ModelCurve* model) {
   Json out = named(channel);
@@ -57,11 +58,11 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const M
     const bool known = p.edf > 0;
     out["tau_s"].push_back(p.tau_s);
     out["deviation"].push_back(json_number(p.deviation));
-    out["ci95"].push_back(known ? interval(p.ci95) : Json(nullptr));
+    out["ci95"].push_back(known ? interval_json(p.ci95) : Json(nullptr));
     out["edf"].push_back(known ? json_number(p.edf) : Json(nullptr));
     out["terms"].push_back(p.terms);
     out["m"].push_back(p.m);
-    out["ci68"].push_back(known ? interval(p.ci68) : Json(nullptr));
+    out["ci68"].push_back(known ? interval_json(p.ci68) : Json(nullptr));
     out["reliable"].push_back(p.reliable);
   }
   if (model != nullptr && !curve.points.empty()) add_model(out, *model);
@@ -74,7 +75,7 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const M
 }
 
 Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
-  Json out = frame("allan");
+  Json out = json_frame("allan");
   out["type"] = name_of(curves.empty() ? DeviationType::oadev : curves[0].type);
   out["channels"] = Json::array();
   for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
@@ -100,7 +101,7 @@ Json spectrum_channel_json(const Channel& channel,
     out["frequency_hz"].push_back(spectrum.frequency_hz[i]);
     out["value"].push_back(json_number(spectrum.value[i]));
     out["dof"].push_back(json_number(i < spectrum.dof.size() ? spectrum.dof[i] : 0));
-    out["ci95"].push_back(ci95[i] ? interval(*ci95[i]) : Json(nullptr));
+    out["ci95"].push_back(ci95[i] ? interval_json(*ci95[i]) : Json(nullptr));
   }
   if (model != nullptr && !spectrum.frequency_hz.empty()) add_model(out, *model);
   out["value_unit"] = json_text(spectrum_unit(spectrum.scaling, channel.unit));

@@ -2,7 +2,7 @@
 (function () {
   "use strict";
 
-  const { report, INK, MEASURED, people, positive, padded, logAxis, whitePaper, options, start } = reportPage;
+  const { report, INK, MEASURED, numberText, positive, padded, logAxis, whitePaper, options, start } = reportPage;
   const MODEL = "#c03a12", SIMULATED = "#0c8a5f";
   // Told apart by dash as well as by colour, for print.
   const TERMS = {
@@ -89,10 +89,10 @@
     const marks = f.derived ? f.derived.read_off_points : [];
     const measured = points(a.tau_s, a.deviation);
     const tip = (p) => {
-      const out = ["τ = " + people(p.x) + " s", "measured " + people(p.y, 5) + " " + unit];
-      if (a.ci95[p.i]) out.push("95 %: " + people(a.ci95[p.i][0]) + " … " + people(a.ci95[p.i][1]), "68 %: " + people(a.ci68[p.i][0]) + " … " + people(a.ci68[p.i][1]));
-      if (a.edf[p.i] !== null) out.push(people(a.edf[p.i]) + " degrees of freedom, " + a.terms[p.i] + " terms");
-      if (a.model && a.model[p.i] !== null) out.push("model " + people(a.model[p.i], 5) + " " + unit);
+      const out = ["τ = " + numberText(p.x) + " s", "measured " + numberText(p.y, 5) + " " + unit];
+      if (a.ci95[p.i]) out.push("95 %: " + numberText(a.ci95[p.i][0]) + " … " + numberText(a.ci95[p.i][1]), "68 %: " + numberText(a.ci68[p.i][0]) + " … " + numberText(a.ci68[p.i][1]));
+      if (a.edf[p.i] !== null) out.push(numberText(a.edf[p.i]) + " degrees of freedom, " + a.terms[p.i] + " terms");
+      if (a.model && a.model[p.i] !== null) out.push("model " + numberText(a.model[p.i], 5) + " " + unit);
       if (!a.reliable[p.i]) out.push("unreliable: fewer than 5 degrees of freedom");
       return out;
     };
@@ -111,7 +111,7 @@
       sets.push({
         label: "", readOff: true, marks: true, data: [{ x: m.tau_s, y: m.deviation, label: m.label }], borderColor: style.colour, showLine: false,
         backgroundColor: "#fff", pointStyle: style.mark, pointRadius: 7, pointHoverRadius: 9, pointBorderWidth: 2.2, order: 1, fill: false,
-        tip: () => [m.label, people(m.deviation, 5) + " " + unit],
+        tip: () => [m.label, numberText(m.deviation, 5) + " " + unit],
       });
     });
     sets.push(...band("68 % interval", a.tau_s, a.ci68, "rgba(27,79,143,0.30)"), ...band("95 % interval", a.tau_s, a.ci95, "rgba(27,79,143,0.14)"));
@@ -131,10 +131,10 @@
     const s = report.spectrum.channels[index];
     const measured = points(s.frequency_hz, s.value);
     const tip = (p) => {
-      const out = ["f = " + people(p.x, 5) + " Hz", "measured " + people(p.y, 4) + " " + unit];
-      if (s.ci95[p.i]) out.push("95 %: " + people(s.ci95[p.i][0], 3) + " … " + people(s.ci95[p.i][1], 3));
-      if (s.model && s.model[p.i] !== null) out.push("model " + people(s.model[p.i], 4) + " " + unit);
-      if (s.dof[p.i]) out.push(people(s.dof[p.i], 3) + " degrees of freedom");
+      const out = ["f = " + numberText(p.x, 5) + " Hz", "measured " + numberText(p.y, 4) + " " + unit];
+      if (s.ci95[p.i]) out.push("95 %: " + numberText(s.ci95[p.i][0], 3) + " … " + numberText(s.ci95[p.i][1], 3));
+      if (s.model && s.model[p.i] !== null) out.push("model " + numberText(s.model[p.i], 4) + " " + unit);
+      if (s.dof[p.i]) out.push(numberText(s.dof[p.i], 3) + " degrees of freedom");
       return out;
     };
     const sets = [{ label: "measured", data: measured, borderColor: MEASURED, borderWidth: 1.3, pointRadius: 0, pointHoverRadius: 5, pointHitRadius: 5, tip, fill: false, order: 2 }];
@@ -176,14 +176,14 @@
       (inside ? dots : beyond).push({ x, y: inside ? r.z[i] : Math.sign(r.z[i]) * 0.96 * top, i });
     });
     const [xMin, xMax] = padded(dots.concat(beyond).map((p) => p.x), 1.3);
-    const tip = (p) => [people(p.x, 4) + (report.fit.channels[index].of_curve ? " s" : " Hz"), "residual " + people(r.z[p.i], 3) + " sd", people(r.dof[p.i], 3) + " degrees of freedom"];
+    const tip = (p) => [numberText(p.x, 4) + (report.fit.channels[index].of_curve ? " s" : " Hz"), "residual " + numberText(r.z[p.i], 3) + " sd", numberText(r.dof[p.i], 3) + " degrees of freedom"];
     const flat = (y) => [{ x: xMin, y }, { x: xMax, y }];
     const plain = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, order: 9 };
     const sets = [
       { label: "residual", data: dots, showLine: false, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 2.4, pointHoverRadius: 5, marks: true, tip, order: 1, fill: false },
       {
         label: "", data: beyond, showLine: false, borderColor: MODEL, backgroundColor: MODEL, pointStyle: "triangle", pointRadius: 5, pointHoverRadius: 7, marks: true, tip, order: 0, fill: false,
-        pointRotation: beyond.map((p) => (p.y > 0 ? 0 : 180)), note: beyond.length ? beyond.length + " beyond ±" + top + ", up to " + people(Math.max(...all_z), 2) : "",
+        pointRotation: beyond.map((p) => (p.y > 0 ? 0 : 180)), note: beyond.length ? beyond.length + " beyond ±" + top + ", up to " + numberText(Math.max(...all_z), 2) : "",
       },
       { label: "", data: flat(0), borderColor: MODEL, borderWidth: 1.4, pointRadius: 0, pointHitRadius: 0, order: 2, fill: false },
       Object.assign({ label: "", data: flat(1.96), backgroundColor: "rgba(90,100,112,0.13)", fill: "+1" }, plain),

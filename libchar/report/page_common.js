@@ -1,4 +1,4 @@
-// What the pages of all reports share: numbers and axes for people, pieces of a chart, drawing when a figure comes into view, the
+// What the pages of all reports share: numbers and axes for numberText, pieces of a chart, drawing when a figure comes into view, the
 // download. Stands in front of each page's own script, in the same element. Chart.js does the drawing; every number drawn stands in
 // the JSON of the page, computed by libchar.
 const reportPage = (function () {
@@ -11,7 +11,7 @@ const reportPage = (function () {
   // ---- numbers ----
   const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
   const superscript = (n) => (n < 0 ? "⁻" : "") + String(Math.abs(n)).split("").map((d) => SUPERSCRIPT[+d]).join("");
-  function people(value, digits) {
+  function numberText(value, digits) {
     if (value === null || !isFinite(value)) return "–";
     if (value === 0) return "0";
     const [mantissa, exponent] = value.toExponential((digits || 4) - 1).split("e");
@@ -38,7 +38,7 @@ const reportPage = (function () {
     const decades = Math.log10(max / min);
     if (isPowerOfTen(value)) return "10" + superscript(Math.round(Math.log10(value)));
     const lead = Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
-    return decades < 1.6 && (lead === 2 || lead === 5) ? people(value, 2) : "";
+    return decades < 1.6 && (lead === 2 || lead === 5) ? numberText(value, 2) : "";
   }
   function logAxis(title, min, max) {
     return {
@@ -156,5 +156,5 @@ const reportPage = (function () {
     return { figures, charts };
   }
 
-  return { report, INK, DIM, MEASURED, people, superscript, positive, padded, logAxis, whitePaper, legend, options, start };
+  return { report, INK, DIM, MEASURED, numberText, superscript, positive, padded, logAxis, whitePaper, legend, options, start };
 })();

@@ -27,9 +27,9 @@ std::string facts(const ReplayView& view) {
   std::string out = fmt::format(
       "<p class=\"facts\"><b>{}</b> sensors · <b>{}</b> instants at <b>{}</b> Hz · <b>{}</b>",
       r.sensors.size(),
-      people_count(r.instants),
+      count_text(r.instants),
       significant(r.rate_hz, 6),
-      html_text(people_seconds(view.duration_s)));
+      html_text(duration_text(view.duration_s)));
   if (r.has_reference) {
     out += " · reference: " + html_text(r.reference_use);
     for (const InputResult& input : r.inputs)
@@ -41,7 +41,7 @@ std::string facts(const ReplayView& view) {
     out += " · <b>no reference</b>";
   }
   if (r.lag_estimated)
-    out += " · the sensors lag the reference by <b>" + html_text(people_seconds(r.lag_s)) +
+    out += " · the sensors lag the reference by <b>" + html_text(duration_text(r.lag_s)) +
            "</b> (estimated)";
   return out + "</p>\n";
 }
@@ -127,7 +127,7 @@ std::string window_plots(const ReplayView& view) {
            usual_unit(r.inputs[j].unit),
            fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
                        "in each bin of the plot.",
-                       people_seconds(r.window_s))},
+                       duration_text(r.window_s))},
           view.title);
   return out;
 }
@@ -256,14 +256,14 @@ std::string inputs(const ReplayView& view) {
     out += table_row({"Simulated", fmt::format("seed {}", r.scene.simulate->seed)});
   for (const LogInfo& log : r.logs) {
     out += table_row({"File",
-                      log.file + " (" + log.format + ", " + people_count(log.bytes) + " bytes, " +
-                          people_count(log.rows) + " rows)"});
+                      log.file + " (" + log.format + ", " + count_text(log.bytes) + " bytes, " +
+                          count_text(log.rows) + " rows)"});
     out += "<tr><th scope=\"row\">SHA-256</th><td class=\"hash\">" +
            html_text(log.sha256.empty() ? "not computed" : log.sha256) + "</td></tr>\n";
   }
   if (r.learning)
-    out += table_row({"Learning window", people_stretch(r.learning->from_s, r.learning->to_s)});
-  out += table_row({"Evaluation", people_stretch(r.start_s, view.end_s)});
+    out += table_row({"Learning window", stretch_text(r.learning->from_s, r.learning->to_s)});
+  out += table_row({"Evaluation", stretch_text(r.start_s, view.end_s)});
   out += table_row({"Tool", "sensorchar " + std::string(version())});
   return out + "<tr><th scope=\"row\">Command</th><td><code>" + html_text(command_line(r.command)) +
          "</code></td></tr>\n</tbody></table>\n";
@@ -272,7 +272,8 @@ std::string inputs(const ReplayView& view) {
 std::string provenance(const ReplayView& view) {
   const ReplayResult& r = *view.result;
   std::string out =
-      "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"halves\">\n<div>\n" +
+      "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
+      "class=\"two-columns\">\n<div>\n" +
       inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) +
       "</div>\n" + remarks(view) + "</div>\n</div>\n";
   if (!r.plan.empty())
@@ -283,9 +284,9 @@ std::string provenance(const ReplayView& view) {
                "fused{}; both "
                "summed over algorithms.</p>\n",
                r.work.passes,
-               people_count(r.work.learnt),
-               people_count(r.work.steps),
-               r.work.blind_steps > 0 ? ", " + people_count(r.work.blind_steps) +
+               count_text(r.work.learnt),
+               count_text(r.work.steps),
+               r.work.blind_steps > 0 ? ", " + count_text(r.work.blind_steps) +
                                             " more for the scores without a reference"
                                       : "") +
            "</details>\n";

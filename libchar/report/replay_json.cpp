@@ -9,15 +9,11 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {
-
-Json interval(const Interval& i) {
-  if (std::isnan(i.low) || std::isnan(i.high)) return nullptr;
-  return Json::array({json_number(i.low), json_number(i.high)});
-}
 
 Json numbers(const std::vector<double>& values) {
   Json out = Json::array();
@@ -75,9 +71,9 @@ Json timeline_json(const Timeline& track) {
 
 Json error_json(const ErrorScore& e) {
   return {{"rmse", json_number(e.rmse)},
-          {"rmse_ci95", interval(e.rmse_ci95)},
+          {"rmse_ci95", interval_json(e.rmse_ci95)},
           {"bias", json_number(e.bias)},
-          {"bias_ci95", interval(e.bias_ci95)},
+          {"bias_ci95", interval_json(e.bias_ci95)},
           {"maximum", json_number(e.maximum)},
           {"availability", json_number(e.availability)},
           {"samples", e.samples},
@@ -114,7 +110,7 @@ Json inputs_json(const ReplayResult& result, const AlgorithmResult& algorithm) {
 Json blind_json(const std::optional<BlindScore>& blind) {
   if (!blind) return nullptr;
   return {{"leave_one_out_rms", json_number(blind->leave_one_out_rms)},
-          {"leave_one_out_ci95", interval(blind->leave_one_out_ci95)},
+          {"leave_one_out_ci95", interval_json(blind->leave_one_out_ci95)},
           {"leave_one_out", numbers(blind->leave_one_out)},
           {"split_array_rms", json_number(blind->split_rms)}};
 }
@@ -164,41 +160,42 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
   const AlgorithmResult& a = *view.result;
   // Without a reference there is no error to take the mean square of: see without_reference.
   const bool errors = result.has_reference;
-  Json out = {{"name", std::string(a.card->name)},
-              {"label", json_text(a.label)},
-              {"status", a.ran ? "ran" : "skipped"},
-              {"why", a.ran ? Json(nullptr) : Json(json_text(a.why))},
-              {"bound", a.bound},
-              {"rmse", errors ? json_number(a.rmse) : Json(nullptr)},
-              {"rmse_ci95", errors ? interval(a.rmse_ci95) : Json(nullptr)},
-              {"regret", json_number(a.regret)},
-              {"as_good_as_best", a.as_good_as_best},
-              {"ratio_to_best_ci95", a.ratio_to_best ? interval(*a.ratio_to_best) : Json(nullptr)},
-              {"availability", a.ran ? json_number(a.availability) : Json(nullptr)},
-              {"ns_per_sample", json_number(a.ns_per_sample)},
-              {"learning_s", a.ran ? json_number(a.learning_s) : Json(nullptr)},
-              {"peak_bytes", a.peak_bytes ? Json(*a.peak_bytes) : Json(nullptr)},
-              {"weights", weights_json(a.weights)},
-              {"variances", variances_json(a.variances)},
-              {"faults", faults_json(result, a)},
-              {"faults_not_kept", a.faults_not_kept},
-              {"watches_faults", a.watches_faults},
-              {"answers", answers_json(a)},
-              {"weight_distance", json_number(a.weight_distance)},
-              {"variance_error", json_number(a.variance_error)},
-              {"inputs", inputs_json(result, a)},
-              {"without_reference", blind_json(a.blind)},
-              {"weight_track", timeline_json(view.weight_track)},
-              {"variance_track", timeline_json(view.variance_track)},
-              {"remarks", warnings_json(a.remarks)},
-              {"options", options_json(a.settings)}};
-  out["card"] = {{"title", std::string(a.card->title)},
-                 {"source", std::string(a.card->source)},
-                 {"needs", texts(view.needs)},
-                 {"learns_from_reference", view.learns},
-                 {"accepts_missing", a.card->needs.accepts_missing},
-                 {"complexity", std::string(a.card->complexity)},
-                 {"learning_complexity", std::string(a.card->learning_complexity)}};
+  Json out = {
+      {"name", std::string(a.description->name)},
+      {"label", json_text(a.label)},
+      {"status", a.ran ? "ran" : "skipped"},
+      {"why", a.ran ? Json(nullptr) : Json(json_text(a.why))},
+      {"bound", a.bound},
+      {"rmse", errors ? json_number(a.rmse) : Json(nullptr)},
+      {"rmse_ci95", errors ? interval_json(a.rmse_ci95) : Json(nullptr)},
+      {"regret", json_number(a.regret)},
+      {"as_good_as_best", a.as_good_as_best},
+      {"ratio_to_best_ci95", a.ratio_to_best ? interval_json(*a.ratio_to_best) : Json(nullptr)},
+      {"availability", a.ran ? json_number(a.availability) : Json(nullptr)},
+      {"ns_per_sample", json_number(a.ns_per_sample)},
+      {"learning_s", a.ran ? json_number(a.learning_s) : Json(nullptr)},
+      {"peak_bytes", a.peak_bytes ? Json(*a.peak_bytes) : Json(nullptr)},
+      {"weights", weights_json(a.weights)},
+      {"variances", variances_json(a.variances)},
+      {"faults", faults_json(result, a)},
+      {"faults_not_kept", a.faults_not_kept},
+      {"watches_faults", a.watches_faults},
+      {"answers", answers_json(a)},
+      {"weight_distance", json_number(a.weight_distance)},
+      {"variance_error", json_number(a.variance_error)},
+      {"inputs", inputs_json(result, a)},
+      {"without_reference", blind_json(a.blind)},
+      {"weight_track", timeline_json(view.weight_track)},
+      {"variance_track", timeline_json(view.variance_track)},
+      {"remarks", warnings_json(a.remarks)},
+      {"options", options_json(a.settings)}};
+  out["description"] = {{"title", std::string(a.description->title)},
+                        {"source", std::string(a.description->source)},
+                        {"needs", texts(view.needs)},
+                        {"learns_from_reference", view.learns},
+                        {"accepts_missing", a.description->needs.accepts_missing},
+                        {"complexity", std::string(a.description->complexity)},
+                        {"learning_complexity", std::string(a.description->learning_complexity)}};
   out["on_front"] = {{"time", view.on_time_front}, {"memory", view.on_memory_front}};
   return out;
 }

@@ -5,20 +5,16 @@
 
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
 namespace {
 
-std::string number(double value, int digits = 4) {
-  return std::isfinite(value) ? significant(value, digits) : "–";
-}
-
 std::string between(const Interval& i) {
   return std::isfinite(i.low) && std::isfinite(i.high)
-             ? fmt::format("{} … {}", number(i.low), number(i.high))
+             ? fmt::format("{} … {}", significant_or_dash(i.low, 4), significant_or_dash(i.high, 4))
              : "–";
 }
 
@@ -37,14 +33,14 @@ std::string with_reference(const ReplayView& view) {
                        markdown_text(a->label),
                        a->bound ? " (bound)" : "",
                        a->as_good_as_best && !a->bound ? " \\*" : "",
-                       number(a->rmse),
+                       significant_or_dash(a->rmse, 4),
                        between(a->rmse_ci95),
                        percent(a->regret),
-                       scored ? number(a->inputs[0].error.bias, 2) : "–",
-                       scored ? number(a->inputs[0].error.maximum, 3) : "–",
+                       scored ? significant_or_dash(a->inputs[0].error.bias, 2) : "–",
+                       scored ? significant_or_dash(a->inputs[0].error.maximum, 3) : "–",
                        percent(a->availability),
-                       people_nanoseconds(a->ns_per_sample),
-                       people_bytes(a->peak_bytes));
+                       nanoseconds_text(a->ns_per_sample),
+                       bytes_text(a->peak_bytes));
   }
   return out;
 }
@@ -59,12 +55,12 @@ std::string without_reference(const ReplayView& view) {
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(a->label),
                        a->as_good_as_best ? " \\*" : "",
-                       number(a->rmse),
+                       significant_or_dash(a->rmse, 4),
                        between(a->rmse_ci95),
-                       a->blind ? number(a->blind->split_rms) : "–",
+                       a->blind ? significant_or_dash(a->blind->split_rms, 4) : "–",
                        percent(a->availability),
-                       people_nanoseconds(a->ns_per_sample),
-                       people_bytes(a->peak_bytes));
+                       nanoseconds_text(a->ns_per_sample),
+                       bytes_text(a->peak_bytes));
   }
   return out;
 }
@@ -78,21 +74,21 @@ std::string several_inputs(const ReplayView& view) {
         "\n### {}\nOptimum {}.\n\n| algorithm | RMSE | 95 % | of the optimum "
         "|\n|---|---|---|---|\n",
         markdown_text(r.inputs[j].name),
-        people_error(r.inputs[j].optimum_rmse, markdown_text(r.inputs[j].unit)));
+        error_text(r.inputs[j].optimum_rmse, markdown_text(r.inputs[j].unit)));
     for (const AlgorithmView* v : view.ranked) {
       const AlgorithmResult* a = v->result;
       if (j >= a->inputs.size()) continue;
       out += fmt::format("| {} | {} | {} | {} |\n",
                          markdown_text(a->label),
-                         number(a->inputs[j].error.rmse),
+                         significant_or_dash(a->inputs[j].error.rmse, 4),
                          between(a->inputs[j].error.rmse_ci95),
-                         number(a->inputs[j].optimum_ratio));
+                         significant_or_dash(a->inputs[j].optimum_ratio, 4));
     }
   }
   return out;
 }
 
-std::string sensors(const ReplayView& view) {
+std::string sensors_section(const ReplayView& view) {
   const ReplayResult& r = *view.result;
   std::string out =
       "\n## Sensors\n\n| sensor | unit | RMSE | bias | missing | noise of a sample | from "
@@ -103,10 +99,10 @@ std::string sensors(const ReplayView& view) {
                        markdown_text(s.name),
                        s.constant ? " (constant)" : "",
                        markdown_text(s.unit),
-                       number(s.error.rmse),
-                       number(s.error.bias, 2),
+                       significant_or_dash(s.error.rmse, 4),
+                       significant_or_dash(s.error.bias, 2),
                        percent(s.missing),
-                       view.noise_sd[i] ? number(*view.noise_sd[i]) : "–",
+                       view.noise_sd[i] ? significant_or_dash(*view.noise_sd[i], 4) : "–",
                        s.noise_source.empty() ? "–" : markdown_text(s.noise_source));
   }
   return out;
@@ -122,12 +118,12 @@ std::string fault_words(const ReplayResult& r, const SensorFault& fault) {
       "| {} {} {} from {} s{} |",
       markdown_text(r.sensors[fault.sensor].name),
       name_of(fault.kind),
-      valueless ? "" : number(fault.value),
+      valueless ? "" : significant_or_dash(fault.value, 4),
       significant(fault.from_s, 6),
       std::isfinite(fault.to_s) ? fmt::format(" to {} s", significant(fault.to_s, 6)) : "");
 }
 
-std::string faults(const ReplayView& view) {
+std::string faults_section(const ReplayView& view) {
   const ReplayResult& r = *view.result;
   if (r.faults.empty()) return "";
   std::string out = "\n## Faults\n\n| fault |", line = "\n|---|";
@@ -150,7 +146,7 @@ std::string faults(const ReplayView& view) {
   return out;
 }
 
-std::string remarks(const ReplayView& view) {
+std::string remarks_section(const ReplayView& view) {
   std::string out;
   const auto add = [&](const std::string& of, const std::string& message, std::uint64_t count) {
     out += fmt::format("- {}{}{}\n",
@@ -176,14 +172,14 @@ std::string run_facts(const ReplayView& view) {
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     out += fmt::format(" Optimum of {}: RMSE {}.",
                        view.optimum,
-                       people_error(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
+                       error_text(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
   if (r.lag_estimated)
     out +=
         fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
   return out;
 }
 
-std::string skipped(const ReplayView& view) {
+std::string skipped_section(const ReplayView& view) {
   if (view.skipped.empty()) return "";
   std::string out = "\n## Skipped\n\n";
   for (const SkippedAlgorithms& s : view.skipped)
@@ -204,7 +200,8 @@ std::string replay_markdown(const ReplayView& view) {
   out +=
       "\n\\* the best method, and those whose difference from it is not resolved; bounds look at "
       "the reference of the run itself.\n";
-  return out + skipped(view) + several_inputs(view) + sensors(view) + faults(view) + remarks(view);
+  return out + skipped_section(view) + several_inputs(view) + sensors_section(view) +
+         faults_section(view) + remarks_section(view);
 }
 
 std::string replay_markdown(const ReplayResult& result) {

@@ -3,7 +3,7 @@
 (function () {
   "use strict";
 
-  const { report, INK, DIM, MEASURED, people, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
+  const { report, INK, DIM, MEASURED, numberText, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
 
   // ---- who is who ----
   const score = (a) => (report.score === "rmse" ? a.rmse : a.without_reference && a.without_reference.leave_one_out_rms);
@@ -25,7 +25,7 @@
   function showDefaults() {
     shown.clear();
     const best = order.find((a) => a.label === report.best);
-    const free = order.find((a) => !a.bound && !a.card.learns_from_reference);
+    const free = order.find((a) => !a.bound && !a.description.learns_from_reference);
     [best, free, order.find((a) => a.name === "mean")].concat(order.filter((a) => a.bound)).forEach((a) => { if (a) shown.add(a); });
     if (!shown.size) order.slice(0, 3).forEach((a) => shown.add(a));
   }
@@ -42,7 +42,7 @@
   function linearAxis(title, min, max) {
     return {
       type: "linear", min, max, title: { display: true, text: title, color: INK, font: { size: 12.5 } },
-      ticks: { color: INK, maxRotation: 0, callback: (v) => people(v, 5) }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
+      ticks: { color: INK, maxRotation: 0, callback: (v) => numberText(v, 5) }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
     };
   }
   // Within less than a decade the powers of ten are too few: even steps, as on a linear axis.
@@ -55,7 +55,7 @@
       a.ticks = [];
       for (let k = Math.ceil(min / step); k * step <= max; ++k) a.ticks.push({ value: k * step });
     };
-    axis.ticks.callback = (v) => people(v, 4);
+    axis.ticks.callback = (v) => numberText(v, 4);
     axis.grid = { color: "#edf0f3", borderColor: "#8a929b" };
     return axis;
   }
@@ -102,8 +102,8 @@
     return low <= high ? valueAxis(title, low / factor, high * factor) : logAxis(title, 0.1, 10);
   }
   const timeTip = (u) => (name, p) => {
-    const out = [name, "t = " + people(p.x, 6) + " " + timeUnit];
-    out.push(p.low === p.high ? people(p.low, 5) + " " + u : people(p.low, 4) + " … " + people(p.high, 4) + " " + u);
+    const out = [name, "t = " + numberText(p.x, 6) + " " + timeUnit];
+    out.push(p.low === p.high ? numberText(p.low, 5) + " " + u : numberText(p.low, 4) + " … " + numberText(p.high, 4) + " " + u);
     return out;
   };
 
@@ -166,20 +166,20 @@
   function optimumLine(input, from, to, u) {
     const y = optimumOf(input);
     if (!positive(y)) return [];
-    return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: INK, backgroundColor: INK, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", people(y, 5) + " " + u] }];
+    return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: INK, backgroundColor: INK, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", numberText(y, 5) + " " + u] }];
   }
   function costChart(key, front, title, axis, tipLine) {
     const all = order.filter((a) => positive(score(a)) && positive(a[key]));
     const top = LARGEST * minMax(all.map(score))[0];
-    const points = all.map((a) => ({ x: a[key], y: Math.min(score(a), top), a, dim: !a.on_front[front], name: a.label + (score(a) > top ? " ↑ " + people(score(a), 2) : "") }));
+    const points = all.map((a) => ({ x: a[key], y: Math.min(score(a), top), a, dim: !a.on_front[front], name: a.label + (score(a) > top ? " ↑ " + numberText(score(a), 2) : "") }));
     const kinds = [
-      { name: "needs no reference", of: (a) => !a.bound && !a.card.learns_from_reference, mark: "circle" },
-      { name: "learns from a reference", of: (a) => !a.bound && a.card.learns_from_reference, mark: "rect" },
+      { name: "needs no reference", of: (a) => !a.bound && !a.description.learns_from_reference, mark: "circle" },
+      { name: "learns from a reference", of: (a) => !a.bound && a.description.learns_from_reference, mark: "rect" },
       { name: "bound: looks at the reference of the run", of: (a) => a.bound, mark: "triangle" },
     ];
     const tip = (p) => {
-      const out = [p.a.label, scoreName + " " + people(score(p.a), 5) + " " + unit];
-      if (p.a.regret !== null) out.push("regret " + people(100 * p.a.regret, 3) + " %");
+      const out = [p.a.label, scoreName + " " + numberText(score(p.a), 5) + " " + unit];
+      if (p.a.regret !== null) out.push("regret " + numberText(100 * p.a.regret, 3) + " %");
       out.push(tipLine(p.x));
       if (p.a.bound) out.push("bound: not a method");
       else out.push(p.dim ? "another method is better in both" : "on the front");
@@ -273,7 +273,7 @@
   function faultsChart() {
     const end = whole[1], names = report.sensors.map((s) => s.name);
     const bar = (f) => ({ x: [Math.max(f.from_s / TIME, whole[0]), Math.min(f.to_s === null ? end : f.to_s / TIME, end)], y: String(names.indexOf(f.sensor)), f });
-    const span = (f) => people(f.from_s / TIME, 6) + " … " + (f.to_s === null ? "the end" : people(f.to_s / TIME, 6) + " " + timeUnit);
+    const span = (f) => numberText(f.from_s / TIME, 6) + " … " + (f.to_s === null ? "the end" : numberText(f.to_s / TIME, 6) + " " + timeUnit);
     const known = report.faults.filter((f) => f.from_s / TIME < end && (f.to_s === null || f.to_s / TIME > whole[0])).map(bar);
     const found = tracked ? tracked.faults.map(bar) : [];
     // Of a large array only the sensors that have something to show.
@@ -283,7 +283,7 @@
     const plain = { grouped: false, minBarLength: 3, borderSkipped: false };
     const sets = [
       Object.assign({ label: "found by " + (tracked ? tracked.label : "–"), data: found.filter((p) => rows.includes(p.y)), backgroundColor: COLOURS[1], swatch: COLOURS[1], barPercentage: 0.36, order: 1, tip: (p) => [names[p.y] + ": out", span(p.f)] }, plain),
-      Object.assign({ label: "known to the scene", data: known.filter((p) => rows.includes(p.y)), backgroundColor: "#9fb9da", swatch: "#9fb9da", barPercentage: 0.85, order: 2, tip: (p) => [names[p.y] + ": " + p.f.kind + (p.f.value === null ? "" : " " + people(p.f.value)), span(p.f)] }, plain),
+      Object.assign({ label: "known to the scene", data: known.filter((p) => rows.includes(p.y)), backgroundColor: "#9fb9da", swatch: "#9fb9da", barPercentage: 0.85, order: 2, tip: (p) => [names[p.y] + ": " + p.f.kind + (p.f.value === null ? "" : " " + numberText(p.f.value)), span(p.f)] }, plain),
     ];
     const y = { type: "category", labels: rows, offset: true, ticks: { color: INK, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "") }, grid: { color: "#edf0f3", borderColor: "#8a929b" } };
     const all = options(timeAxis(), y);
@@ -303,7 +303,7 @@
       if (!curve) return;
       const k = order.indexOf(a), look = style(k), data = [];
       curve.tau_s.forEach((x, i) => { if (positive(x) && positive(curve.deviation[i])) data.push({ x, y: curve.deviation[i] }); });
-      sets.push({ label: a.label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: look.dash, pointStyle: MARKS[k % MARKS.length], pointRadius: 3.5, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [a.label, "τ = " + people(p.x) + " s", people(p.y, 5) + " " + u] });
+      sets.push({ label: a.label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: look.dash, pointStyle: MARKS[k % MARKS.length], pointRadius: 3.5, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [a.label, "τ = " + numberText(p.x) + " s", numberText(p.y, 5) + " " + u] });
     });
     const points = sets.flatMap((set) => set.data), [xMin, xMax] = padded(points.map((p) => p.x), 1.4), [yMin, yMax] = padded(points.map((p) => p.y), 1.5);
     return chart(sets, logAxis("averaging time τ, s", xMin, xMax), valueAxis(withUnit(axis, u), yMin, yMax));
@@ -318,13 +318,13 @@
       measured.push({ x: i, y: s.rmse, s });
       if (s.rmse_ci95 && positive(s.rmse_ci95[0])) { low.push(s.rmse_ci95[0]); high.push(s.rmse_ci95[1]); }
     });
-    const tip = (p) => [p.s.name, "RMSE " + people(p.s.rmse, 5) + " " + u].concat(p.s.rmse_ci95 ? ["95 %: " + people(p.s.rmse_ci95[0]) + " … " + people(p.s.rmse_ci95[1])] : [], positive(p.s.noise_variance) ? ["noise of a sample " + people(Math.sqrt(p.s.noise_variance), 4)] : []);
+    const tip = (p) => [p.s.name, "RMSE " + numberText(p.s.rmse, 5) + " " + u].concat(p.s.rmse_ci95 ? ["95 %: " + numberText(p.s.rmse_ci95[0]) + " … " + numberText(p.s.rmse_ci95[1])] : [], positive(p.s.noise_variance) ? ["noise of a sample " + numberText(Math.sqrt(p.s.noise_variance), 4)] : []);
     const sets = [
       { label: "sensor", data: measured, showLine: false, marks: true, intervals: true, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 5, pointHoverRadius: 7, fill: false, order: 1, tip },
       { label: "noise it was said to have", data: told, showLine: false, marks: true, borderColor: MEASURED, backgroundColor: "#fff", pointStyle: "rectRot", pointRadius: 6, pointBorderWidth: 1.6, fill: false, order: 2, tip },
     ].filter((set) => set.data.length);
     const best = order.find((a) => a.label === report.best), mean = order.find((a) => a.name === "mean");
-    const level = (name, y, look) => sets.push(Object.assign(flat(name, y, look, () => [name, "RMSE " + people(y, 5) + " " + u]), { data: [{ x: -0.5, y }, { x: last, y }], order: 5 }));
+    const level = (name, y, look) => sets.push(Object.assign(flat(name, y, look, () => [name, "RMSE " + numberText(y, 5) + " " + u]), { data: [{ x: -0.5, y }, { x: last, y }], order: 5 }));
     if (report.inputs.length === 1 && report.inputs[0].unit === all[0].unit && report.score === "rmse") {
       if (best && positive(best.rmse)) level("fused by " + best.label, best.rmse, styleOf(best));
       if (mean && mean !== best && positive(mean.rmse)) level("fused by mean", mean.rmse, styleOf(mean));
@@ -397,9 +397,9 @@
     canvas.addEventListener("dblclick", () => look(whole.slice()));
   }
 
-  const onMemory = (b) => (b < 1000 ? b + " B" : b < 1e6 ? people(b / 1e3, 3) + " kB" : people(b / 1e6, 3) + " MB");
+  const onMemory = (b) => (b < 1000 ? b + " B" : b < 1e6 ? numberText(b / 1e3, 3) + " kB" : numberText(b / 1e6, 3) + " MB");
   const MAKERS = {
-    "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => people(x, 3) + " ns a sample"),
+    "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => numberText(x, 3) + " ns a sample"),
     "cost-memory": (i, axis, u) => costChart("peak_bytes", "memory", "peak memory, bytes", withUnit(axis, u), onMemory),
     window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, "error-allan": allanChart, sensors: sensorsChart,
   };
@@ -471,7 +471,7 @@
     moved = () => {
       from.value = Math.round((steps * (stretch[0] - whole[0])) / length);
       to.value = Math.round((steps * (stretch[1] - whole[0])) / length);
-      said.textContent = people(stretch[0], 6) + " … " + people(stretch[1], 6) + " " + timeUnit;
+      said.textContent = numberText(stretch[0], 6) + " … " + numberText(stretch[1], 6) + " " + timeUnit;
     };
     moved();
     const labelled = (text, control) => { const l = element("label", text + " "); l.append(control); return l; };

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/algorithm_words.hpp"
-#include "libchar/replay/verdict.hpp"
 
 namespace libchar {
 namespace {
@@ -54,7 +54,7 @@ std::string replay_text(const ReplayView& view) {
         : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
                                   : significant(1 + a->regret, 3) + " x",
         cell(a->ns_per_sample, 3),
-        people_bytes(a->peak_bytes),
+        bytes_text(a->peak_bytes),
         a->bound             ? "  (bound)"
         : a->as_good_as_best ? "  *"
                              : "");
@@ -71,8 +71,8 @@ std::string replay_text(const ReplayView& view) {
 std::string algorithms_text() {
   std::string text;
   for (const fusion::Entry& entry : fusion::algorithms()) {
-    text += fmt::format("{:<28} {}\n", entry.card->name, entry.card->title);
-    for (const std::string& need : needs_in_words(*entry.card))
+    text += fmt::format("{:<28} {}\n", entry.description->name, entry.description->title);
+    for (const std::string& need : needs_in_words(*entry.description))
       text += fmt::format("{:<28}   needs {}\n", "", need);
     for (const fusion::Option& option : entry.options)
       text += fmt::format("{:<28}   {} = {}{}  {}\n",

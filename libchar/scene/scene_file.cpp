@@ -53,7 +53,7 @@ class SceneReader {
                    top_,
                    "algorithms",
                    "expected at least one algorithm",
-                   "leave the key out to run all that the scene can feed");
+                   "leave the key out to run every algorithm that the scene has the data for");
     for (std::size_t i = 0; i < list.size(); ++i)
       scene_.algorithms.push_back(algorithm(list[i], fmt::format("algorithms[{}]", i)));
   }

@@ -30,7 +30,7 @@ void FaultInjector::apply(std::span<double> y) {
   for (double& sample : y) {
     const auto k = static_cast<double>(done_++);
     bool stuck = false;
-    const double sound = sample;
+    const double healthy = sample;
     for (std::size_t i = 0; i < faults_.size(); ++i) {
       const SensorFault& fault = faults_[i];
       if (k < first_sample(fault.from_s, rate_hz_) || k >= first_sample(fault.to_s, rate_hz_))
@@ -46,8 +46,8 @@ void FaultInjector::apply(std::span<double> y) {
           sample += fault.value * (k / rate_hz_ - fault.from_s);
           break;
         case FaultKind::stuck:
-          sample = std::isnan(last_) ? sound : last_;
-          if (std::isnan(last_)) last_ = sound;
+          sample = std::isnan(last_) ? healthy : last_;
+          if (std::isnan(last_)) last_ = healthy;
           stuck = true;
           break;
         case FaultKind::saturation:

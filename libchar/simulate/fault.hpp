@@ -27,7 +27,7 @@ struct SensorFault {
   FaultKind kind = FaultKind::bias;
   double value = 0;
   double from_s = 0;
-  /// the first sample at or after it is sound again
+  /// the first sample at or after it is healthy again
   double to_s = std::numeric_limits<double>::infinity();
 };
 

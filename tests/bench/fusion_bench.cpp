@@ -53,9 +53,9 @@ double excess(const Eigen::VectorXd& variances,
   double ours = 0, best = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Eigen::MatrixXd y = noisy(variances, kInstants, static_cast<std::uint64_t>(seed), 0);
-    Given given;
-    given.channels = variances.size();
-    auto runner = algorithm(name).make(given, settings);
+    Array array;
+    array.channels = variances.size();
+    auto runner = algorithm(name).make(array, settings);
     Eigen::MatrixXd x(1, kInstants), v(1, kInstants);
     runner->run(y, x, v);
     ours += x.rightCols(kInstants - kFrom).squaredNorm();
@@ -106,28 +106,28 @@ void timing() {
   fmt::print("\n");
   std::vector<double> mean(sizes.size());
   for (const Entry& entry : algorithms()) {
-    if (entry.card->needs.tilt) continue;
-    fmt::print("{:<32}", entry.card->name);
+    if (entry.description->needs.tilt) continue;
+    fmt::print("{:<32}", entry.description->name);
     for (std::size_t s = 0; s < sizes.size(); ++s) {
       const Eigen::Index n = sizes[s], instants = 4000;
       const Eigen::VectorXd variances = Eigen::VectorXd::LinSpaced(n, 1, 7);
-      Given given;
-      given.channels = n;
-      given.noise_levels = variances;
-      given.learning_samples = instants;
-      given.reference_throughout = true;
-      given.rate_hz = 200;
-      if (!why_not(*entry.card, given).empty()) {
+      Array array;
+      array.channels = n;
+      array.noise_levels = variances;
+      array.learning_samples = instants;
+      array.reference_throughout = true;
+      array.rate_hz = 200;
+      if (!why_not(*entry.description, array).empty()) {
         fmt::print("{:>18}", "-");
         continue;
       }
-      auto runner = entry.make(given, Settings(entry.options));
+      auto runner = entry.make(array, Settings(entry.options));
       Eigen::MatrixXd truth(1, instants);
       const Eigen::MatrixXd y = noisy(variances, instants, 3, 2, truth.data());
       runner->learn(y, truth);
       runner->finish_learning();
       const double ns = nanoseconds(*runner, y, 1);
-      if (entry.card->name == "mean") mean[s] = ns;
+      if (entry.description->name == "mean") mean[s] = ns;
       fmt::print("{:>18}", fmt::format("{:.1f} ({:.1f})", ns, ns / mean[s]));
     }
     fmt::print("\n");
@@ -198,9 +198,9 @@ void against_matrices() {
              "matrices, pinv (ratio)");
   for (const Eigen::Index n : {6, 12, 50}) {
     const Eigen::MatrixXd y = noisy(Eigen::VectorXd::LinSpaced(n, 1, 7), n > 12 ? 20 : 200, 3, 2);
-    Given given;
-    given.channels = n;
-    auto runner = algorithm("minque").make(given, Settings(algorithm("minque").options));
+    Array array;
+    array.channels = n;
+    auto runner = algorithm("minque").make(array, Settings(algorithm("minque").options));
     // Past its start, as in a long record.
     Eigen::MatrixXd x(1, y.cols()), v(1, y.cols());
     for (Eigen::Index k = 0; k < 8000; k += y.cols()) runner->run(y, x, v);

@@ -24,10 +24,10 @@ namespace {
 
 using Values = std::vector<std::pair<std::string_view, double>>;
 
-std::unique_ptr<Runner> make(const char* name, const Given& given, const Values& values = {}) {
+std::unique_ptr<Runner> make(const char* name, const Array& array, const Values& values = {}) {
   Settings settings(algorithm(name).options);
   for (const auto& [option, value] : values) settings.set(option, value);
-  return algorithm(name).make(given, settings);
+  return algorithm(name).make(array, settings);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point from) {
@@ -37,7 +37,7 @@ double seconds_since(std::chrono::steady_clock::time_point from) {
 struct Scene {
   Eigen::MatrixXd y;
   Eigen::VectorXd x;
-  Given given;
+  Array array;
 };
 
 /// White levels of [RV] table 3.1 (variance 608.4 S and 14.5 S of flicker, taken as
@@ -54,9 +54,9 @@ Scene five_sensors(std::uint64_t seed, Eigen::Index instants, Eigen::Index learn
     made.x[k] = x;
     for (Eigen::Index i = 0; i < 5; ++i) made.y(i, k) = x + std::sqrt(variances[i]) * gauss();
   }
-  made.given.channels = 5;
-  made.given.noise_levels = variances.matrix();
-  made.given.learning_samples = learning;
+  made.array.channels = 5;
+  made.array.noise_levels = variances.matrix();
+  made.array.learning_samples = learning;
   return made;
 }
 
@@ -70,8 +70,9 @@ double rms_from(Runner& runner, const Scene& scene, Eigen::Index from) {
 
 void perceptron(int seeds) {
   constexpr Eigen::Index kLearning = 10000, kInstants = 100000;
-  fmt::print("five sensors, 10 000 instants taught, 90 000 judged, {} seeds; optimum .1369\n",
-             seeds);
+  fmt::print(
+      "five sensors, 10 000 instants to learn from, 90 000 judged, {} seeds; optimum .1369\n",
+      seeds);
   fmt::print("{:>8} {:>10} {:>9} {:>8} {:>9} {:>9}\n",
              "neurons",
              "CPU s",
@@ -85,7 +86,7 @@ void perceptron(int seeds) {
     std::vector<double> rms, took, step;
     for (int seed = 1; seed <= seeds; ++seed) {
       const Scene scene = five_sensors(static_cast<std::uint64_t>(seed), kInstants, kLearning);
-      auto runner = make("perceptron", scene.given, {{"neurons", neurons}});
+      auto runner = make("perceptron", scene.array, {{"neurons", neurons}});
       runner->learn(scene.y.leftCols(kLearning), scene.x.head(kLearning).transpose());
       const std::clock_t begun = std::clock();  // of the processor: others may be at work
       runner->finish_learning();
@@ -126,8 +127,8 @@ void takens() {
              "",
              "",
              "",
-             rms_from(*make("inverse-variance", white.given), white, kFrom),
-             rms_from(*make("inverse-variance", slow.given), slow, kFrom));
+             rms_from(*make("inverse-variance", white.array), white, kFrom),
+             rms_from(*make("inverse-variance", slow.array), slow, kFrom));
   for (const char* name : {"kalman-takens", "kalman-takens-taught", "kalman-takens-published"})
     for (const double d : {3, 6, 12})
       for (const double m : {300, 1000, 5000}) {
@@ -137,7 +138,7 @@ void takens() {
         double best = 1e300;
         for (std::size_t s = 0; s < 2; ++s) {
           const Scene& scene = s == 0 ? white : slow;
-          auto runner = make(name, scene.given, values);
+          auto runner = make(name, scene.array, values);
           runner->learn(scene.y.leftCols(kFrom), scene.x.head(kFrom).transpose());
           runner->finish_learning();
           Eigen::MatrixXd x(1, kFrom), variance(1, kFrom);
@@ -157,7 +158,7 @@ void takens() {
       "and .1495):");
   for (const auto& [d, q] : {std::pair{6.0, 1e-2}, std::pair{4.0, 1e-3}}) {
     auto runner = make("kalman-takens-published",
-                       white.given,
+                       white.array,
                        {{"dimension", d}, {"process_variance", q}, {"noise_scale", 1 / 623.0}});
     Eigen::MatrixXd x(1, kFrom), variance(1, kFrom);
     runner->run(white.y.leftCols(kFrom), x, variance);
@@ -169,7 +170,7 @@ void takens() {
 struct TiltScene {
   Eigen::MatrixXd y;
   Eigen::VectorXd angle;
-  Given given;
+  Array array;
 };
 
 /// [RV 2.5]: 500 Hz; a swing of +-2.09 rad; rate noise and bias walk of a consumer gyroscope,
@@ -191,15 +192,15 @@ TiltScene tilt_scene(std::uint64_t seed,
     made.y(1, k) = 9.81 * (std::sin(angle) + gravity_noise * gauss());
     made.y(2, k) = 9.81 * (std::cos(angle) + gravity_noise * gauss());
   }
-  made.given.channels = 3;
-  made.given.rate_hz = kRate;
-  made.given.tilt = TiltChannels{};
-  made.given.learning_samples = instants / 4;
+  made.array.channels = 3;
+  made.array.rate_hz = kRate;
+  made.array.tilt = TiltChannels{};
+  made.array.learning_samples = instants / 4;
   return made;
 }
 
 double tilt_rms(Runner& runner, const TiltScene& scene) {
-  const Eigen::Index learning = scene.given.learning_samples, count = scene.y.cols() - learning;
+  const Eigen::Index learning = scene.array.learning_samples, count = scene.y.cols() - learning;
   runner.learn(scene.y.leftCols(learning), scene.angle.head(learning).transpose());
   runner.finish_learning();
   Eigen::MatrixXd x(1, count), variance(1, count);
@@ -217,7 +218,7 @@ void tilt() {
   double best_lambda = 1e300, best_kalman = 1e300, lambda = 0, q = 0, r = 0;
   for (double tau = 0.01; tau < 200; tau *= 1.15)
     if (const double got =
-            tilt_rms(*make("tilt-complementary", scene.given, {{"time_constant", tau}}), scene);
+            tilt_rms(*make("tilt-complementary", scene.array, {{"time_constant", tau}}), scene);
         got < best_lambda) {
       best_lambda = got;
       lambda = tau;
@@ -226,7 +227,7 @@ void tilt() {
     for (double bias = 1e-10; bias < 1e-2; bias *= 4)
       if (const double got = tilt_rms(
               *make("tilt-kalman",
-                    scene.given,
+                    scene.array,
                     {{"angle_noise", angle}, {"bias_noise", bias}, {"gravity_variance", .0025}}),
               scene);
           got < best_kalman) {
@@ -239,12 +240,12 @@ void tilt() {
     fmt::print("{:>44} {:>10.3f} {:>8.3f}\n", name, 1e3 * rms, rms / best_kalman);
   };
   for (const Entry& entry : algorithms())
-    if (entry.card->needs.tilt) {
-      auto runner = entry.make(scene.given, Settings(entry.options));
-      line(std::string(entry.card->name), tilt_rms(*runner, scene));
+    if (entry.description->needs.tilt) {
+      auto runner = entry.make(scene.array, Settings(entry.options));
+      line(std::string(entry.description->name), tilt_rms(*runner, scene));
     }
   line("tilt-complementary, lambda .85 of [RV]",
-       tilt_rms(*make("tilt-complementary", scene.given, {{"lambda", .85}}), scene));
+       tilt_rms(*make("tilt-complementary", scene.array, {{"lambda", .85}}), scene));
   line(fmt::format("best tilt-complementary, tau {:.2g} s", lambda), best_lambda);
   line(fmt::format("best tilt-kalman, Q {:.1e} {:.1e}", q, r), best_kalman);
 }

@@ -223,7 +223,7 @@ double gain_error(const Recorded& r, const Eigen::VectorXd& inverse_gain, Index 
   double sum = 0;
   const auto& sensors = r.scene.simulate->sensors;
   const double gauge = sensors[static_cast<std::size_t>(reference)].model.scale_factor.value;
-  for (Index i = 0; i < r.given.channels; ++i)
+  for (Index i = 0; i < r.array.channels; ++i)
     sum += std::abs(inverse_gain[i] -
                     gauge / sensors[static_cast<std::size_t>(i)].model.scale_factor.value);
   return sum;
@@ -233,7 +233,7 @@ template <class Blind>
 Blind after(const Recorded& r, const char* gauge, double reference) {
   libchar::fusion::Settings settings(Blind::options);
   settings.set(gauge, reference);
-  libchar::fusion::Given blind = r.given;
+  libchar::fusion::Array blind = r.array;
   blind.noise_levels.resize(0);
   Blind algorithm(blind, settings);
   for (Index k = 0; k < r.x.size(); ++k)
@@ -271,7 +271,7 @@ void perceptrons(const Recorded& calibrated, const Recorded& uncalibrated, Found
 
 void kalman_takens(const Recorded& r, Found& found) {
   // The listing takes the density S of sensor 1, 5e-3, for the variance.
-  const double scale = 5e-3 / r.given.noise_levels[0];
+  const double scale = 5e-3 / r.array.noise_levels[0];
   found["Q 1e-2, d 6, M 20"].push_back(
       rms(run("kalman-takens-published", {{"process_variance", 1e-2}, {"noise_scale", scale}}, r).x,
           r,
@@ -307,7 +307,7 @@ void fault_free(const Recorded& r, Found& found) {
   found["average / least squares"].push_back(rms(run("mean", {}, r).x, r) / best);
   found["MINQUE / least squares"].push_back(rms(run("minque-published", {}, r).x, r) / best);
   const auto& entry = libchar::fusion::algorithm("minque-published");
-  const auto runner = entry.make(r.given, libchar::fusion::Settings(entry.options));
+  const auto runner = entry.make(r.array, libchar::fusion::Settings(entry.options));
   Eigen::MatrixXd x(1, r.x.size()), variance(1, r.x.size());
   runner->run(r.y, x, variance);
   for (Index i = 0; i < 6; ++i) found[numbered("v", i)].push_back((*runner->variances())[i]);
@@ -317,8 +317,8 @@ void fault_free(const Recorded& r, Found& found) {
 double event(const Ran& ran, const Recorded& r, int channel, bool faulty, double since) {
   for (const auto& e : ran.faults)
     if (e.channel == channel && e.faulty == faulty &&
-        static_cast<double>(e.sample) / r.given.rate_hz >= since)
-      return static_cast<double>(e.sample) / r.given.rate_hz;
+        static_cast<double>(e.sample) / r.array.rate_hz >= since)
+      return static_cast<double>(e.sample) / r.array.rate_hz;
   return kNone;
 }
 
@@ -339,7 +339,7 @@ Ran sectioned_over_sound_sensors(const Recorded& r) {
 
 void faults(Recorded r, Found& found) {
   const Ran sectioned = sectioned_over_sound_sensors(r);
-  for (const double t : {400, 500, 600, 700}) r.given.section_starts.push_back(r.instant(t));
+  for (const double t : {400, 500, 600, 700}) r.array.section_starts.push_back(r.instant(t));
   // Moments about the mean, one threshold for all, taken from the start on: as published.
   const Ran published =
       run("minque-published", {{"about_zero", 0}, {"common_threshold", 1}, {"settling", 0}}, r);

@@ -11,7 +11,7 @@ using namespace libchar::fusion;
 
 TEST_CASE("mean: 50-digit vectors") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("average.csv");
-  auto mean = test::make("mean", test::given(5));
+  auto mean = test::make("mean", test::array(5));
   CHECK(test::worst(test::run(*mean, inputs.block("c", 5)).x,
                     expected["avg_calibrated"].transpose(),
                     1.78e-15) <= 1);
@@ -23,14 +23,14 @@ TEST_CASE("mean: 50-digit vectors") {
 TEST_CASE("inverse-variance: weights and error of the known answers") {
   const auto answer = test::answers()["weighted_average"];
   const test::Vectors inputs("fusion_inputs.csv");
-  Given given = test::given(5);
-  given.noise_levels.resize(5);
+  Array array = test::array(5);
+  array.noise_levels.resize(5);
   Eigen::VectorXd weights(5);
   for (Eigen::Index i = 0; i < 5; ++i) {
-    given.noise_levels[i] = answer["variances"][static_cast<std::size_t>(i)];
+    array.noise_levels[i] = answer["variances"][static_cast<std::size_t>(i)];
     weights[i] = answer["weights"][static_cast<std::size_t>(i)];
   }
-  auto fusion = test::make("inverse-variance", given);
+  auto fusion = test::make("inverse-variance", array);
   CHECK(test::worst(*fusion->weights(), weights, 1e-16) <= 1);
   const Eigen::VectorXd error =
       test::run(*fusion, inputs.block("c", 5)).x.transpose() - inputs["x"];
@@ -44,8 +44,8 @@ TEST_CASE("missing samples: the others take over") {
   y << 1, gap, gap, 7,  //
       2, 4, gap, gap,   //
       6, 8, gap, gap;
-  Given given = test::given(3);
-  given.noise_levels = Eigen::Vector3d(1, 1, 2);
+  Array array = test::array(3);
+  array.noise_levels = Eigen::Vector3d(1, 1, 2);
   struct Case {
     std::string name;
     std::array<double, 3> x, variance;
@@ -54,7 +54,7 @@ TEST_CASE("missing samples: the others take over") {
                         Case{"inverse-variance", {2.4, 16.0 / 3, 7}, {0.4, 2.0 / 3, 1}},
                         Case{"median", {2, 6, 7}, {gap, gap, gap}}}) {
     INFO(c.name);
-    auto runner = test::make(c.name, given);
+    auto runner = test::make(c.name, array);
     const test::Run out = test::run(*runner, y);
     CHECK(out.x(0, 0) == Approx(c.x[0]));
     CHECK(out.x(0, 1) == Approx(c.x[1]));
@@ -75,7 +75,7 @@ TEST_CASE("median: even and odd, few and many, against sorting") {
       state = state * 6364136223846793005U + 1442695040888963407U;
       y.data()[i] = static_cast<double>(state >> 40U);
     }
-    auto median = test::make("median", test::given(n));
+    auto median = test::make("median", test::array(n));
     const test::Run out = test::run(*median, y);
     for (Eigen::Index k = 0; k < y.cols(); ++k) {
       std::vector<double> sorted(y.col(k).data(), y.col(k).data() + n);
@@ -87,15 +87,15 @@ TEST_CASE("median: even and odd, few and many, against sorting") {
 }
 
 TEST_CASE("mean and inverse variance of several inputs are least squares", "[fusion]") {
-  Given given;
-  given.channels = 5;
-  given.observation_matrix.resize(5, 2);
-  given.observation_matrix << 1, -0.2, 1, -0.1, 1, 0, 1, 0.15, 2, 0.3;
-  given.noise_levels = Eigen::VectorXd::LinSpaced(5, 0.1, 2);
+  Array array;
+  array.channels = 5;
+  array.observation_matrix.resize(5, 2);
+  array.observation_matrix << 1, -0.2, 1, -0.1, 1, 0, 1, 0.15, 2, 0.3;
+  array.noise_levels = Eigen::VectorXd::LinSpaced(5, 0.1, 2);
   Eigen::VectorXd y(5);
   y << 0.3, -1, 2, 0.7, 5;
   const auto expected = [&](const Eigen::VectorXd& w, const std::vector<Eigen::Index>& rows) {
-    const Eigen::MatrixXd h = given.observation_matrix(rows, Eigen::all);
+    const Eigen::MatrixXd h = array.observation_matrix(rows, Eigen::all);
     const Eigen::MatrixXd hw = h.transpose() * Eigen::VectorXd(w(rows)).asDiagonal();
     return Eigen::VectorXd((hw * h).ldlt().solve(hw * y(rows)));
   };
@@ -113,8 +113,8 @@ TEST_CASE("mean and inverse variance of several inputs are least squares", "[fus
     CHECK(std::isnan(algorithm.step(Sample(gaps.data(), 5)).x[0]));
     CHECK((algorithm.step(Sample(samples.data(), 5)).x - whole.x).norm() == 0);
   };
-  Mean mean(given);
+  Mean mean(array);
   check(mean, Eigen::VectorXd::Ones(5));
-  InverseVariance weighted(given);
-  check(weighted, given.noise_levels.cwiseInverse());
+  InverseVariance weighted(array);
+  check(weighted, array.noise_levels.cwiseInverse());
 }

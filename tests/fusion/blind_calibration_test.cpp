@@ -32,7 +32,7 @@ TEST_CASE("blind calibration on the Gram matrix: two gauges") {
     INFO(c.name);
     const auto answer = test::answers()["blind_batch"][c.name];
     BlindCalibration blind(
-        test::given(5),
+        test::array(5),
         test::settings("blind-calibration", {{"gauge", c.gauge}, {"noise_removal", 0}}));
     for (Eigen::Index k = 0; k < u.cols(); ++k) blind.step(Sample(u.col(k).data(), 5));
     blind.solve();
@@ -45,7 +45,7 @@ TEST_CASE("blind calibration on the Gram matrix: two gauges") {
 
 TEST_CASE("blind-calibration-published: 50-digit vectors") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("blind_thesis_ref1.csv");
-  BlindCalibrationPublished blind(test::given(5),
+  BlindCalibrationPublished blind(test::array(5),
                                   test::settings("blind-calibration-published", {}));
   const Eigen::MatrixXd u = inputs.block("u", 5), gain = expected.block("invgain", 5),
                         beta = expected.block("beta", 5);
@@ -78,10 +78,10 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
       u(i, k) = gain[i] * x + 0.1 * static_cast<double>(i) + std::sqrt(variance[i]) * gauss();
   }
   const auto error = [&](bool levels, double removal) {
-    Given given = test::given(5);
-    if (levels) given.noise_levels = variance;
+    Array array = test::array(5);
+    if (levels) array.noise_levels = variance;
     BlindCalibration blind(
-        given, test::settings("blind-calibration", {{"gauge", 5}, {"noise_removal", removal}}));
+        array, test::settings("blind-calibration", {{"gauge", 5}, {"noise_removal", removal}}));
     for (Eigen::Index k = 0; k < u.cols(); ++k) blind.step(Sample(u.col(k).data(), 5));
     blind.solve();
     const Eigen::VectorXd estimated = blind.inverse_gain().cwiseInverse() * gain[4];

@@ -39,16 +39,16 @@ TEST_CASE("options: set by name, within their range") {
   CHECK(settings["forgetting"] == 0.99);
 }
 
-TEST_CASE("every card is complete, every option's default is in its range") {
+TEST_CASE("every description is complete, every option's default is in its range") {
   std::set<std::string_view> names;
   for (const Entry& entry : algorithms()) {
-    INFO(entry.card->name);
-    CHECK(names.insert(entry.card->name).second);
-    CHECK_FALSE(entry.card->title.empty());
-    CHECK_FALSE(entry.card->source.empty());
-    CHECK_FALSE(entry.card->complexity.empty());
-    CHECK((entry.card->needs.reference || entry.card->needs.reference_throughout) ==
-          !entry.card->learning_complexity.empty());
+    INFO(entry.description->name);
+    CHECK(names.insert(entry.description->name).second);
+    CHECK_FALSE(entry.description->title.empty());
+    CHECK_FALSE(entry.description->source.empty());
+    CHECK_FALSE(entry.description->complexity.empty());
+    CHECK((entry.description->needs.reference || entry.description->needs.reference_throughout) ==
+          !entry.description->learning_complexity.empty());
     for (const Option& option : entry.options) {
       INFO(option.name);
       CHECK_FALSE(option.meaning.empty());
@@ -60,8 +60,10 @@ TEST_CASE("every card is complete, every option's default is in its range") {
 }
 
 TEST_CASE("why_not: a sentence for each thing that is missing") {
-  const auto needing = [](const Needs& needs) { return Card{"foo", "Foo", "here", "O(n)", needs}; };
-  Given two = test::given(2);
+  const auto needing = [](const Needs& needs) {
+    return Description{"foo", "Foo", "here", "O(n)", needs};
+  };
+  Array two = test::array(2);
   CHECK(why_not(needing({}), two).empty());
   CHECK(why_not(needing({.min_channels = 3}), two) ==
         "foo needs at least 3 channels; this scene has 2");
@@ -105,9 +107,9 @@ TEST_CASE("fault rules have names") {
 
 TEST_CASE("what cannot run is refused with the same sentence") {
   for (const Entry& entry : algorithms()) {
-    INFO(entry.card->name);
-    const Given none = test::given(0);
-    const std::string sentence = why_not(*entry.card, none);
+    INFO(entry.description->name);
+    const Array none = test::array(0);
+    const std::string sentence = why_not(*entry.description, none);
     REQUIRE_FALSE(sentence.empty());
     try {
       entry.make(none, Settings(entry.options));

@@ -15,8 +15,8 @@ using namespace libchar::fusion;
 
 namespace {
 
-Given levels(const Eigen::VectorXd& variances) {
-  Given made = test::given(variances.size());
+Array levels(const Eigen::VectorXd& variances) {
+  Array made = test::array(variances.size());
   made.noise_levels = variances;
   return made;
 }
@@ -116,16 +116,16 @@ TEST_CASE("kalman-takens: beats the weighted mean where the past tells, does not
   };
   for (const Scene& scene : {Scene{sine(12000, 40), 0.75}, Scene{white, 1.003}}) {
     const Eigen::MatrixXd y = noisy(scene.x, variances);
-    const Given given = levels(variances);
+    const Array array = levels(variances);
     const auto error = [&](Runner& runner) {
       const test::Run run = test::run(runner, y);
       return Eigen::VectorXd((run.x.row(0).transpose() - scene.x).tail(10000));
     };
-    auto takens = test::make("kalman-takens", given), mean = test::make("inverse-variance", given);
+    auto takens = test::make("kalman-takens", array), mean = test::make("inverse-variance", array);
     const double takens_rms = rms(error(*takens)), mean_rms = rms(error(*mean));
     CHECK(takens_rms / mean_rms < scene.at_most);
     // The variance that it states is the one it has.
-    auto again = test::make("kalman-takens", given);
+    auto again = test::make("kalman-takens", array);
     const test::Run run = test::run(*again, y);
     CHECK(run.variance.rightCols(10000).mean() == Approx(takens_rms * takens_rms).epsilon(0.1));
   }
@@ -134,17 +134,17 @@ TEST_CASE("kalman-takens: beats the weighted mean where the past tells, does not
 TEST_CASE("kalman-takens: limits of Q are the prediction and the channels") {
   const Eigen::VectorXd variances = Eigen::Vector2d(1, 4);
   const Eigen::MatrixXd y = noisy(sine(2000, 40), variances);
-  const Given given = levels(variances);
+  const Array array = levels(variances);
   const auto run = [&](double q) {
-    return test::run(*test::make("kalman-takens", given, {{"process_variance", q}}), y).x;
+    return test::run(*test::make("kalman-takens", array, {{"process_variance", q}}), y).x;
   };
-  const Eigen::MatrixXd mean = test::run(*test::make("inverse-variance", given), y).x;
+  const Eigen::MatrixXd mean = test::run(*test::make("inverse-variance", array), y).x;
   CHECK((run(1e30) - mean).cwiseAbs().maxCoeff() < 1e-12);
   // A tiny Q: the channels of this very instant no longer count.
   Eigen::MatrixXd moved = y;
   moved.col(1999).array() += 100;
   const auto last = [&](const Eigen::MatrixXd& samples) {
-    return test::run(*test::make("kalman-takens", given, {{"process_variance", 1e-30}}), samples)
+    return test::run(*test::make("kalman-takens", array, {{"process_variance", 1e-30}}), samples)
         .x(0, 1999);
   };
   CHECK(std::abs(last(moved) - last(y)) < 1e-3);
@@ -186,17 +186,17 @@ TEST_CASE("kalman-takens-taught: the dictionary is the reference; too short is s
   const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
   const Eigen::VectorXd x = sine(6000, 40);
   const Eigen::MatrixXd y = noisy(x, variances);
-  Given given = levels(variances);
-  given.learning_samples = 2000;
-  auto taught = test::make("kalman-takens-taught", given);
-  taught->learn(y.leftCols(2000), x.head(2000).transpose());
-  taught->finish_learning();
-  auto mean = test::make("inverse-variance", given);
+  Array array = levels(variances);
+  array.learning_samples = 2000;
+  auto trained = test::make("kalman-takens-taught", array);
+  trained->learn(y.leftCols(2000), x.head(2000).transpose());
+  trained->finish_learning();
+  auto mean = test::make("inverse-variance", array);
   const auto error = [&](Runner& runner) {
     return rms((test::run(runner, y.rightCols(4000)).x.row(0).transpose() - x.tail(4000)));
   };
-  CHECK(error(*taught) < 0.65 * error(*mean));
-  auto starved = test::make("kalman-takens-taught", given);
+  CHECK(error(*trained) < 0.65 * error(*mean));
+  auto starved = test::make("kalman-takens-taught", array);
   starved->learn(y.leftCols(10), x.head(10).transpose());
   CHECK_THROWS_AS(starved->finish_learning(), Error);
 }

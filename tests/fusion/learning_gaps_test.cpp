@@ -28,15 +28,15 @@ TEST_CASE("sections are those of the run, whatever is missing from the reference
     y(0, k) = truth(0, k) + (k < kTurn ? 0.01 : 1) * gauss();
     y(1, k) = truth(0, k) + (k < kTurn ? 1 : 0.01) * gauss();
   }
-  Given given = test::given(2);
-  given.reference_throughout = true;
-  given.section_starts = {0, kTurn};
-  const auto error = [&](const Eigen::MatrixXd& taught) {
-    auto runner = test::make("sectioned-least-squares", given);
+  Array array = test::array(2);
+  array.reference_throughout = true;
+  array.section_starts = {0, kTurn};
+  const auto error = [&](const Eigen::MatrixXd& trained) {
+    auto runner = test::make("sectioned-least-squares", array);
     // In blocks, as the engine does.
     for (Eigen::Index k = 0; k < kInstants; k += 64) {
       const Eigen::Index size = std::min<Eigen::Index>(64, kInstants - k);
-      runner->learn(y.middleCols(k, size), taught.middleCols(k, size));
+      runner->learn(y.middleCols(k, size), trained.middleCols(k, size));
     }
     runner->finish_learning();
     const Eigen::MatrixXd x = test::run(*runner, y).x;
@@ -47,7 +47,7 @@ TEST_CASE("sections are those of the run, whatever is missing from the reference
   CHECK(error(with_gaps(truth, 500, 1000)) < 0.011);
   // A sensor that is missing where the truth is known counts too.
   y.block(0, 100, 2, 400).setConstant(test::kNaN);
-  auto runner = test::make("sectioned-least-squares", given);
+  auto runner = test::make("sectioned-least-squares", array);
   runner->learn(y, truth);
   runner->finish_learning();
   const Eigen::MatrixXd x = test::run(*runner, y).x;
@@ -56,17 +56,17 @@ TEST_CASE("sections are those of the run, whatever is missing from the reference
 
 TEST_CASE("tuned tilt filters run through instants without a truth") {
   const test::FusionScene scene = test::tilt_scene();
-  Given given = scene.given;
-  given.learning_samples = scene.y.cols();
+  Array array = scene.array;
+  array.learning_samples = scene.y.cols();
   // Known at every fourth instant only: the same constants, near enough for the same estimates.
   Eigen::MatrixXd sparse = scene.truth;
   for (Eigen::Index k = 0; k < sparse.cols(); ++k)
     if (k % 4 != 0) sparse(0, k) = test::kNaN;
   for (const char* name : {"tilt-complementary-tuned", "tilt-kalman-tuned"}) {
     INFO(name);
-    const auto rms = [&](const Eigen::MatrixXd& taught) {
-      auto runner = test::make(name, given);
-      runner->learn(scene.y, taught);
+    const auto rms = [&](const Eigen::MatrixXd& trained) {
+      auto runner = test::make(name, array);
+      runner->learn(scene.y, trained);
       runner->finish_learning();
       return std::sqrt((test::run(*runner, scene.y).x - scene.truth).squaredNorm() /
                        static_cast<double>(scene.y.cols()));
@@ -82,12 +82,12 @@ TEST_CASE("kalman-takens-taught: no stretch reaches over a gap of the reference"
   for (Eigen::Index k = 0; k < kInstants; ++k) truth(0, k) = static_cast<double>(k % 7);
   y << truth, truth;
   y.rightCols(100).setConstant(test::kNaN);
-  Given given = test::given(2);
-  given.noise_levels = Eigen::Vector2d(1, 1) * 1e-6;
-  given.learning_samples = kInstants;
-  const auto predicted = [&](const Eigen::MatrixXd& taught) {
-    auto runner = test::make("kalman-takens-taught", given, {{"neighbours", 5}});
-    runner->learn(y, taught);
+  Array array = test::array(2);
+  array.noise_levels = Eigen::Vector2d(1, 1) * 1e-6;
+  array.learning_samples = kInstants;
+  const auto predicted = [&](const Eigen::MatrixXd& trained) {
+    auto runner = test::make("kalman-takens-taught", array, {{"neighbours", 5}});
+    runner->learn(y, trained);
     runner->finish_learning();
     return test::run(*runner, y).x;
   };

@@ -22,9 +22,9 @@ double rms_501_2000(const std::string& name,
                     const test::Values& options,
                     const Eigen::MatrixXd& y,
                     const Eigen::VectorXd& x) {
-  Given given = test::given(y.rows());
-  given.learning_samples = 500;
-  auto fusion = test::make(name, given, options);
+  Array array = test::array(y.rows());
+  array.learning_samples = 500;
+  auto fusion = test::make(name, array, options);
   fusion->learn(y.leftCols(500), x.head(500).transpose());
   fusion->finish_learning();
   const Eigen::VectorXd error = test::run(*fusion, y.rightCols(1500)).x.transpose() - x.tail(1500);
@@ -89,21 +89,21 @@ TEST_CASE("least squares: weights survive an input 1e8 times the noise") {
 }
 
 TEST_CASE("least squares: what cannot be learnt is said") {
-  Given given = test::given(2);
-  given.learning_samples = 100;
+  Array array = test::array(2);
+  array.learning_samples = 100;
   Eigen::MatrixXd y = Eigen::MatrixXd::Random(2, 100), x = Eigen::MatrixXd::Ones(1, 100);
   {
-    auto still = test::make("least-squares", given);
+    auto still = test::make("least-squares", array);
     still->learn(y, x);
     CHECK_THROWS_AS(still->finish_learning(), libchar::Error);
   }
   {
-    auto few = test::make("least-squares", given);
+    auto few = test::make("least-squares", array);
     few->learn(y.leftCols(3), Eigen::MatrixXd::Random(1, 3));
     CHECK_THROWS_AS(few->finish_learning(), libchar::Error);
   }
   {  // a dead channel is left out
-    auto dead = test::make("least-squares", given);
+    auto dead = test::make("least-squares", array);
     x = Eigen::MatrixXd::Random(1, 100);
     y.row(0) = x + 0.01 * y.row(0);
     y.row(1).setConstant(3);
@@ -125,11 +125,11 @@ TEST_CASE("bounds: best channel, optimal weights, sections") {
     for (Eigen::Index i = 0; i < 3; ++i) y(i, k) = x(0, k) + (i == 1 ? 1 : 2) * gauss();
     if (k >= 3000) y(1, k) = 0;  // the best one dies
   }
-  Given given = test::given(3);
-  given.reference_throughout = true;
-  given.section_starts = {3000};
+  Array array = test::array(3);
+  array.reference_throughout = true;
+  array.section_starts = {3000};
   const auto rms = [&](const std::string& name, Eigen::Index from, Eigen::Index count) {
-    auto bound = test::make(name, given);
+    auto bound = test::make(name, array);
     bound->learn(y, x);
     bound->finish_learning();
     return std::sqrt((test::run(*bound, y).x - x).middleCols(from, count).squaredNorm() /

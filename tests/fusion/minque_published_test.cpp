@@ -9,7 +9,7 @@ using namespace libchar::fusion;
 TEST_CASE("minque-published: 50-digit vector about the running mean") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("minque_ewma_g0.99.csv");
   auto minque =
-      test::make("minque-published", test::given(5), {{"gamma", 0.99}, {"about_zero", 0}});
+      test::make("minque-published", test::array(5), {{"gamma", 0.99}, {"about_zero", 0}});
   const Eigen::MatrixXd y = inputs.block("c", 5), v = expected.block("var", 5),
                         w = expected.block("w", 5);
   double worst_v = 0, worst_w = 0, worst_x = 0;
@@ -36,11 +36,11 @@ TEST_CASE("minque-published: the flags of three faults") {
       nlohmann::json::parse(test::slurp(test::known("fusion/faults_expected.json")));
   const auto& pairs = answer["pairs (differences, consistent state, common threshold)"];
   const test::Vectors inputs("faults_input.csv");
-  Given given = test::given(6);
-  given.fault_free_samples = answer["fault_free_samples"];
+  Array array = test::array(6);
+  array.fault_free_samples = answer["fault_free_samples"];
   const double recovery = answer["recovery_time_samples"];
   auto minque = test::make("minque-published",
-                           given,
+                           array,
                            {{"gamma", answer["gamma"]},
                             {"about_zero", 0},
                             {"common_threshold", 1},
@@ -76,12 +76,12 @@ TEST_CASE("minque-published: about zero a lasting bias stays visible, about the 
   Eigen::MatrixXd longer(6, 9000);
   longer << y, y, y;
   longer.row(1).tail(6000).array() += 0.4;
-  Given given = test::given(6);
-  given.fault_free_samples = 2000;
+  Array array = test::array(6);
+  array.fault_free_samples = 2000;
   for (const bool mended : {true, false}) {
     INFO(mended);
     auto minque = test::make("minque-published",
-                             given,
+                             array,
                              {{"gamma", 0.99},
                               {"about_zero", mended},
                               {"common_threshold", !mended},

@@ -24,7 +24,7 @@ const test::Values kLiteral{{"gamma", 0.99},
 
 TEST_CASE("minque: 50-digit vector of the recursion") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("rminque_g0.99.csv");
-  auto minque = test::make("minque", test::given(5), kLiteral);
+  auto minque = test::make("minque", test::array(5), kLiteral);
   const Eigen::MatrixXd y = inputs.block("c", 5), v = expected.block("var", 5);
   double worst_v = 0, worst_x = 0;
   for (Eigen::Index k = 0; k < y.cols(); ++k) {
@@ -41,9 +41,9 @@ TEST_CASE("minque: 50-digit vector of the recursion") {
 
 TEST_CASE("minque: faults are found, kept out and let in again") {
   const test::Vectors inputs("faults_input.csv");
-  Given given = test::given(6);
-  given.fault_free_samples = 2000;
-  auto minque = test::make("minque", given, {{"recovery_samples", 200}});
+  Array array = test::array(6);
+  array.fault_free_samples = 2000;
+  auto minque = test::make("minque", array, {{"recovery_samples", 200}});
   const test::Run out = test::run(*minque, inputs.block("y", 6));
   // Sensor 1 dead from 3000 on (counted from zero), sensor 2 -30 % from 3800, sensor 3 +25 % from
   // 4400 to 4999.
@@ -127,7 +127,7 @@ TEST_CASE("minque: near the optimum, one input") {
         Scene{"5.1", list({.00274, .00487, .00761, .01095, .01491, .01947}), 1.003},
         Scene{"two good of five", list({1, 1, 1e4, 1e4, 1e4}), 1.1}}) {
     INFO(scene.name);
-    auto minque = test::make("minque", test::given(scene.variances.size()));
+    auto minque = test::make("minque", test::array(scene.variances.size()));
     const double regret_now = regret(
         Eigen::MatrixXd::Ones(scene.variances.size(), 1), scene.variances, *minque, 10000)[0];
     CHECK(regret_now < scene.regret);
@@ -144,9 +144,9 @@ TEST_CASE("minque: near the optimum, two inputs; faults there too") {
   const Eigen::MatrixXd h =
       (Eigen::MatrixXd(6, 2) << 1, -.02, 1, -.06, 1, -.11, 1, -.17, 1, -.24, 1, -.3).finished();
   const Eigen::VectorXd variances = (Eigen::VectorXd(6) << 1, 4, 1.5, 8, 3, 12).finished() * 1e-4;
-  Given given = test::given(6);
-  given.observation_matrix = h;
-  auto minque = test::make("minque", given);
+  Array array = test::array(6);
+  array.observation_matrix = h;
+  auto minque = test::make("minque", array);
   const Eigen::VectorXd excess = regret(h, variances, *minque, 10000);
   CHECK(excess.maxCoeff() < 1.01);
   CHECK(excess.minCoeff() > 1);
@@ -158,7 +158,7 @@ TEST_CASE("minque: near the optimum, two inputs; faults there too") {
 
   Recorded m = made(h, variances, 9000, 5);
   m.y.row(3).tail(3000).array() += 0.2;  // seven standard deviations
-  auto watching = test::make("minque", given);
+  auto watching = test::make("minque", array);
   test::run(*watching, m.y, 2);
   REQUIRE(watching->faults()->events().size() == 1);
   CHECK(watching->faults()->events()[0].channel == 3);

@@ -27,14 +27,14 @@ std::vector<Settings> variants(const Entry& entry) {
 
 /// Trips to the heap while the scene runs; -1 when the algorithm says that it cannot learn it.
 long trips_of(const Entry& entry, const Settings& settings, const test::FusionScene& scene) {
-  auto runner = entry.make(scene.given, settings);
+  auto runner = entry.make(scene.array, settings);
   try {
     runner->learn(scene.y, scene.truth);
     runner->finish_learning();
   } catch (const Error&) {
     return -1;
   }
-  Eigen::MatrixXd x(scene.given.inputs(), scene.y.cols()), variance = x;
+  Eigen::MatrixXd x(scene.array.inputs(), scene.y.cols()), variance = x;
   const std::size_t before = test::heap_trips();
   runner->run(scene.y, x, variance);
   return static_cast<long>(test::heap_trips() - before);
@@ -49,12 +49,13 @@ TEST_CASE("no heap in step: every algorithm with every switch, every scene") {
   std::size_t tried = 0;
   for (const test::FusionScene& scene : all)
     for (const Entry& entry : algorithms()) {
-      if (!why_not(*entry.card, scene.given).empty()) continue;
-      if (entry.card->name == "perceptron" && !scene.benign) continue;  // one learning is enough
+      if (!why_not(*entry.description, scene.array).empty()) continue;
+      if (entry.description->name == "perceptron" && !scene.benign)
+        continue;  // one learning is enough
       for (const Settings& settings : variants(entry)) {
         std::string values;
         for (const double value : settings.values()) values += std::to_string(value) + " ";
-        INFO(entry.card->name << " with " << values << "on " << scene.name);
+        INFO(entry.description->name << " with " << values << "on " << scene.name);
         const long made = trips_of(entry, settings, scene);
         CHECK(made <= 0);
         if (made >= 0) ++tried;

@@ -19,26 +19,26 @@ namespace {
 struct Scene {
   Eigen::MatrixXd y;
   Eigen::VectorXd x;
-  Given given;
+  Array array;
 };
 
-/// Three channels of unlike gain, bias and noise; the first `learning` instants are taught.
+/// Three channels of unlike gain, bias and noise; the first `learning` instants are learnt from.
 Scene scene(Eigen::Index instants, Eigen::Index learning) {
   test::Gaussian gauss(11);
   const Eigen::Array3d gain(1.01, 0.9, 1.1), bias(-0.1, 0.4, 0), deviation(0.5, 0.2, 1);
-  Scene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::given(3)};
+  Scene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::array(3)};
   for (Eigen::Index k = 0; k < instants; ++k) {
     made.x[k] = 2.4 * gauss();
     for (Eigen::Index i = 0; i < 3; ++i)
       made.y(i, k) = gain[i] * made.x[k] + bias[i] + deviation[i] * gauss();
   }
-  made.given.learning_samples = learning;
+  made.array.learning_samples = learning;
   return made;
 }
 
-std::unique_ptr<Runner> taught(const Scene& s, const test::Values& values = {}) {
-  auto runner = test::make("perceptron", s.given, values);
-  const Eigen::Index n = s.given.learning_samples;
+std::unique_ptr<Runner> trained(const Scene& s, const test::Values& values = {}) {
+  auto runner = test::make("perceptron", s.array, values);
+  const Eigen::Index n = s.array.learning_samples;
   runner->learn(s.y.leftCols(n), s.x.head(n).transpose());
   runner->finish_learning();
   return runner;
@@ -107,7 +107,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
   const double best =
       rms((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
   for (const double neurons : {3, 10}) {
-    auto runner = taught(s, {{"neurons", neurons}});
+    auto runner = trained(s, {{"neurons", neurons}});
     const test::Run run = test::run(*runner, rest);
     const double ours = rms(run.x.row(0).transpose() - s.x.tail(18000));
     INFO(neurons);
@@ -119,7 +119,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
 TEST_CASE("perceptron: learns a bent sensor") {
   Scene s = scene(8000, 4000);
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
-  auto runner = taught(s, {{"starts", 1}, {"neurons", 6}});
+  auto runner = trained(s, {{"starts", 1}, {"neurons", 6}});
   const double ours =
       rms(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
@@ -133,11 +133,11 @@ TEST_CASE("perceptron: learns a bent sensor") {
 TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not matter") {
   const Scene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
-  const Eigen::MatrixXd x = test::run(*taught(s), rest).x;
-  CHECK(test::run(*taught(s), rest).x == x);
-  CHECK(test::run(*taught(s, {{"seed", 2}}), rest).x != x);
-  for (const Eigen::Index block : {1, 17}) CHECK(test::run(*taught(s), rest, 1, block).x == x);
-  auto in_parts = test::make("perceptron", s.given);
+  const Eigen::MatrixXd x = test::run(*trained(s), rest).x;
+  CHECK(test::run(*trained(s), rest).x == x);
+  CHECK(test::run(*trained(s, {{"seed", 2}}), rest).x != x);
+  for (const Eigen::Index block : {1, 17}) CHECK(test::run(*trained(s), rest, 1, block).x == x);
+  auto in_parts = test::make("perceptron", s.array);
   for (Eigen::Index k = 0; k < 2000; k += 250)
     in_parts->learn(s.y.middleCols(k, 250), s.x.segment(k, 250).transpose());
   in_parts->finish_learning();
@@ -147,36 +147,36 @@ TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not
 TEST_CASE("perceptron: offset and scale cost nothing; a constant channel drops out") {
   const Scene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
-  const Eigen::MatrixXd x = test::run(*taught(s, {{"neurons", 3}}), rest).x;
+  const Eigen::MatrixXd x = test::run(*trained(s, {{"neurons", 3}}), rest).x;
   for (const double offset : {1e9, -1e6}) {
     Scene moved = s;
     moved.y.array() += offset;
     moved.x.array() += offset;
     const Eigen::MatrixXd got =
-        test::run(*taught(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
+        test::run(*trained(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
     CHECK(((got.array() - offset).matrix() - x).cwiseAbs().maxCoeff() < 1e-3);
   }
   Scene scaled = s;
   scaled.y *= 0x1p-300;
   scaled.x *= 0x1p-300;
-  CHECK((test::run(*taught(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x)
+  CHECK((test::run(*trained(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x)
             .cwiseAbs()
             .maxCoeff() < 1e-9);
   Scene dead = s;
   dead.y.row(2).setConstant(0.1);
-  auto runner = taught(dead);
+  auto runner = trained(dead);
   Eigen::MatrixXd alive = dead.y.rightCols(1000);
   const Eigen::MatrixXd before = test::run(*runner, alive).x;
   alive.row(2).setConstant(55);
   CHECK(test::run(*runner, alive).x == before);
   Scene still = s;
   still.x.setConstant(4);
-  CHECK((test::run(*taught(still), rest).x.array() - 4).abs().maxCoeff() < 1e-6);
+  CHECK((test::run(*trained(still), rest).x.array() - 4).abs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no estimate") {
   const Scene s = scene(9000, 8000);
-  auto runner = taught(s, {{"most_samples", 2000}, {"neurons", 3}});
+  auto runner = trained(s, {{"most_samples", 2000}, {"neurons", 3}});
   Eigen::MatrixXd rest = s.y.rightCols(1000);
   rest(1, 5) = std::nan("");
   const test::Run run = test::run(*runner, rest);
@@ -187,10 +187,10 @@ TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no 
 
 TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   const auto remarks = [](Eigen::Index channels) {
-    Given given = test::given(channels);
-    given.learning_samples = 1000;
+    Array array = test::array(channels);
+    array.learning_samples = 1000;
     libchar::Warnings warnings;
-    test::make("perceptron", given)->remarks(warnings);
+    test::make("perceptron", array)->remarks(warnings);
     return warnings;
   };
   CHECK(remarks(5).empty());
@@ -199,10 +199,10 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
   Scene s = scene(3000, 120);
-  CHECK(code_of([&] { taught(s); }) == "E0860");
-  CHECK(code_of([&] { taught(s, {{"neurons", 1}}); }) == "");
+  CHECK(code_of([&] { trained(s); }) == "E0860");
+  CHECK(code_of([&] { trained(s, {{"neurons", 1}}); }) == "");
   // The engine keeps such samples away; the algorithm itself does not trust it.
-  Perceptron perceptron(s.given, Settings(Perceptron::options));
+  Perceptron perceptron(s.array, Settings(Perceptron::options));
   s.y.row(0).head(10).setConstant(1e308);
   s.y.row(0).segment(10, 10).setConstant(-1e308);
   for (Eigen::Index k = 0; k < 2000; ++k)

@@ -55,8 +55,8 @@ test::FusionScene five() {
 }
 
 test::Run run(const Entry& entry, const test::FusionScene& scene) {
-  auto runner = entry.make(scene.given, Settings(entry.options));
-  if (entry.card->needs.reference || entry.card->needs.reference_throughout)
+  auto runner = entry.make(scene.array, Settings(entry.options));
+  if (entry.description->needs.reference || entry.description->needs.reference_throughout)
     runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return test::run(*runner, scene.y);
@@ -72,7 +72,7 @@ bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 test::FusionScene scaled(test::FusionScene scene, double factor) {
   scene.y *= factor;
   scene.truth *= factor;
-  scene.given.noise_levels *= factor * factor;
+  scene.array.noise_levels *= factor * factor;
   return scene;
 }
 
@@ -80,8 +80,8 @@ test::FusionScene scaled(test::FusionScene scene, double factor) {
 
 TEST_CASE("promises: every algorithm has a row, every row an algorithm") {
   for (const Entry& entry : algorithms()) {
-    INFO(entry.card->name);
-    CHECK(kPromises.contains(entry.card->name));
+    INFO(entry.description->name);
+    CHECK(kPromises.contains(entry.description->name));
   }
   for (const auto& [name, promise] : kPromises) {
     INFO(name);
@@ -93,10 +93,10 @@ TEST_CASE("promises: an estimate with weights above zero lies between the sample
   int held = 0;
   for (const test::FusionScene& scene : test::fusion_scenes())
     for (const Entry& entry : algorithms()) {
-      const auto row = kPromises.find(entry.card->name);
+      const auto row = kPromises.find(entry.description->name);
       if (row == kPromises.end() || !row->second.between) continue;
-      if (!why_not(*entry.card, scene.given).empty()) continue;
-      INFO(entry.card->name << " on " << scene.name);
+      if (!why_not(*entry.description, scene.array).empty()) continue;
+      INFO(entry.description->name << " on " << scene.name);
       const test::Run out = run(entry, scene);
       for (Eigen::Index k = 0; k < scene.y.cols(); ++k) {
         if (!std::isfinite(out.x(0, k))) continue;
@@ -120,10 +120,10 @@ TEST_CASE("promises: a power of two is a unit like any other") {
   const test::FusionScene scene = five();
   for (const double factor : {0x1p-100, 0x1p-7, 0x1p60})
     for (const Entry& entry : algorithms()) {
-      const auto row = kPromises.find(entry.card->name);
+      const auto row = kPromises.find(entry.description->name);
       if (row == kPromises.end() || std::isnan(row->second.scale)) continue;
-      if (!why_not(*entry.card, scene.given).empty()) continue;
-      INFO(entry.card->name << " times " << factor);
+      if (!why_not(*entry.description, scene.array).empty()) continue;
+      INFO(entry.description->name << " times " << factor);
       const Eigen::MatrixXd plain = run(entry, scene).x;
       const Eigen::MatrixXd moved = run(entry, scaled(scene, factor)).x / factor;
       if (row->second.scale == 0)
@@ -139,9 +139,11 @@ TEST_CASE("promises: samples beyond 1e100 are missing samples, whatever they are
   for (const double sample : {1e150, -1e300, std::numeric_limits<double>::infinity()})
     for (const Entry& entry : algorithms()) {
       // What learns needs complete instants.
-      if (!why_not(*entry.card, scene.given).empty() || entry.card->needs.reference) continue;
-      if (entry.card->needs.reference_throughout && entry.card->name != "best-sensor") continue;
-      INFO(entry.card->name << ", " << sample);
+      if (!why_not(*entry.description, scene.array).empty() || entry.description->needs.reference)
+        continue;
+      if (entry.description->needs.reference_throughout && entry.description->name != "best-sensor")
+        continue;
+      INFO(entry.description->name << ", " << sample);
       test::FusionScene wild = scene, missing = scene;
       wild.y.row(2).setConstant(sample);
       missing.y.row(2).setConstant(test::kNaN);
@@ -161,9 +163,9 @@ TEST_CASE("promises: a channel of deviation 1e150 changes nothing") {
   more.y.conservativeResize(6, Eigen::NoChange);
   test::Gaussian gauss(2);
   for (double& y : more.y.row(5)) y = 1e3 * gauss();
-  more.given.channels = 6;
-  more.given.noise_levels.conservativeResize(6);
-  more.given.noise_levels[5] = 1e300;
+  more.array.channels = 6;
+  more.array.noise_levels.conservativeResize(6);
+  more.array.noise_levels[5] = 1e300;
   const Entry& entry = algorithm("inverse-variance");
   CHECK((run(entry, more).x - run(entry, scene).x).cwiseAbs().maxCoeff() < 1e-14);
 }
@@ -173,10 +175,10 @@ TEST_CASE("promises: a channel twice is that channel once with half the variance
   test::FusionScene twice = scene, half = scene;
   twice.y.conservativeResize(6, Eigen::NoChange);
   twice.y.row(5) = scene.y.row(1);
-  twice.given.channels = 6;
-  twice.given.noise_levels.conservativeResize(6);
-  twice.given.noise_levels[5] = scene.given.noise_levels[1];
-  half.given.noise_levels[1] /= 2;
+  twice.array.channels = 6;
+  twice.array.noise_levels.conservativeResize(6);
+  twice.array.noise_levels[5] = scene.array.noise_levels[1];
+  half.array.noise_levels[1] /= 2;
   const Entry& entry = algorithm("inverse-variance");
   const test::Run a = run(entry, twice), b = run(entry, half);
   CHECK((a.x - b.x).cwiseAbs().maxCoeff() < 1e-14);
@@ -190,7 +192,7 @@ TEST_CASE("promises: minque gathers, but what it gathers belongs to the channels
   const auto variances = [&](bool holes) {
     Eigen::MatrixXd y = scene.y;
     for (Eigen::Index k = 0; holes && k < y.cols(); k += 2) y(k / 2 % 6, k) = test::kNaN;
-    auto minque = test::make("minque", test::given(6));
+    auto minque = test::make("minque", test::array(6));
     test::run(*minque, y);
     return *minque->variances();
   };

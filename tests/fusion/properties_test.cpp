@@ -12,7 +12,7 @@ using namespace libchar::fusion;
 namespace {
 
 struct Scene {
-  Given given;
+  Array array;
   Eigen::MatrixXd lesson, lesson_truth;  // learning window
   Eigen::MatrixXd y, truth;              // run
 };
@@ -34,13 +34,13 @@ Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64
   Scene scene;
   record(scene.lesson, scene.lesson_truth, 600);
   record(scene.y, scene.truth, kInstants);
-  scene.given.channels = n;
-  scene.given.noise_levels = deviations.cwiseAbs2();
-  scene.given.rate_hz = 100;
-  scene.given.learning_samples = 600;
-  scene.given.fault_free_samples = 500;
-  scene.given.reference_throughout = true;
-  scene.given.section_starts = {700};
+  scene.array.channels = n;
+  scene.array.noise_levels = deviations.cwiseAbs2();
+  scene.array.rate_hz = 100;
+  scene.array.learning_samples = 600;
+  scene.array.fault_free_samples = 500;
+  scene.array.reference_throughout = true;
+  scene.array.section_starts = {700};
   return scene;
 }
 
@@ -48,25 +48,25 @@ Scene scene_of(Eigen::Index n) {
   return scene_of(Eigen::VectorXd::LinSpaced(n, 0.1, 0.3));
 }
 
-std::unique_ptr<Runner> taught(const Entry& entry, const Scene& scene) {
-  auto runner = entry.make(scene.given, Settings(entry.options));
-  if (entry.card->needs.reference) runner->learn(scene.lesson, scene.lesson_truth);
-  if (entry.card->needs.reference_throughout) runner->learn(scene.y, scene.truth);
+std::unique_ptr<Runner> trained(const Entry& entry, const Scene& scene) {
+  auto runner = entry.make(scene.array, Settings(entry.options));
+  if (entry.description->needs.reference) runner->learn(scene.lesson, scene.lesson_truth);
+  if (entry.description->needs.reference_throughout) runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return runner;
 }
 
 test::Run run_of(const Entry& entry, const Scene& scene, Eigen::Index block = kInstants) {
-  return test::run(*taught(entry, scene), scene.y, scene.given.inputs(), block);
+  return test::run(*trained(entry, scene), scene.y, scene.array.inputs(), block);
 }
 
-/// Every algorithm that these scenes can feed.
+/// Every algorithm that these scenes have the data for.
 template <class Check>
 void for_each(const Scene& scene, Check check) {
   int ran = 0;
   for (const Entry& entry : algorithms()) {
-    if (!why_not(*entry.card, scene.given).empty()) continue;
-    INFO(entry.card->name);
+    if (!why_not(*entry.description, scene.array).empty()) continue;
+    INFO(entry.description->name);
     check(entry);
     ++ran;
   }
@@ -74,7 +74,7 @@ void for_each(const Scene& scene, Check check) {
 }
 
 bool named(const Entry& entry, const std::set<std::string_view>& names) {
-  return names.contains(entry.card->name);
+  return names.contains(entry.description->name);
 }
 
 /// Their equations are not those of a mean: free or calibrated weights do not sum to one. Reasons:
@@ -141,7 +141,7 @@ TEST_CASE("units: everything scaled, the estimate scales") {
     scaled.truth *= factor;
     scaled.lesson *= factor;
     scaled.lesson_truth *= factor;
-    scaled.given.noise_levels *= factor * factor;
+    scaled.array.noise_levels *= factor * factor;
     for_each(plain, [&](const Entry& entry) {
       // Its Q is a number in the units of the input, not an estimate.
       if (named(entry, {"kalman-takens-published"})) return;
@@ -158,7 +158,7 @@ TEST_CASE("the order of the channels does not matter") {
   Scene mixed = plain;
   mixed.y = order * plain.y;
   mixed.lesson = order * plain.lesson;
-  mixed.given.noise_levels = order * plain.given.noise_levels;
+  mixed.array.noise_levels = order * plain.array.noise_levels;
   for_each(plain, [&](const Entry& entry) {
     // Its training starts from random weights, drawn channel by channel.
     if (named(entry, {"perceptron"})) return;
@@ -173,13 +173,13 @@ TEST_CASE("weights sum to one; variances are never negative") {
     const Scene scene = scene_of(n);
     for_each(scene, [&](const Entry& entry) {
       INFO(n);
-      auto runner = taught(entry, scene);
+      auto runner = trained(entry, scene);
       const test::Run out = test::run(*runner, scene.y);
       CHECK(out.x.allFinite());
       CHECK(sane_variance(out.variance));
       if (const auto weights = runner->weights(); weights && !named(entry, kFreeWeights))
         CHECK(weights->sum() == Approx(1).margin(1e-12));
-      if (entry.card->name.find("published") == std::string_view::npos) {
+      if (entry.description->name.find("published") == std::string_view::npos) {
         if (const auto variances = runner->variances()) CHECK(variances->minCoeff() > 0);
         // No worse than the worst channel by far: nothing is amplified.
         CHECK(apart(out.x, scene.truth) < 1.5);
@@ -204,14 +204,14 @@ TEST_CASE("identical, constant and dead channels") {
     };
     spoil(scene.y);
     for_each(scene, [&](const Entry& entry) {
-      auto runner = taught(entry, scene);
+      auto runner = trained(entry, scene);
       const test::Run out = test::run(*runner, scene.y);
       CHECK(out.x.allFinite());
       CHECK(sane_variance(out.variance));
       if (!named(entry, kFreeWeights) && !named(entry, kNotShifted)) {
         // Channels that agree are believed, unless what was learnt says otherwise.
         if ((what == "identical" || what == "constant" || what == "all zero") &&
-            !entry.card->needs.reference && !named(entry, {"kalman-takens"}))
+            !entry.description->needs.reference && !named(entry, {"kalman-takens"}))
           CHECK(apart(out.x, scene.y.row(0)) < 1e-12);
       }
     });
@@ -221,7 +221,7 @@ TEST_CASE("identical, constant and dead channels") {
 TEST_CASE("minque finds three dead channels of six only as far as the others can say so") {
   Scene scene = scene_of(6);
   scene.y.row(4).tail(700).setZero();
-  auto minque = test::make("minque", scene.given);
+  auto minque = test::make("minque", scene.array);
   test::run(*minque, scene.y);
   REQUIRE(minque->faults()->events().size() >= 1);
   CHECK(minque->faults()->events()[0].channel == 4);
@@ -234,7 +234,7 @@ TEST_CASE("noise of very different size") {
     const Scene scene = scene_of(deviations);
     for_each(scene, [&](const Entry& entry) {
       INFO(ratio);
-      auto runner = taught(entry, scene);
+      auto runner = trained(entry, scene);
       const test::Run out = test::run(*runner, scene.y);
       CHECK(out.x.allFinite());
       CHECK(sane_variance(out.variance));
@@ -268,12 +268,12 @@ TEST_CASE("missing samples") {
     for (Eigen::Index k = 0; k < kInstants; ++k) {
       const bool all = scene.y.col(k).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < 1e100;
       if (all && !has(k) && ++lost == 1) FAIL_CHECK("no estimate at " << k);
-      if (!all && k != 500 && entry.card->needs.accepts_missing && !has(k))
+      if (!all && k != 500 && entry.description->needs.accepts_missing && !has(k))
         FAIL_CHECK("no estimate at gap " << k);
-      if (!all && !entry.card->needs.accepts_missing && has(k))
+      if (!all && !entry.description->needs.accepts_missing && has(k))
         FAIL_CHECK("an estimate without samples at " << k);
     }
-    if (entry.card->name.find("published") == std::string_view::npos)
+    if (entry.description->name.find("published") == std::string_view::npos)
       for (const Eigen::Index k : {310, 900, 1499})
         if (has(k)) CHECK(std::abs(out.x(0, k) - whole.truth(0, k)) < 1.5);
   });
@@ -291,7 +291,7 @@ TEST_CASE("minque: no negative variance and no NaN for any memory") {
           INFO(gamma << " " << damping << " " << offset << " " << deviations.transpose());
           const Scene scene = scene_of(deviations, offset);
           auto minque = test::make(
-              "minque", test::given(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
+              "minque", test::array(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
           bool good = true;
           for (Eigen::Index k = 0; k < kInstants; ++k) {
             const test::Run out = test::run(*minque, scene.y.col(k));
@@ -309,13 +309,13 @@ TEST_CASE("step makes no trip to the heap") {
   scene.y.row(2).segment(900, 200).array() += 3;
   scene.y(3, 1000) = std::nan("");
   Scene two = scene;
-  two.given.observation_matrix =
+  two.array.observation_matrix =
       (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
   for (const Scene* fed : {&scene, &two})
     for_each(*fed, [&](const Entry& entry) {
-      if (entry.card->needs.reference_throughout && fed == &two) return;
-      auto runner = taught(entry, *fed);
-      Eigen::MatrixXd x(fed->given.inputs(), kInstants), variance(fed->given.inputs(), kInstants);
+      if (entry.description->needs.reference_throughout && fed == &two) return;
+      auto runner = trained(entry, *fed);
+      Eigen::MatrixXd x(fed->array.inputs(), kInstants), variance(fed->array.inputs(), kInstants);
       const std::size_t before = test::heap_trips();
       runner->run(fed->y, x, variance);
       const std::size_t trips = test::heap_trips() - before;

@@ -10,7 +10,7 @@ using namespace libchar::fusion;
 
 TEST_CASE("random-weighting-published: 50-digit vectors") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("random_weighting.csv");
-  auto fusion = test::make("random-weighting-published", test::given(5));
+  auto fusion = test::make("random-weighting-published", test::array(5));
   const Eigen::MatrixXd y = inputs.block("c", 5), v = expected.block("var", 5);
   double worst_v = 0, worst_x = 0;
   for (Eigen::Index k = 0; k < y.cols(); ++k) {
@@ -23,9 +23,9 @@ TEST_CASE("random-weighting-published: 50-digit vectors") {
   }
   CHECK(worst_v <= 1);
   CHECK(worst_x <= 1);
-  CHECK_THROWS_AS(test::make("random-weighting-published", test::given(5), {{"second_channel", 1}}),
+  CHECK_THROWS_AS(test::make("random-weighting-published", test::array(5), {{"second_channel", 1}}),
                   libchar::Error);
-  CHECK_THROWS_AS(test::make("random-weighting-published", test::given(5), {{"second_channel", 6}}),
+  CHECK_THROWS_AS(test::make("random-weighting-published", test::array(5), {{"second_channel", 6}}),
                   libchar::Error);
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("random-weighting: the variances of the whole record, whatever the off
       minque(Eigen::MatrixXd(r * r.transpose() / static_cast<double>(y.cols())), one);
   for (const double offset : {0.0, 10.0, 1e3}) {
     INFO(offset);
-    auto fusion = test::make("random-weighting", test::given(5));
+    auto fusion = test::make("random-weighting", test::array(5));
     const test::Run out = test::run(*fusion, (y.array() + offset).matrix());
     CHECK(test::worst(*fusion->variances(), expected, 1e-13, 1e-11 * (1 + offset)) <= 1);
     const double rms = std::sqrt(

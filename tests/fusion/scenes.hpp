@@ -1,5 +1,5 @@
 #pragma once
-// Scenes that every fusion algorithm has to survive, and what each feeds.
+// Scenes that every fusion algorithm has to survive, and what each holds.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/fusion/given.hpp"
+#include "libchar/fusion/array.hpp"
 #include "tests/support/noise.hpp"
 
 namespace test {
@@ -20,7 +20,7 @@ struct FusionScene {
   std::string name;
   Eigen::MatrixXd y;      ///< n x N
   Eigen::MatrixXd truth;  ///< 1 x N
-  libchar::fusion::Given given;
+  libchar::fusion::Array array;
   bool benign = true;  ///< noise of sound sensors, nothing missing: equivariance is exact up to
                        ///< rounding
 };
@@ -43,13 +43,13 @@ inline FusionScene noisy_scene(const std::string& name,
     for (Eigen::Index i = 0; i < n; ++i)
       scene.y(i, k) = offset + x + std::sqrt(variances[i]) * gauss();
   }
-  scene.given.channels = n;
-  scene.given.noise_levels = variances;
-  scene.given.rate_hz = 200;
-  scene.given.learning_samples = instants;
-  scene.given.fault_free_samples = instants / 3;
-  scene.given.reference_throughout = true;
-  scene.given.section_starts = {0, instants / 2};
+  scene.array.channels = n;
+  scene.array.noise_levels = variances;
+  scene.array.rate_hz = 200;
+  scene.array.learning_samples = instants;
+  scene.array.fault_free_samples = instants / 3;
+  scene.array.reference_throughout = true;
+  scene.array.section_starts = {0, instants / 2};
   return scene;
 }
 
@@ -127,25 +127,25 @@ inline FusionScene tilt_scene() {
     scene.y(1, k) = 9.81 * std::sin(angle) + 0.2 * gauss();
     scene.y(2, k) = 9.81 * std::cos(angle) + 0.2 * gauss();
   }
-  scene.given.channels = 3;
-  scene.given.rate_hz = 100;
-  scene.given.tilt = libchar::fusion::TiltChannels{};
+  scene.array.channels = 3;
+  scene.array.rate_hz = 100;
+  scene.array.tilt = libchar::fusion::TiltChannels{};
   return scene;
 }
 
 /// Three channels of two inputs each way: any H.
 inline FusionScene lever_scene(Eigen::Index n = 8) {
   FusionScene scene = noisy_scene("two inputs", Eigen::VectorXd::LinSpaced(n, 0.1, 0.5));
-  scene.given.observation_matrix.resize(n, 2);
+  scene.array.observation_matrix.resize(n, 2);
   Gaussian gauss(9);
   Eigen::MatrixXd x(2, scene.y.cols());
   for (Eigen::Index k = 0; k < x.size(); ++k) x.data()[k] = gauss();
   for (Eigen::Index i = 0; i < n; ++i) {
-    scene.given.observation_matrix(i, 0) = 1;
-    scene.given.observation_matrix(i, 1) = -0.1 * static_cast<double>(i * i);
+    scene.array.observation_matrix(i, 0) = 1;
+    scene.array.observation_matrix(i, 1) = -0.1 * static_cast<double>(i * i);
     for (Eigen::Index k = 0; k < x.cols(); ++k)
-      scene.y(i, k) = scene.given.observation_matrix.row(i).dot(x.col(k)) +
-                      std::sqrt(scene.given.noise_levels[i]) * gauss();
+      scene.y(i, k) = scene.array.observation_matrix.row(i).dot(x.col(k)) +
+                      std::sqrt(scene.array.noise_levels[i]) * gauss();
   }
   scene.truth = x;
   return scene;

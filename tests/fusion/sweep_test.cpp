@@ -31,10 +31,10 @@ std::vector<test::FusionScene> scenes() {
 
 /// Ready to run; nothing when the algorithm says in a sentence that it cannot.
 std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene) {
-  if (!why_not(*entry.card, scene.given).empty()) return nullptr;
+  if (!why_not(*entry.description, scene.array).empty()) return nullptr;
   try {
-    auto runner = entry.make(scene.given, Settings(entry.options));
-    if (entry.card->needs.reference || entry.card->needs.reference_throughout) {
+    auto runner = entry.make(scene.array, Settings(entry.options));
+    if (entry.description->needs.reference || entry.description->needs.reference_throughout) {
       runner->learn(scene.y, scene.truth);
       runner->finish_learning();
     }
@@ -50,7 +50,7 @@ std::optional<test::Run> run(const Entry& entry,
                              Eigen::Index block = 1 << 30) {
   const auto runner = ready(entry, scene);
   if (!runner) return std::nullopt;
-  return test::run(*runner, scene.y, scene.given.inputs(), block);
+  return test::run(*runner, scene.y, scene.array.inputs(), block);
 }
 
 bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -70,8 +70,8 @@ TEST_CASE("every algorithm x every scene: estimates are finite where samples are
     for (const Entry& entry : algorithms()) {
       const auto runner = ready(entry, scene);
       if (!runner) continue;
-      INFO(entry.card->name << " on " << scene.name);
-      const test::Run out = test::run(*runner, scene.y, scene.given.inputs());
+      INFO(entry.description->name << " on " << scene.name);
+      const test::Run out = test::run(*runner, scene.y, scene.array.inputs());
       Eigen::Index missing = 0, infinite = 0, negative = 0;
       for (Eigen::Index k = 0; k < out.x.cols(); ++k) {
         const bool complete = (scene.y.col(k).array().abs() < 1e99).all();
@@ -83,7 +83,7 @@ TEST_CASE("every algorithm x every scene: estimates are finite where samples are
       CHECK(missing == 0);
       CHECK(infinite == 0);
       // The published Kalman-Takens and random weighting may believe anything.
-      if (entry.card->name.find("published") == std::string_view::npos) {
+      if (entry.description->name.find("published") == std::string_view::npos) {
         CHECK(negative == 0);
         if (const auto v = runner->variances()) CHECK((v->array() >= 0).all());
       }
@@ -96,19 +96,19 @@ TEST_CASE("every set of weights sums to one where the method promises it") {
   for (const test::FusionScene& scene : scenes())
     for (const Entry& entry : algorithms()) {
       const auto runner = ready(entry, scene);
-      if (!runner || free.contains(entry.card->name)) continue;
-      test::run(*runner, scene.y, scene.given.inputs());
+      if (!runner || free.contains(entry.description->name)) continue;
+      test::run(*runner, scene.y, scene.array.inputs());
       const auto weights = runner->weights();
       if (!weights) continue;
       // No sample ever came: nobody has earned a weight (minque-published says zero).
       if (!scene.y.array().isFinite().any()) continue;
-      INFO(entry.card->name << " on " << scene.name);
+      INFO(entry.description->name << " on " << scene.name);
       REQUIRE(weights->rows() == scene.y.rows());
       REQUIRE(weights->allFinite());
       // sum w h = identity: unbiased. For one input that is sum w = 1.
-      const Eigen::MatrixXd unity = weights->transpose() * scene.given.h();
+      const Eigen::MatrixXd unity = weights->transpose() * scene.array.h();
       const double size = weights->cwiseAbs().colwise().sum().maxCoeff() *
-                          scene.given.h().cwiseAbs().maxCoeff() *
+                          scene.array.h().cwiseAbs().maxCoeff() *
                           static_cast<double>(scene.y.rows());
       CHECK((unity - Eigen::MatrixXd::Identity(unity.rows(), unity.cols())).cwiseAbs().maxCoeff() <=
             8 * std::numeric_limits<double>::epsilon() * std::max(1.0, size));
@@ -118,11 +118,12 @@ TEST_CASE("every set of weights sums to one where the method promises it") {
 TEST_CASE("every algorithm x every scene: blocks of any size give the same bits") {
   for (const test::FusionScene& scene : scenes())
     for (const Entry& entry : algorithms()) {
-      if (entry.card->name == "perceptron" && !scene.benign) continue;  // learns long, see below
+      if (entry.description->name == "perceptron" && !scene.benign)
+        continue;  // learns long, see below
       const auto whole = run(entry, scene);
       if (!whole) continue;
       for (const Eigen::Index block : {1, 7, 64}) {
-        INFO(entry.card->name << " on " << scene.name << ", blocks of " << block);
+        INFO(entry.description->name << " on " << scene.name << ", blocks of " << block);
         const auto parts = run(entry, scene, block);
         REQUIRE(parts);
         CHECK(same_bits(whole->x, parts->x));
@@ -147,14 +148,14 @@ TEST_CASE("benign scenes: a shift of the input shifts the estimates") {
       moved.y.array() += shift;
       moved.truth.array() += shift;
       for (const Entry& entry : algorithms()) {
-        if (unlike.contains(entry.card->name)) continue;
+        if (unlike.contains(entry.description->name)) continue;
         const auto a = run(entry, scene), b = run(entry, moved);
         REQUIRE(a.has_value() == b.has_value());
         if (!a) continue;
-        INFO(entry.card->name << " on " << scene.name << ", shift " << shift);
+        INFO(entry.description->name << " on " << scene.name << ", shift " << shift);
         // The shifted samples themselves are rounded to 2^-33; a network's training turns that
         // into a little more.
-        const double tolerance = entry.card->name == "perceptron" ? 1e-4 : 1e-7;
+        const double tolerance = entry.description->name == "perceptron" ? 1e-4 : 1e-7;
         CHECK(apart(b->x.array() - shift, a->x, 1) < tolerance);
       }
     }
@@ -170,13 +171,13 @@ TEST_CASE("benign scenes: a change of unit changes the estimates alike") {
       test::FusionScene scaled = scene;
       scaled.y *= factor;
       scaled.truth *= factor;
-      scaled.given.noise_levels *= factor * factor;
+      scaled.array.noise_levels *= factor * factor;
       for (const Entry& entry : algorithms()) {
-        if (unlike.contains(entry.card->name)) continue;
+        if (unlike.contains(entry.description->name)) continue;
         const auto a = run(entry, scene), b = run(entry, scaled);
         REQUIRE(a.has_value() == b.has_value());
         if (!a) continue;
-        INFO(entry.card->name << " on " << scene.name << ", times 2^" << power);
+        INFO(entry.description->name << " on " << scene.name << ", times 2^" << power);
         CHECK(apart(b->x / factor, a->x, 1) < 1e-10);
       }
     }
@@ -190,13 +191,13 @@ TEST_CASE("benign scenes: the order of the channels does not matter") {
     if (!scene.benign) continue;
     test::FusionScene turned = scene;
     turned.y = scene.y.colwise().reverse();
-    turned.given.noise_levels = scene.given.noise_levels.reverse();
+    turned.array.noise_levels = scene.array.noise_levels.reverse();
     for (const Entry& entry : algorithms()) {
-      if (unlike.contains(entry.card->name)) continue;
+      if (unlike.contains(entry.description->name)) continue;
       const auto a = run(entry, scene), b = run(entry, turned);
       REQUIRE(a.has_value() == b.has_value());
       if (!a) continue;
-      INFO(entry.card->name << " on " << scene.name);
+      INFO(entry.description->name << " on " << scene.name);
       CHECK(apart(b->x, a->x, 1) < 1e-9);
     }
   }
@@ -213,7 +214,7 @@ TEST_CASE("a missing sample is not a value: what stands in its place does not ma
       const auto a = run(entry, scene), b = run(entry, other);
       REQUIRE(a.has_value() == b.has_value());
       if (!a) continue;
-      INFO(entry.card->name);
+      INFO(entry.description->name);
       for (Eigen::Index k = 0; k < a->x.cols(); ++k)
         if (!std::isnan(a->x(0, k))) REQUIRE(a->x(0, k) == b->x(0, k));
     }
@@ -226,7 +227,7 @@ TEST_CASE("minque: no variance is negative or lost, any memory, n >= 3, offsets 
       for (const double offset : {0.0, 1e4, 1e8}) {
         const auto scene =
             test::noisy_scene("", Eigen::VectorXd::LinSpaced(n, 0.01, 3), 2000, offset);
-        auto runner = test::make("minque", scene.given, {{"gamma", gamma}});
+        auto runner = test::make("minque", scene.array, {{"gamma", gamma}});
         INFO("n = " << n << ", gamma = " << gamma << ", offset " << offset);
         for (Eigen::Index k = 0; k < scene.y.cols(); k += 50) {
           Eigen::MatrixXd x(1, 50), v(1, 50);
@@ -241,12 +242,13 @@ TEST_CASE("minque: no variance is negative or lost, any memory, n >= 3, offsets 
 
 TEST_CASE("minque: variances that the data cannot tell apart are named") {
   const Entry& entry = algorithm("minque");
-  CHECK_FALSE(why_not(*entry.card, test::noisy_scene("", Eigen::VectorXd::Ones(2)).given).empty());
+  CHECK_FALSE(
+      why_not(*entry.description, test::noisy_scene("", Eigen::VectorXd::Ones(2)).array).empty());
   Eigen::VectorXd two_good = Eigen::VectorXd::Constant(8, 1e6);
   two_good.head(2).setOnes();
   const auto remarked = [](const Eigen::VectorXd& variances) {
     const auto scene = test::noisy_scene("", variances, 5000);
-    auto runner = test::make("minque", scene.given);
+    auto runner = test::make("minque", scene.array);
     test::run(*runner, scene.y);
     Warnings warnings;
     runner->remarks(warnings);

@@ -14,13 +14,13 @@ constexpr Eigen::Index kInstants = 4000;
 
 struct Swing {
   Eigen::MatrixXd y, truth;
-  Given given;
+  Array array;
 };
 
 /// A tilt of 0.7 sin 2t, sampled at 100 Hz; instants off by `jitter` of an interval.
 Swing swing(double jitter = 0, double gyroscope_noise = 0.01, double gravity_noise = 0.02) {
   Swing made;
-  made.given = test::tilt_scene().given;
+  made.array = test::tilt_scene().array;
   made.y.resize(3, kInstants);
   made.truth.resize(1, kInstants);
   test::Gaussian gauss(8);
@@ -38,7 +38,7 @@ Swing swing(double jitter = 0, double gyroscope_noise = 0.01, double gravity_noi
 const test::Values kTuned{{"angle_noise", 1e-6}, {"bias_noise", 1e-9}, {"gravity_variance", 4e-4}};
 
 test::Run kalman(const Swing& swing) {
-  return test::run(*test::make("tilt-kalman", swing.given, kTuned), swing.y);
+  return test::run(*test::make("tilt-kalman", swing.array, kTuned), swing.y);
 }
 
 double rms(const Eigen::MatrixXd& x, const Swing& swing) {
@@ -55,10 +55,10 @@ TEST_CASE("tilt: an instant without samples takes its time") {
     y.col(k) << 0.3, std::sin(angle), std::cos(angle);
   }
   y.middleCols(150, 100).setConstant(test::kNaN);
-  Given given = test::tilt_scene().given;
+  Array array = test::tilt_scene().array;
   for (const char* name : {"tilt-gyroscope", "tilt-complementary", "tilt-kalman"}) {
     INFO(name);
-    const Eigen::MatrixXd x = test::run(*test::make(name, given), y).x;
+    const Eigen::MatrixXd x = test::run(*test::make(name, array), y).x;
     for (Eigen::Index k = 0; k < 400; ++k)
       REQUIRE(x(0, k) == Approx(0.3 * static_cast<double>(k + 1) / 100).margin(1e-12));
   }
@@ -118,7 +118,7 @@ TEST_CASE("tilt: jitter of a tenth of an interval is lost in the noise") {
   for (const char* name : {"tilt-complementary", "tilt-kalman"}) {
     INFO(name);
     const auto error = [&](const Swing& swing) {
-      return rms(test::run(*test::make(name, swing.given), swing.y).x, swing);
+      return rms(test::run(*test::make(name, swing.array), swing.y).x, swing);
     };
     CHECK(error(uneven) < 1.2 * error(even));
   }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Given tilt_given(double rate_hz = 100) {
-  Given made = test::given(3);
+Array tilt_array(double rate_hz = 100) {
+  Array made = test::array(3);
   made.rate_hz = rate_hz;
   made.tilt = TiltChannels{};
   return made;
@@ -47,10 +47,10 @@ Eigen::MatrixXd turning(Eigen::Index instants, double noise = 0.05, double bias 
 TEST_CASE("tilt: 50-digit vectors") {
   const test::Vectors file("tilt.csv");
   const auto answer = test::answers()["tilt"];
-  const Given given = tilt_given(1 / answer["dt"].get<double>());
+  const Array array = tilt_array(1 / answer["dt"].get<double>());
   const Eigen::MatrixXd y = samples_of(file);
   const auto run = [&](const char* name, const test::Values& values = {}) {
-    return test::run(*test::make(name, given, values), y);
+    return test::run(*test::make(name, array, values), y);
   };
   CHECK(test::worst(run("tilt-accelerometer").x, file["acc_angle_atan2"].transpose(), 4.5e-16) <=
         1);
@@ -88,9 +88,9 @@ TEST_CASE("tilt-kalman: bias and covariance of the 50-digit vectors") {
 
 TEST_CASE("tilt: gain one and gain zero are the single sensors, bit for bit") {
   const Eigen::MatrixXd y = turning(3000).topRows(3);
-  const Given given = tilt_given();
+  const Array array = tilt_array();
   const auto run = [&](const char* name, const test::Values& values = {}) {
-    return test::run(*test::make(name, given, values), y).x;
+    return test::run(*test::make(name, array, values), y).x;
   };
   CHECK(run("tilt-complementary", {{"lambda", 1}}) == run("tilt-gyroscope"));
   CHECK((run("tilt-complementary", {{"lambda", 0}}) - run("tilt-accelerometer"))
@@ -119,7 +119,7 @@ TEST_CASE("tilt: filters follow a turn through +-pi and learn the bias") {
   const Eigen::MatrixXd y = turning(20000);
   for (const char* name : {"tilt-complementary", "tilt-kalman"}) {
     INFO(name);
-    const Eigen::MatrixXd x = test::run(*test::make(name, tilt_given()), y.topRows(3)).x;
+    const Eigen::MatrixXd x = test::run(*test::make(name, tilt_array()), y.topRows(3)).x;
     CHECK(x.cwiseAbs().maxCoeff() <= kPi);
     const Eigen::ArrayXd off =
         (x.row(0) - y.row(3)).array().unaryExpr([](double a) { return wrapped(a); });
@@ -151,7 +151,7 @@ TEST_CASE("tilt: a missing angle is prediction only, a missing rate holds the la
   CHECK(blend.step({3, gap}) == blended + 3 * 0.01);
 
   // No angle of gravity: from a missing axis, or from two zeros.
-  auto accelerometer = test::make("tilt-accelerometer", tilt_given());
+  auto accelerometer = test::make("tilt-accelerometer", tilt_array());
   Eigen::MatrixXd y(3, 4);
   y << 0, 0, gap, 0,  //
       gap, 0, 1, 1,   //
@@ -163,7 +163,7 @@ TEST_CASE("tilt: a missing angle is prediction only, a missing rate holds the la
   CHECK(std::isnan(x(0, 3)));
   // Nothing is known before the first angle of gravity.
   for (const char* name : {"tilt-complementary", "tilt-kalman", "tilt-gyroscope"}) {
-    const Eigen::MatrixXd started = test::run(*test::make(name, tilt_given()), y).x;
+    const Eigen::MatrixXd started = test::run(*test::make(name, tilt_array()), y).x;
     CHECK(std::isnan(started(0, 1)));
     CHECK(started(0, 2) == Approx(kPi / 4));
     CHECK(started(0, 3) == Approx(kPi / 4));
@@ -205,9 +205,9 @@ TEST_CASE("tilt: blocks of any size give the same bits") {
   for (const char* name :
        {"tilt-gyroscope", "tilt-accelerometer", "tilt-complementary", "tilt-kalman"}) {
     INFO(name);
-    const Eigen::MatrixXd whole = test::run(*test::make(name, tilt_given()), y).x;
+    const Eigen::MatrixXd whole = test::run(*test::make(name, tilt_array()), y).x;
     for (const Eigen::Index block : {1, 7, 64}) {
-      const Eigen::MatrixXd parts = test::run(*test::make(name, tilt_given()), y, 1, block).x;
+      const Eigen::MatrixXd parts = test::run(*test::make(name, tilt_array()), y, 1, block).x;
       CHECK(((parts.array() == whole.array()) || (parts.array().isNaN() && whole.array().isNaN()))
                 .all());
     }
@@ -216,10 +216,10 @@ TEST_CASE("tilt: blocks of any size give the same bits") {
 
 TEST_CASE("tilt tuned: near the best constants there are; unlike noise, unlike constants") {
   const Eigen::MatrixXd y = turning(20000);
-  Given given = tilt_given();
-  given.learning_samples = 10000;
+  Array array = tilt_array();
+  array.learning_samples = 10000;
   const auto rms = [&](const std::string& name, const test::Values& values = {}) {
-    auto runner = test::make(name, given, values);
+    auto runner = test::make(name, array, values);
     runner->learn(y.topLeftCorner(3, 10000), y.block(3, 0, 1, 10000));
     runner->finish_learning();
     const Eigen::MatrixXd x = test::run(*runner, y.topRightCorner(3, 10000)).x;
@@ -245,7 +245,7 @@ TEST_CASE("tilt tuned: near the best constants there are; unlike noise, unlike c
   CHECK(kalman < 1.25 * best_kalman);
   CHECK(kalman < blend);
 
-  auto deaf = test::make("tilt-kalman-tuned", given);
+  auto deaf = test::make("tilt-kalman-tuned", array);
   Eigen::MatrixXd silent = y.topLeftCorner(3, 1000);
   silent.row(1).setConstant(std::nan(""));
   deaf->learn(silent, y.block(3, 0, 1, 1000));

@@ -73,13 +73,13 @@ inline libchar::fusion::Settings settings(const std::string& name, const Values&
 }
 
 inline std::unique_ptr<libchar::fusion::Runner> make(const std::string& name,
-                                                     const libchar::fusion::Given& given,
+                                                     const libchar::fusion::Array& array,
                                                      const Values& values = {}) {
-  return libchar::fusion::algorithm(name).make(given, settings(name, values));
+  return libchar::fusion::algorithm(name).make(array, settings(name, values));
 }
 
-inline libchar::fusion::Given given(Eigen::Index channels) {
-  libchar::fusion::Given made;
+inline libchar::fusion::Array array(Eigen::Index channels) {
+  libchar::fusion::Array made;
   made.channels = channels;
   return made;
 }

@@ -60,21 +60,21 @@ TEST_CASE("replay: the RMSE of the mean is that of a loop over the samples") {
   CHECK(result.sensors[2].error.rmse == Approx(5e-2).epsilon(0.05));
 }
 
-TEST_CASE("replay: what needs a reference is taught in its window and scored behind it") {
+TEST_CASE("replay: what needs a reference is trained in its window and scored behind it") {
   const test::SceneBench bench;
   const Scene scene =
       bench.read(array_scene(6000, "learning: [0, 20]\nalgorithms: [least-squares, mean]\n"));
   const ReplayResult result = replay(scene);
   CHECK(result.instants == 4000);
   CHECK(result.start_s == 20);
-  const AlgorithmResult& taught = named(result, "least-squares");
-  REQUIRE(taught.ran);
-  CHECK(taught.regret < 0.02);
-  REQUIRE(taught.weights);
-  CHECK(taught.weights->sum() == Approx(1).epsilon(1e-12));
-  CHECK(taught.weight_distance < 0.1);
+  const AlgorithmResult& trained = named(result, "least-squares");
+  REQUIRE(trained.ran);
+  CHECK(trained.regret < 0.02);
+  REQUIRE(trained.weights);
+  CHECK(trained.weights->sum() == Approx(1).epsilon(1e-12));
+  CHECK(trained.weight_distance < 0.1);
   CHECK(result.work.learnt == 2000 + 2 * 4000);  // it, and the two bounds that tell the optimum
-  CHECK(taught.learning_s > 0);
+  CHECK(trained.learning_s > 0);
 }
 
 TEST_CASE("replay: nothing is learnt that nobody needs") {

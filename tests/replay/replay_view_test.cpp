@@ -91,7 +91,7 @@ TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not t
   CHECK_THAT(replay_verdict(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
   CHECK_THAT(replay_verdict(r, true), Contains("3 ns a sample"));
   CHECK_THAT(replay_verdict(r, false), !Contains("ns a sample"));
-  // A taught method wins: the best untaught one is named as well.
+  // A trained method wins: the best that needs no reference is named as well.
   for (AlgorithmResult& a : r.algorithms)
     if (a.label == "least-squares") a.rmse = 0.02;
   test::judge(r);

@@ -54,7 +54,7 @@ TEST_CASE("noise of the scenes of the source: 608 S and 304 Q^2", "[shipped]") {
   const auto five = test::thesis::simulate("rv-3.3-calibrated.yaml", 11);
   const double s[] = {5e-3, 1e-3, 5e-4, 1e-4, 5e-5};
   for (Eigen::Index i = 0; i < 5; ++i) {
-    CHECK(five.given.noise_levels[i] / s[i] == Approx(608.4).epsilon(1e-3));
+    CHECK(five.array.noise_levels[i] / s[i] == Approx(608.4).epsilon(1e-3));
     const double measured = (five.y.row(i) - five.x).squaredNorm() / 1e5 / s[i];
     CHECK(measured == Approx(623).epsilon(0.05));  // with the flicker's slow part
   }
@@ -62,7 +62,7 @@ TEST_CASE("noise of the scenes of the source: 608 S and 304 Q^2", "[shipped]") {
   const auto six = test::thesis::simulate("rv-5.1-fault-free.yaml", 11);
   for (Eigen::Index i = 0; i < 6; ++i) {
     const double q = (3 + static_cast<double>(i)) * 1e-3;
-    CHECK(six.given.noise_levels[i] / q / q == Approx(304.2).epsilon(0.002));
+    CHECK(six.array.noise_levels[i] / q / q == Approx(304.2).epsilon(0.002));
     CHECK((six.y.row(i) - six.x).squaredNorm() / 2e5 / q / q == Approx(304.2).epsilon(0.03));
   }
 }

@@ -28,7 +28,7 @@ TEST_CASE("tables 3.3 to 3.10: calibrated sensors", "[thesis]") {
     CHECK(rms(run("perceptron", {{"neurons", 3}, {"starts", 1}}, r, 0, kLearn).x, r, kLearn) ==
           Approx(.1370).margin(.004));
     CHECK(rms(run("random-weighting", {}, r).x, r, 1000) == Approx(.13737).margin(.004));
-    const double scale = 5e-3 / r.given.noise_levels[0];
+    const double scale = 5e-3 / r.array.noise_levels[0];
     CHECK(
         rms(run("kalman-takens-published", {{"process_variance", 1e-2}, {"noise_scale", scale}}, r)
                 .x,
@@ -54,9 +54,9 @@ TEST_CASE("tables 3.4 and 3.10: uncalibrated sensors", "[thesis]") {
     // What the source's solution of single instants misses by 0.2 to 70.
     libchar::fusion::Settings settings(libchar::fusion::BlindCalibration::options);
     settings.set("gauge", 5);
-    libchar::fusion::Given given = r.given;
-    given.noise_levels.resize(0);
-    libchar::fusion::BlindCalibration blind(given, settings);
+    libchar::fusion::Array array = r.array;
+    array.noise_levels.resize(0);
+    libchar::fusion::BlindCalibration blind(array, settings);
     for (Index k = 0; k < r.x.size(); ++k)
       blind.step(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()));
     blind.solve();

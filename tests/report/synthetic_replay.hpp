@@ -69,11 +69,11 @@ inline AlgorithmResult synthetic_algorithm(const ReplayResult& r,
                                            std::mt19937_64& random) {
   const fusion::Entry& entry = fusion::algorithms()[index];
   AlgorithmResult a;
-  a.label = std::string(entry.card->name);
-  a.card = entry.card;
+  a.label = std::string(entry.description->name);
+  a.description = entry.description;
   a.settings = fusion::Settings(entry.options);
   a.ran = true;
-  a.bound = entry.card->needs.reference_throughout;
+  a.bound = entry.description->needs.reference_throughout;
   a.availability = 1;
   const double rmse = 0.033 * (1 + 0.02 * static_cast<double>((index * 7) % 24));
   for (const InputResult& input : r.inputs)
@@ -83,7 +83,7 @@ inline AlgorithmResult synthetic_algorithm(const ReplayResult& r,
   a.regret = rmse / 0.033 - 1;
   a.ns_per_sample = 3 * std::pow(1.6, static_cast<double>((index * 5) % 24));
   a.peak_bytes = 200 + 900 * ((index * 11) % 24);
-  a.learning_s = entry.card->needs.reference ? 0.8 : 2e-6;
+  a.learning_s = entry.description->needs.reference ? 0.8 : 2e-6;
   const auto n = static_cast<Eigen::Index>(r.sensors.size());
   a.weights = Eigen::MatrixXd::Constant(
       n, static_cast<Eigen::Index>(r.inputs.size()), 1 / static_cast<double>(n));
@@ -166,10 +166,10 @@ inline ReplayResult synthetic_replay(std::size_t sensors = 5, std::size_t inputs
           {1, "variance", 40.02, 50.5}, {0, "variance", 90.1, {}}, {2, "variance", 10, 10.5}};
       a.answers = {{0, 0.02, 0.5}, {1, {}, {}}, {2, 0.1, {}}};
     }
-    if (fusion::algorithms()[i].card->needs.tilt && skipped++ < 3) {
+    if (fusion::algorithms()[i].description->needs.tilt && skipped++ < 3) {
       a = AlgorithmResult();
-      a.label = std::string(fusion::algorithms()[i].card->name);
-      a.card = fusion::algorithms()[i].card;
+      a.label = std::string(fusion::algorithms()[i].description->name);
+      a.description = fusion::algorithms()[i].description;
       a.why = a.label + " needs one gyroscope axis and two accelerometer axes";
       a.rmse = a.regret = a.ns_per_sample = kNan;
       a.rmse_ci95 = {kNan, kNan};

@@ -26,9 +26,9 @@ struct Recorded {
   libchar::Scene scene;
   Eigen::MatrixXd y;     // a column an instant
   Eigen::RowVectorXd x;  // the true input
-  libchar::fusion::Given given;
+  libchar::fusion::Array array;
   Index instant(double time_s) const {
-    return std::min(x.size(), static_cast<Index>(std::lround(time_s * given.rate_hz)));
+    return std::min(x.size(), static_cast<Index>(std::lround(time_s * array.rate_hz)));
   }
 };
 
@@ -54,15 +54,15 @@ inline Recorded simulate(const std::string& file, std::uint64_t seed, bool flick
         Eigen::Map<const Eigen::RowVectorXd>(block[static_cast<std::size_t>(n)].data(), rows);
     done += rows;
   }
-  r.given.channels = n;
-  r.given.rate_hz = s.rate_hz;
-  r.given.reference_throughout = true;
-  r.given.learning_samples = samples;
-  r.given.noise_levels.resize(n);
+  r.array.channels = n;
+  r.array.rate_hz = s.rate_hz;
+  r.array.reference_throughout = true;
+  r.array.learning_samples = samples;
+  r.array.noise_levels.resize(n);
   for (Index i = 0; i < n; ++i)
-    r.given.noise_levels[i] = libchar::sample_noise_variance(
+    r.array.noise_levels[i] = libchar::sample_noise_variance(
         s.sensors[static_cast<std::size_t>(i)].model, s.rate_hz, s.oversampling);
-  if (r.scene.fault_free_s) r.given.fault_free_samples = r.instant(*r.scene.fault_free_s);
+  if (r.scene.fault_free_s) r.array.fault_free_samples = r.instant(*r.scene.fault_free_s);
   return r;
 }
 
@@ -83,7 +83,7 @@ inline Ran run(const std::string& name,
   const libchar::fusion::Entry& entry = libchar::fusion::algorithm(name);
   libchar::fusion::Settings settings(entry.options);
   for (const auto& [option, value] : options) settings.set(option, value);
-  const auto runner = entry.make(r.given, settings);
+  const auto runner = entry.make(r.array, settings);
   if (to > from) {
     const Eigen::MatrixXd truth = r.x.segment(from, to - from);
     runner->learn(r.y.middleCols(from, to - from), truth);
@@ -113,7 +113,7 @@ inline libchar::fusion::LearntWeights learnt(const Recorded& r,
                                              const libchar::fusion::LeastSquaresForm& form,
                                              Index from,
                                              Index to) {
-  libchar::fusion::WeightLearner learner(r.given.channels);
+  libchar::fusion::WeightLearner learner(r.array.channels);
   for (Index k = from; k < to; ++k)
     learner.add(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()), r.x[k]);
   return learner.weights(form);
@@ -123,8 +123,8 @@ inline libchar::fusion::LearntWeights learnt(const Recorded& r,
 inline Recorded only(const Recorded& r, const std::vector<Index>& sensors) {
   Recorded part = r;
   part.y = r.y(sensors, Eigen::all);
-  part.given.noise_levels = r.given.noise_levels(sensors);
-  part.given.channels = static_cast<Index>(sensors.size());
+  part.array.noise_levels = r.array.noise_levels(sensors);
+  part.array.channels = static_cast<Index>(sensors.size());
   return part;
 }
 

@@ -88,7 +88,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
   }
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> allan_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<AllanVerb>();
   options
       .add_text(
@@ -109,7 +109,7 @@ VerbEntry verb_allan() {
   return {3,
           "allan",
           "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
-          add_options};
+          allan_options};
 }
 
 }  // namespace sensorchar

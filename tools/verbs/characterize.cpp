@@ -91,7 +91,7 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
          ""});
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> characterize_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CharacterizeVerb>();
   options
       .add_texts("LOG",
@@ -127,7 +127,7 @@ VerbEntry verb_characterize() {
           "characterize",
           "everything about a recording: report.html, report.json, curves.csv, a "
           "sensor model per channel",
-          add_options};
+          characterize_options};
 }
 
 }  // namespace sensorchar

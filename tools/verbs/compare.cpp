@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
-#include "libchar/replay/verdict.hpp"
 #include "libchar/report/comparison_text.hpp"
 #include "verb.hpp"
 
@@ -35,7 +35,7 @@ std::string number(const AlgorithmSummary* one, double AlgorithmSummary::*member
 
 std::string bytes(const AlgorithmSummary* one) {
   return one != nullptr && one->ran && std::isfinite(one->peak_bytes)
-             ? people_bytes(static_cast<std::uint64_t>(one->peak_bytes))
+             ? bytes_text(static_cast<std::uint64_t>(one->peak_bytes))
              : "–";
 }
 
@@ -65,10 +65,10 @@ std::string comparison_table(const Comparison& c) {
     rows.push_back({printable(row.label),
                     number(row.a, &AlgorithmSummary::rmse, 5),
                     number(row.b, &AlgorithmSummary::rmse, 5),
-                    people_change(row.rmse_change),
+                    change_text(row.rmse_change),
                     number(row.a, &AlgorithmSummary::ns_per_sample, 3),
                     number(row.b, &AlgorithmSummary::ns_per_sample, 3),
-                    people_change(row.ns_change),
+                    change_text(row.ns_change),
                     bytes(row.a),
                     bytes(row.b),
                     where.empty() ? std::string(name_of(row.difference)) : where});
@@ -112,7 +112,7 @@ void run_compare(Session& session, const CompareVerb& verb) {
   throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> compare_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<CompareVerb>();
   options.add_text("A", verb->a, "report.json of a replay, or the folder that holds it").required();
   options.add_text("B", verb->b, "the same of the replay that is held against it").required();
@@ -138,7 +138,7 @@ VerbEntry verb_compare() {
   return {9,
           "compare",
           "Two reports of replay side by side; refuses those of unlike scenes",
-          add_options};
+          compare_options};
 }
 
 }  // namespace sensorchar

@@ -137,7 +137,7 @@ void run_convert(Session& session, ConvertVerb& verb) {
   print(libchar::dump_json(document));
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> convert_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ConvertVerb>();
   options.add_text("LOG", verb->log, "log to read; - reads CSV from standard input").required();
   options
@@ -173,7 +173,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_convert() {
-  return {10, "convert", "From one log format to another, without losing a bit", add_options};
+  return {10, "convert", "From one log format to another, without losing a bit", convert_options};
 }
 
 }  // namespace sensorchar

@@ -197,7 +197,7 @@ void run_fit(Session& session, const FitVerb& verb) {
   }
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> fit_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<FitVerb>();
   options
       .add_text("LOG|CURVE",
@@ -242,7 +242,7 @@ VerbEntry verb_fit() {
   return {5,
           "fit",
           "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
-          add_options};
+          fit_options};
 }
 
 }  // namespace sensorchar

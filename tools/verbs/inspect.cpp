@@ -123,7 +123,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
   print(libchar::dump_json(document));
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> inspect_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<InspectVerb>();
   options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input")
       .required();
@@ -135,7 +135,8 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_inspect() {
-  return {1, "inspect", "What is in a log: channels, rate, gaps, repairs, resolution", add_options};
+  return {
+      1, "inspect", "What is in a log: channels, rate, gaps, repairs, resolution", inspect_options};
 }
 
 }  // namespace sensorchar

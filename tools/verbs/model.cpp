@@ -198,7 +198,7 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                "basalt: one number in place of three; orbslam3: whole rate, no File.version");
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
   options.add_texts(
       "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
@@ -218,7 +218,7 @@ VerbEntry verb_model() {
   return {6,
           "model",
           "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
-          add_options};
+          model_options};
 }
 
 }  // namespace sensorchar

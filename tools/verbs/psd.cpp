@@ -15,7 +15,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -230,7 +230,7 @@ void run_psd(Session& session, const PsdVerb& verb) {
                             : spectra_csv(result));
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> psd_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<PsdVerb>();
   options
       .add_text(
@@ -257,7 +257,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_psd() {
-  return {4, "psd", "power spectrum of every channel (Welch), as CSV or JSON", add_options};
+  return {4, "psd", "power spectrum of every channel (Welch), as CSV or JSON", psd_options};
 }
 
 }  // namespace sensorchar

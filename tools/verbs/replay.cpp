@@ -1,4 +1,4 @@
-// replay SCENE -o DIR: every algorithm the scene can feed, and the report that says which to use.
+// replay SCENE -o DIR: every algorithm that the scene has the data for, and the report that says which to use.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,10 +44,10 @@ struct ReplayVerb {
   std::uint64_t seed = 1;
 };
 
-[[noreturn]] void refuse(const std::string& where,
-                         const std::string& what,
-                         const std::string& got = "",
-                         const std::string& hint = "") {
+[[noreturn]] void refuse_replay(const std::string& where,
+                                const std::string& what,
+                                const std::string& got = "",
+                                const std::string& hint = "") {
   throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
 }
 
@@ -55,7 +55,7 @@ struct ReplayVerb {
 TimeWindow window_from_words(const std::string& text, const std::string& option) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos)
-    refuse(option, "expected FROM..TO in seconds", text, "50..1000, or 50.. up to the end");
+    refuse_replay(option, "expected FROM..TO in seconds", text, "50..1000, or 50.. up to the end");
   TimeWindow window;
   try {
     if (dots > 0) window.from_s = parse_duration_s(text.substr(0, dots));
@@ -67,7 +67,7 @@ TimeWindow window_from_words(const std::string& text, const std::string& option)
     throw Error(problem);
   }
   if (!(window.from_s < window.to_s))
-    refuse(option, "a window goes from a time to a later one", text);
+    refuse_replay(option, "a window goes from a time to a later one", text);
   return window;
 }
 
@@ -77,7 +77,7 @@ void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms
   const auto value =
       equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
   if (dot == std::string::npos || !value)
-    refuse("--set", "expected ALGORITHM.OPTION=NUMBER", text, "--set minque.gamma=0.99");
+    refuse_replay("--set", "expected ALGORITHM.OPTION=NUMBER", text, "--set minque.gamma=0.99");
   const std::string name = text.substr(0, dot), option = text.substr(dot + 1, equals - dot - 1);
   fusion::Settings(fusion::algorithm(name).options).set(option, *value);
   bool found = false;
@@ -88,7 +88,8 @@ void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms
       algorithm.options.emplace_back(option, *value);
     }
   if (!found)
-    refuse("--set", "this algorithm is not among those that run", name, "--algorithms names them");
+    refuse_replay(
+        "--set", "this algorithm is not among those that run", name, "--algorithms names them");
 }
 
 // What the command line says on top of the scene. Empty: the scene's list as it is.
@@ -102,7 +103,7 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   if (out.empty()) out = scene.algorithms;
   if (out.empty())
     for (const fusion::Entry& entry : fusion::algorithms())
-      out.push_back({std::string(entry.card->name), {}, 0, 0});
+      out.push_back({std::string(entry.description->name), {}, 0, 0});
   for (const std::string& setting : verb.settings) set_option(setting, out);
   return out;
 }
@@ -149,7 +150,7 @@ struct MadeFolder {
 
 void run_replay(Session& session, const ReplayVerb& verb) {
   if (verb.list) return print(algorithms_text());
-  if (verb.scene.empty()) refuse("SCENE", "which scene?", "", "--list names the algorithms");
+  if (verb.scene.empty()) refuse_replay("SCENE", "which scene?", "", "--list names the algorithms");
   const Scene scene = read_scene(verb);
   ReplayOptions options;
   options.algorithms = chosen(verb, scene);
@@ -170,7 +171,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
     return;
   }
   if (verb.folder.empty())
-    refuse("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
+    refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.scene);
   const fs::path folder = verb.folder;
@@ -209,7 +210,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   print(written + "\n");
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   options.add_text(
       "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation");
@@ -218,7 +219,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
   options
       .add_texts("--algorithms",
                  verb->algorithms,
-                 "run these only (default: the scene's, else all it can feed)")
+                 "run these only (default: the scene's, else all that it has the data for)")
       .separated_by_commas()
       .value_name("NAME,…");
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
@@ -268,8 +269,9 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 VerbEntry verb_replay() {
   return {8,
           "replay",
-          "Every fusion algorithm a scene can feed, compared: report.html, report.json, report.md",
-          add_options};
+          "Every fusion algorithm that a scene has the data for, compared: report.html, "
+          "report.json, report.md",
+          replay_options};
 }
 
 }  // namespace sensorchar

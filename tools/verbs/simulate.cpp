@@ -50,10 +50,10 @@ struct SimulateVerb {
   WriteOptions writing;
 };
 
-[[noreturn]] void refuse(const std::string& where,
-                         const std::string& what,
-                         const std::string& got = "",
-                         const std::string& hint = "") {
+[[noreturn]] void refuse_simulate(const std::string& where,
+                                  const std::string& what,
+                                  const std::string& got = "",
+                                  const std::string& hint = "") {
   throw Error({ErrorKind::usage, "E0721", where, what, got, hint});
 }
 
@@ -71,7 +71,7 @@ SignalSpec signal_from_words(const std::string& text, const std::string& option)
     const std::string pair = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos)
-      refuse(
+      refuse_simulate(
           option, "expected KIND,key=value,…", text, "such as sine,amplitude=2,frequency_hz=0.1");
     map += ", " + pair.substr(0, equals) + ": " + pair.substr(equals + 1);
     at = end;
@@ -89,20 +89,20 @@ void read_signal_samples(SignalSpec& spec,
   if (!spec.channel.empty()) reading.channels = {spec.channel};
   Recording log = read_recording(spec.file, reading);
   if (log.samples.size() != 1)
-    refuse(option,
-           fmt::format("the recording holds {} channels", log.samples.size()),
-           spec.file,
-           "name one: channel=NAME");
+    refuse_simulate(option,
+                    fmt::format("the recording holds {} channels", log.samples.size()),
+                    spec.file,
+                    "name one: channel=NAME");
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
-    refuse(option,
-           fmt::format("the recording has {} Hz, and the simulation runs at {} Hz",
-                       significant(rate, 6),
-                       significant(simulation.rate_hz, 6)),
-           spec.file,
-           fmt::format("--rate {}Hz", significant(rate, 6)));
+    refuse_simulate(option,
+                    fmt::format("the recording has {} Hz, and the simulation runs at {} Hz",
+                                significant(rate, 6),
+                                significant(simulation.rate_hz, 6)),
+                    spec.file,
+                    fmt::format("--rate {}Hz", significant(rate, 6)));
   spec.samples = std::move(log.samples[0]);
-  if (spec.samples.empty()) refuse(option, "the recording holds no sample", spec.file);
+  if (spec.samples.empty()) refuse_simulate(option, "the recording holds no sample", spec.file);
   if (spec.samples.size() < simulation.samples)
     warnings.add("recorded_signal_short",
                  "a recorded signal ends before the simulation; its last sample is held",
@@ -143,7 +143,7 @@ ArraySimulation from_models(const SimulateVerb& verb) {
     const SensorModel model = read_model_file(path);
     if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
     if (!verb.rate_hz && model.rate_hz != simulation.rate_hz)
-      refuse(
+      refuse_simulate(
           path,
           fmt::format(
               "is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz),
@@ -159,27 +159,28 @@ ArraySimulation from_models(const SimulateVerb& verb) {
 void apply_options(const SimulateVerb& verb, ArraySimulation& simulation, Warnings& warnings) {
   if (verb.rate_hz) simulation.rate_hz = *verb.rate_hz;
   if (!(simulation.rate_hz > 0))
-    refuse(verb.sources[0], "states no sampling rate", "", "give --rate");
+    refuse_simulate(verb.sources[0], "states no sampling rate", "", "give --rate");
   if (simulation.rate_hz < 1e-9 || simulation.rate_hz > 1e9)
-    refuse(verb.sources[0],
-           "states a sampling rate that is not between 1e-9 and 1e9 Hz",
-           significant(simulation.rate_hz, 6),
-           "give --rate");
+    refuse_simulate(verb.sources[0],
+                    "states a sampling rate that is not between 1e-9 and 1e9 Hz",
+                    significant(simulation.rate_hz, 6),
+                    "give --rate");
   if (verb.samples > 0 && verb.duration_s)
-    refuse("--samples", "does not go with --duration", "", "give one of them");
+    refuse_simulate("--samples", "does not go with --duration", "", "give one of them");
   if (verb.samples > 0) simulation.samples = verb.samples;
   if (verb.duration_s)
     simulation.samples =
         static_cast<std::uint64_t>(std::llround(*verb.duration_s * simulation.rate_hz));
   if (simulation.samples == 0)
-    refuse("simulate", "for how long?", "", "give --duration or --samples");
+    refuse_simulate("simulate", "for how long?", "", "give --duration or --samples");
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
   if (!verb.truth.empty() && simulation.truth_names.size() != 1)
-    refuse("--truth",
-           fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
-           "",
-           "change them in the scene");
+    refuse_simulate(
+        "--truth",
+        fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
+        "",
+        "change them in the scene");
   if (!verb.truth.empty()) simulation.truth = {signal_from_words(verb.truth, "--truth")};
   if (!verb.temperature.empty())
     simulation.temperature = signal_from_words(verb.temperature, "--temperature");
@@ -211,7 +212,7 @@ void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
   std::vector<std::string> names = simulation.truth_names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   if (std::find(names.begin(), names.end(), "temperature") != names.end())
-    refuse("simulate", "a channel has the name of the temperature column", "temperature");
+    refuse_simulate("simulate", "a channel has the name of the temperature column", "temperature");
 }
 
 void stream(Session& session,
@@ -273,8 +274,9 @@ void run_simulate(Session& session, SimulateVerb& verb) {
     session.terminal.warn(scene.warnings, scene.file);
     refuse_scene_outputs(scene, outputs);
     if (!scene.simulate)
-      refuse(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
-    if (verb.devices > 1) refuse("--devices", "the scene says how many devices there are (count)");
+      refuse_simulate(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
+    if (verb.devices > 1)
+      refuse_simulate("--devices", "the scene says how many devices there are (count)");
     simulation = *scene.simulate;
   } else {
     simulation = from_models(verb);
@@ -322,7 +324,7 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   print(dump_json(document));
 }
 
-std::function<void()> add_options(VerbOptions& options, Session& session) {
+std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<SimulateVerb>();
   options
       .add_texts("SOURCE",
@@ -346,7 +348,7 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
         try {
           verb->seed = parse_count(text);
         } catch (const Error&) {
-          refuse("--seed", "expected a whole number from 0 to 18446744073709551615", text);
+          refuse_simulate("--seed", "expected a whole number from 0 to 18446744073709551615", text);
         }
         verb->seed_given = true;
       },
@@ -410,8 +412,10 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_simulate() {
-  return {
-      7, "simulate", "A recording with known truth, from sensor models or a scene", add_options};
+  return {7,
+          "simulate",
+          "A recording with known truth, from sensor models or a scene",
+          simulate_options};
 }
 
 }  // namespace sensorchar

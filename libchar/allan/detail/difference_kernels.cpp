@@ -2,16 +2,11 @@
 
 #include <cstring>
 
+#include "libchar/allan/detail/eight_lanes.hpp"
 #include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr std::uint64_t kLanes = 8;
-
-double fold(const double (&lane)[kLanes]) {
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-}
 
 /// Inlined into each target clone, so that it is compiled for that target.
 template <int kOrder>
@@ -43,7 +38,7 @@ template <int kOrder>
     }
   std::memcpy(lane, sum, sizeof lane);
   for (std::uint64_t t = whole; t < run.count; ++t) lane[t % kLanes] += squared<kOrder>(run, t);
-  return fold(lane);
+  return sum_of_lanes(lane);
 }
 
 template <int kOrder>
@@ -52,7 +47,7 @@ template <int kOrder>
   double lane[kLanes] = {};
   for (std::uint64_t s = 0; s < run.count; ++s)
     lane[s % kLanes] += squared<kOrder>(run, s * run.stride);
-  return fold(lane);
+  return sum_of_lanes(lane);
 }
 
 }  // namespace

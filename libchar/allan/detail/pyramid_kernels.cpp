@@ -2,16 +2,11 @@
 
 #include <cstring>
 
+#include "libchar/allan/detail/eight_lanes.hpp"
 #include "libchar/core/lanes.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr std::size_t kLanes = 8;
-
-double fold(const double (&lane)[kLanes]) {
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-}
 
 [[gnu::always_inline]] inline double of_one(const double* z) {
   return z[1] - z[0];
@@ -50,7 +45,7 @@ LIBCHAR_WIDE_LANES double squares_of_four(const double* z, std::size_t n) {
     const double d = of_four(z + i);
     lane[i % kLanes] += d * d;
   }
-  return fold(lane);
+  return sum_of_lanes(lane);
 }
 
 LIBCHAR_WIDE_LANES void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
@@ -81,9 +76,9 @@ LIBCHAR_WIDE_LANES void squares_of_one_two_four(const double* z, std::size_t n, 
       four[i % kLanes] += c * c;
     }
   }
-  out[0] = fold(one);
-  out[1] = fold(two);
-  out[2] = fold(four);
+  out[0] = sum_of_lanes(one);
+  out[1] = sum_of_lanes(two);
+  out[2] = sum_of_lanes(four);
 }
 
 LIBCHAR_WIDE_LANES void sum_pairs(const double* z, std::size_t pairs, double origin, double* pair) {
@@ -101,7 +96,7 @@ LIBCHAR_WIDE_LANES bool all_finite(const double* z, std::size_t n) {
   double lane[kLanes];
   std::memcpy(lane, sum, sizeof lane);
   for (std::size_t i = whole; i < n; ++i) lane[i % kLanes] += z[i] - z[i];
-  return fold(lane) == 0;
+  return sum_of_lanes(lane) == 0;
 }
 
 }  // namespace libchar

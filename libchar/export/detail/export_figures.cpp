@@ -202,7 +202,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
     out.steady_sd = kSteadyOverB * b;
     out.driving = out.steady_sd * std::sqrt(2 / out.correlation_s);
     out.origin = fmt::format(
-        "bias_instability {} as the hump of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
+        "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
         "steady state 1.0760 B{}",
         significant(b, 4),
         significant(out.correlation_s * kPeakTau, 4),

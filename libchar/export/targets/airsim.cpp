@@ -14,7 +14,7 @@
 namespace libchar {
 namespace {
 
-struct Writer {
+struct AirsimWriter {
   const ExportOptions& options;
   Export& out;
   Json imu{{"SensorType", 2}, {"Enabled", true}};
@@ -30,9 +30,9 @@ struct Writer {
   }
 };
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_airsim(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  Writer writer{options, out};
+  AirsimWriter writer{options, out};
   if (group.gyroscope) {
     const double tau = options.bias_tau_s.value_or(500);
     writer.put(*group.gyroscope, Term::white);
@@ -73,7 +73,7 @@ ExportTarget airsim_target() {
       ExportNeeds::gyroscope_or_accelerometer,
       "QK",
       {.bias_tau = true},
-      write};
+      write_airsim};
 }
 
 }  // namespace libchar

@@ -13,7 +13,7 @@
 namespace libchar {
 namespace {
 
-struct Writer {
+struct BasaltWriter {
   const ExportOptions& options;
   Export& out;
   Json& comments;
@@ -48,10 +48,10 @@ struct Writer {
   }
 };
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Json comments = Json::object();
-  Writer writer{options, out, comments};
+  BasaltWriter writer{options, out, comments};
   Json value;
   value["imu_update_rate"] = rate_of(*group.gyroscope, out.notes);
   for (const Term term : {Term::white, Term::walk})
@@ -86,7 +86,7 @@ ExportTarget basalt_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {.older = true},
-          write};
+          write_basalt};
 }
 
 }  // namespace libchar

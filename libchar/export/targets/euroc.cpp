@@ -7,7 +7,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
   out.text = commented(head_lines(group,
@@ -41,7 +41,7 @@ ExportTarget euroc_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {},
-          write};
+          write_euroc};
 }
 
 }  // namespace libchar

@@ -21,7 +21,7 @@ std::string with_unit(const std::string& unit, const std::string& origin) {
   return origin.empty() ? unit : fmt::format("{}; {}", unit, origin);
 }
 
-struct Writer {
+struct GnssInsSimWriter {
   const ExportOptions& options;
   Export& out;
 
@@ -68,9 +68,9 @@ struct Writer {
   }
 };
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  Writer writer{options, out};
+  GnssInsSimWriter writer{options, out};
   out.text = commented(head_lines(group,
                                   options,
                                   "arw = white_noise 60 180/pi, vrw = white_noise 60, b_stability "
@@ -107,7 +107,7 @@ ExportTarget gnss_ins_sim_target() {
       ExportNeeds::gyroscope_and_accelerometer,
       "QBK",
       {.magnetometer = true, .gauss_markov = true},
-      write};
+      write_gnss_ins_sim};
 }
 
 }  // namespace libchar

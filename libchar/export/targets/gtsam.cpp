@@ -11,7 +11,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_gtsam(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "GTSAM", out.notes);
   out.text =
@@ -54,7 +54,7 @@ ExportTarget gtsam_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {.gravity = true},
-          write};
+          write_gtsam};
 }
 
 }  // namespace libchar

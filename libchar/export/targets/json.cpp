@@ -8,7 +8,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_json(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = dump_json(models_json(group.all));
   if (options.inflate != 1 || options.axes != AxisChoice::automatic)
@@ -27,7 +27,7 @@ ExportTarget json_target() {
           ExportNeeds::any_sensor,
           "QBKQzR",
           {.inflate = false, .low_pass = true},
-          write};
+          write_json};
 }
 
 }  // namespace libchar

@@ -9,7 +9,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
   out.text = commented(head_lines(group,
@@ -34,7 +34,7 @@ ExportTarget kalibr_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {.topic = true},
-          write};
+          write_kalibr};
 }
 
 }  // namespace libchar

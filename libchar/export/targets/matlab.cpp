@@ -12,7 +12,7 @@
 namespace libchar {
 namespace {
 
-struct Writer {
+struct MatlabWriter {
   const ExportOptions& options;
   Export& out;
 
@@ -72,9 +72,9 @@ struct Writer {
   }
 };
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_matlab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  Writer writer{options, out};
+  MatlabWriter writer{options, out};
   out.text = commented(head_lines(group,
                                   options,
                                   "NoiseDensity = white_noise, RandomWalk = random_walk, "
@@ -96,7 +96,7 @@ ExportTarget matlab_target() {
           ExportNeeds::gyroscope_or_accelerometer,
           "QBK",
           {.magnetometer = true},
-          write};
+          write_matlab};
 }
 
 }  // namespace libchar

@@ -21,7 +21,7 @@ std::string matrix(const char* key, int size, bool identity, const char* comment
   return out;
 }
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OpenVINS", out.notes);
   out.text = "%YAML:1.0\n";
@@ -56,7 +56,7 @@ ExportTarget openvins_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {.topic = true},
-          write};
+          write_openvins};
 }
 
 }  // namespace libchar

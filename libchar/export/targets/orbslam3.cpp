@@ -14,7 +14,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "ORB-SLAM3", out.notes);
   out.text = "%YAML:1.0\n";
@@ -58,7 +58,7 @@ ExportTarget orbslam3_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QK",
           {.older = true},
-          write};
+          write_orbslam3};
 }
 
 }  // namespace libchar

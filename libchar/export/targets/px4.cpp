@@ -46,7 +46,7 @@ void put(const SensorTriad& triad,
   ardupilot += fmt::format("param set {} {}\n", other.key, value);
 }
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_px4(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   std::string px4, ardupilot;
   const auto put_all = [&](const std::optional<SensorTriad>& triad, const auto& defaults) {
@@ -85,7 +85,7 @@ ExportTarget px4_target() {
           ExportNeeds::gyroscope_or_accelerometer,
           "QK",
           {.filter_step = true},
-          write};
+          write_px4};
 }
 
 }  // namespace libchar

@@ -47,7 +47,7 @@ std::string covariance(const char* sensor,
                      comment);
 }
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_ros(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = commented(
       head_lines(group, options, "variance of a sample = white_noise^2 f (row major, x y z)"),
@@ -72,7 +72,7 @@ ExportTarget ros_target() {
           ExportNeeds::gyroscope_or_accelerometer,
           "Q",
           {.magnetometer = true},
-          write};
+          write_ros};
 }
 
 }  // namespace libchar

@@ -49,7 +49,7 @@ std::string triad_block(const SensorTriad& triad,
   return text;
 }
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_rotors(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
   out.text += commented(head_lines(group,
@@ -80,7 +80,7 @@ ExportTarget rotors_target() {
           ExportNeeds::gyroscope_and_accelerometer,
           "QBK",
           {.gauss_markov = true},
-          write};
+          write_rotors};
 }
 
 }  // namespace libchar

@@ -101,7 +101,7 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
                             "      </pressure>\n    </air_pressure>\n");
 }
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   std::string sensors, imu;
   if (group.gyroscope) imu += triad_element("angular_velocity", *group.gyroscope, options, out);
@@ -157,7 +157,7 @@ ExportTarget sdf_target() {
           ExportNeeds::any_sensor,
           "QBK",
           {.gauss_markov = true},
-          write};
+          write_sdf};
 }
 
 }  // namespace libchar

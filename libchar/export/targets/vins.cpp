@@ -16,7 +16,7 @@
 namespace libchar {
 namespace {
 
-Export write(const SensorGroup& group, const ExportOptions& options) {
+Export write_vins(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "VINS", out.notes);
   out.text = "%YAML:1.0\n";
@@ -65,7 +65,7 @@ ExportTarget vins_target() {
       ExportNeeds::gyroscope_and_accelerometer,
       "QK",
       {.gravity = true},
-      write};
+      write_vins};
 }
 
 }  // namespace libchar

@@ -104,7 +104,7 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
         "{}the Allan curve gives {:.4g} for {}, {:.1f} combined standard deviations from {:.4g}",
         second.sentence.empty() ? "" : "; ",
         *second.value[i],
-        people_name(static_cast<Term>(i)),
+        long_name(static_cast<Term>(i)),
         apart,
         *term.value);
   }

@@ -78,7 +78,7 @@ void report_limits(const BinProblem& problem,
 
 }  // namespace
 
-std::string people_name(Term term) {
+std::string long_name(Term term) {
   static constexpr std::array<std::string_view, kTerms> names = {
       "white noise", "bias instability", "random walk", "quantization noise", "rate ramp"};
   const auto i = static_cast<std::size_t>(term);
@@ -161,7 +161,7 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit) {
       term.status = Status::undetermined;
       fit.sentences.push_back(
           fmt::format("The record is too short for {}: at best it is known to {:.0f} % (1 sd).",
-                      people_name(static_cast<Term>(i)),
+                      long_name(static_cast<Term>(i)),
                       100 * *bound[i]));
     }
     term.seconds_for_10_percent =

@@ -23,6 +23,6 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit);
 void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit);
 
 /// "bias instability B" for sentences.
-std::string people_name(Term term);
+std::string long_name(Term term);
 
 }  // namespace libchar

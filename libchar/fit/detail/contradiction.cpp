@@ -82,7 +82,7 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
                       worst->model,
                       worst->measured.low,
                       worst->measured.high,
-                      people_name(static_cast<Term>(worst->term))));
+                      long_name(static_cast<Term>(worst->term))));
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& first = fit.term[t];
@@ -96,7 +96,7 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
             t,
             fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
                         "Allan curve gives {:.3g} instead of {:.3g}.",
-                        people_name(static_cast<Term>(t)),
+                        long_name(static_cast<Term>(t)),
                         *second,
                         *first.value));
   }

@@ -15,7 +15,7 @@ constexpr int kRounds = 60;
 constexpr double kLeastNoise = 1e-14;
 /// Gains less certain than this (relative standard deviation) are none: of a scene that stands still
 /// they are ratios of noise.
-constexpr double kPoorlyKnown = 0.1;
+constexpr double kUncertainGain = 0.1;
 
 void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* option) {
   if (wanted > channels)
@@ -30,24 +30,24 @@ void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* opt
 
 }  // namespace
 
-BlindCalibration::BlindCalibration(const Given& given, const Settings& settings)
+BlindCalibration::BlindCalibration(const Array& array, const Settings& settings)
     : gauge_(static_cast<Eigen::Index>(settings["gauge"])),
       noise_removal_(settings["noise_removal"] != 0),
-      mean_(Eigen::VectorXd::Zero(given.channels)),
+      mean_(Eigen::VectorXd::Zero(array.channels)),
       delta_(mean_),
       noise_(mean_),
       factor_(mean_),
       scratch_(mean_),
-      inverse_gain_(Eigen::VectorXd::Ones(given.channels)),
+      inverse_gain_(Eigen::VectorXd::Ones(array.channels)),
       offset_(mean_),
-      squares_(Eigen::MatrixXd::Zero(given.channels, given.channels)),
-      conditions_(given.channels + 1, given.channels + 1),
-      solution_(given.channels + 1),
-      elimination_(given.channels + 1, given.channels + 1),
-      next_(static_cast<double>(std::max<Eigen::Index>(20, 3 * given.channels))) {
-  require_channel(gauge_, given.channels, "gauge");
-  if (given.noise_levels.size() == given.channels) levels_ = given.noise_levels;
-  if (given.channels < 3 && levels_.size() == 0) noise_removal_ = false;
+      squares_(Eigen::MatrixXd::Zero(array.channels, array.channels)),
+      conditions_(array.channels + 1, array.channels + 1),
+      solution_(array.channels + 1),
+      elimination_(array.channels + 1, array.channels + 1),
+      next_(static_cast<double>(std::max<Eigen::Index>(20, 3 * array.channels))) {
+  require_channel(gauge_, array.channels, "gauge");
+  if (array.noise_levels.size() == array.channels) levels_ = array.noise_levels;
+  if (array.channels < 3 && levels_.size() == 0) noise_removal_ = false;
 }
 
 Estimate BlindCalibration::step(const Sample& y) {
@@ -69,8 +69,8 @@ void BlindCalibration::gather(const Sample& y) {
   const double gain = 1 / instants_;
   for (Eigen::Index i = 0; i < n; ++i) delta_[i] = y[i] - mean_[i];
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double along = delta_[j] * (1 - gain);
-    for (Eigen::Index i = j; i < n; ++i) squares_(i, j) += delta_[i] * along;
+    const double scaled = delta_[j] * (1 - gain);
+    for (Eigen::Index i = j; i < n; ++i) squares_(i, j) += delta_[i] * scaled;
   }
   for (Eigen::Index i = 0; i < n; ++i) mean_[i] += gain * delta_[i];
 }
@@ -88,12 +88,12 @@ bool BlindCalibration::solve_factor() {
   const auto covariance = squares_.selfadjointView<Eigen::Lower>();
   for (Eigen::Index i = 0; i < n; ++i)
     if (!(squares_(i, i) > 0)) return false;
-  const bool given = levels_.size() == n;
+  const bool known = levels_.size() == n;
   if (!solved_) {
     noise_ = 0.5 * squares_.diagonal() / instants_;
     factor_ = noise_.cwiseSqrt();
   }
-  if (given) noise_ = levels_;
+  if (known) noise_ = levels_;
   // A factor in units of the noise, v = D^-1/2 g; a power step is v <- D^-1/2 C D^-1/2 v / |.|.
   for (int round = 0; round < kRounds; ++round) {
     scratch_ = factor_.cwiseQuotient(noise_);
@@ -105,7 +105,7 @@ bool BlindCalibration::solve_factor() {
     const double length = std::sqrt(delta_.cwiseAbs2().cwiseQuotient(noise_).sum());
     if (!(lambda > 1) || !(length > 0)) return false;
     factor_ = delta_ * (std::sqrt(lambda - 1) / length);
-    if (given) continue;
+    if (known) continue;
     for (Eigen::Index i = 0; i < n; ++i) {
       const double all = squares_(i, i) / instants_;
       noise_[i] = std::max(all - factor_[i] * factor_[i], kLeastNoise * all);
@@ -116,7 +116,8 @@ bool BlindCalibration::solve_factor() {
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!(std::abs(factor_[i]) > 1e-6 * strongest)) return false;
     // var(g) / g^2 = v / (N g^2), as if the factor itself were known.
-    if (noise_[i] > kPoorlyKnown * kPoorlyKnown * instants_ * factor_[i] * factor_[i]) return false;
+    if (noise_[i] > kUncertainGain * kUncertainGain * instants_ * factor_[i] * factor_[i])
+      return false;
   }
   inverse_gain_ = factor_.cwiseInverse();
   return true;
@@ -171,13 +172,13 @@ void BlindCalibration::remarks(Warnings& warnings) const {
         "blind-calibration of two channels without noise levels takes their noise for gain");
 }
 
-BlindCalibrationPublished::BlindCalibrationPublished(const Given& given, const Settings& settings)
+BlindCalibrationPublished::BlindCalibrationPublished(const Array& array, const Settings& settings)
     : reference_(static_cast<Eigen::Index>(settings["reference_channel"]) - 1),
       gamma_(settings["gamma"]),
-      mean_(Eigen::VectorXd::Zero(given.channels)),
-      inverse_gain_(Eigen::VectorXd::Ones(given.channels)),
+      mean_(Eigen::VectorXd::Zero(array.channels)),
+      inverse_gain_(Eigen::VectorXd::Ones(array.channels)),
       offset_(mean_) {
-  require_channel(reference_ + 1, given.channels, "reference_channel");
+  require_channel(reference_ + 1, array.channels, "reference_channel");
 }
 
 Estimate BlindCalibrationPublished::step(const Sample& y) {

@@ -25,11 +25,11 @@
 namespace libchar::fusion {
 
 struct BlindCalibration {
-  static constexpr Card card{.name = "blind-calibration",
-                             .title = "Blind calibration, then the mean",
-                             .source = "[RV 3.5]; Balzano & Nowak 2007",
-                             .complexity = "O(n^2)",
-                             .needs = {.min_channels = 2}};
+  static constexpr Description description{.name = "blind-calibration",
+                                           .title = "Blind calibration, then the mean",
+                                           .source = "[RV 3.5]; Balzano & Nowak 2007",
+                                           .complexity = "O(n^2)",
+                                           .needs = {.min_channels = 2}};
   static constexpr std::array options{
       Option{"gauge",
              "",
@@ -45,7 +45,7 @@ struct BlindCalibration {
              1,
              "1: the noise is taken off the diagonal of the covariance",
              true}};
-  BlindCalibration(const Given& given, const Settings& settings);
+  BlindCalibration(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   /// Of the samples as they come: a_i / n.
   Eigen::MatrixXd weights() const {
@@ -77,11 +77,11 @@ struct BlindCalibration {
 };
 
 struct BlindCalibrationPublished {
-  static constexpr Card card{.name = "blind-calibration-published",
-                             .title = "Blind calibration as published, then the mean",
-                             .source = "[RV 3.5]",
-                             .complexity = "O(n)",
-                             .needs = {.min_channels = 2}};
+  static constexpr Description description{.name = "blind-calibration-published",
+                                           .title = "Blind calibration as published, then the mean",
+                                           .source = "[RV 3.5]",
+                                           .complexity = "O(n)",
+                                           .needs = {.min_channels = 2}};
   static constexpr std::array options{
       Option{"reference_channel",
              "",
@@ -91,7 +91,7 @@ struct BlindCalibrationPublished {
              "channel whose gain is taken for one, counted from 1",
              true},
       Option{"gamma", "", 0.999999, 0, 1, "smoothing of the solutions of single instants"}};
-  BlindCalibrationPublished(const Given& given, const Settings& settings);
+  BlindCalibrationPublished(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const {
     return inverse_gain_ / static_cast<double>(inverse_gain_.size());

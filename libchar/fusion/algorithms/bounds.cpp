@@ -9,10 +9,10 @@
 
 namespace libchar::fusion {
 
-BestSensor::BestSensor(const Given& given)
-    : squares_(Eigen::VectorXd::Zero(given.channels)),
+BestSensor::BestSensor(const Array& array)
+    : squares_(Eigen::VectorXd::Zero(array.channels)),
       counts_(squares_),
-      order_(static_cast<std::size_t>(given.channels)) {
+      order_(static_cast<std::size_t>(array.channels)) {
   std::iota(order_.begin(), order_.end(), 0);
 }
 
@@ -45,12 +45,12 @@ Eigen::MatrixXd BestSensor::weights() const {
   return w;
 }
 
-SectionedLeastSquares::SectionedLeastSquares(const Given& given, const Settings& settings)
-    : form_{settings["calibrate"] != 0, true, false}, starts_(given.section_starts) {
+SectionedLeastSquares::SectionedLeastSquares(const Array& array, const Settings& settings)
+    : form_{settings["calibrate"] != 0, true, false}, starts_(array.section_starts) {
   std::sort(starts_.begin(), starts_.end());
   starts_.erase(std::unique(starts_.begin(), starts_.end()), starts_.end());
   std::erase_if(starts_, [](std::int64_t start) { return start <= 0; });
-  learners_.assign(starts_.size() + 1, WeightLearner(given.channels));
+  learners_.assign(starts_.size() + 1, WeightLearner(array.channels));
   means_.resize(learners_.size());
 }
 

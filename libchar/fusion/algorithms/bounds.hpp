@@ -13,13 +13,14 @@
 namespace libchar::fusion {
 
 struct BestSensor {
-  static constexpr Card card{.name = "best-sensor",
-                             .title = "Best single channel (bound)",
-                             .source = "[RV 3.11]",
-                             .complexity = "O(1)",
-                             .needs = {.reference_throughout = true, .accepts_missing = true},
-                             .learning_complexity = "O(n)"};
-  explicit BestSensor(const Given& given);
+  static constexpr Description description{
+      .name = "best-sensor",
+      .title = "Best single channel (bound)",
+      .source = "[RV 3.11]",
+      .complexity = "O(1)",
+      .needs = {.reference_throughout = true, .accepts_missing = true},
+      .learning_complexity = "O(n)"};
+  explicit BestSensor(const Array& array);
   void learn(const Sample& y, const Sample& truth);
   void finish_learning();
   Estimate step(const Sample& y) const;
@@ -31,16 +32,17 @@ struct BestSensor {
 };
 
 struct OptimalWeights {
-  static constexpr Card card{.name = "optimal-weights",
-                             .title = "Optimal fixed weights (bound)",
-                             .source = "[RV 3.25]",
-                             .complexity = "O(n)",
-                             .needs = {.reference_throughout = true, .accepts_missing = true},
-                             .learning_complexity = "O(n^2)"};
+  static constexpr Description description{
+      .name = "optimal-weights",
+      .title = "Optimal fixed weights (bound)",
+      .source = "[RV 3.25]",
+      .complexity = "O(n)",
+      .needs = {.reference_throughout = true, .accepts_missing = true},
+      .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
-  OptimalWeights(const Given& given, const Settings& settings)
-      : form_{settings["calibrate"] != 0, true, false}, learner_(given.channels) {}
+  OptimalWeights(const Array& array, const Settings& settings)
+      : form_{settings["calibrate"] != 0, true, false}, learner_(array.channels) {}
   void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
   void finish_learning() { mean_.take(learner_.weights(form_)); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
@@ -55,15 +57,16 @@ struct OptimalWeights {
 /// Learns on instants 0, 1, … of the run and runs on the same: the k-th instant learnt or skipped
 /// is the k-th instant run.
 struct SectionedLeastSquares {
-  static constexpr Card card{.name = "sectioned-least-squares",
-                             .title = "Least squares, section by section (bound)",
-                             .source = "[RV 5.1.2]",
-                             .complexity = "O(n)",
-                             .needs = {.reference_throughout = true, .accepts_missing = true},
-                             .learning_complexity = "O(n^2)"};
+  static constexpr Description description{
+      .name = "sectioned-least-squares",
+      .title = "Least squares, section by section (bound)",
+      .source = "[RV 5.1.2]",
+      .complexity = "O(n)",
+      .needs = {.reference_throughout = true, .accepts_missing = true},
+      .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
-  SectionedLeastSquares(const Given& given, const Settings& settings);
+  SectionedLeastSquares(const Array& array, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);
   void skip(const Sample&) { ++learnt_; }
   void finish_learning();

@@ -6,8 +6,8 @@
 
 namespace libchar::fusion {
 
-InverseVariance::InverseVariance(const Given& given) : levels_(given.noise_levels) {
-  assert(levels_.size() == given.channels);
+InverseVariance::InverseVariance(const Array& array) : levels_(array.noise_levels) {
+  assert(levels_.size() == array.channels);
   // Relative to the smallest, so that levels near the ends of the range of a double do not
   // overflow.
   const double smallest = levels_.minCoeff();
@@ -15,7 +15,7 @@ InverseVariance::InverseVariance(const Given& given) : levels_(given.noise_level
   const double sum = weights_.sum();
   weights_ /= sum;
   variance_ = smallest / sum;
-  if (!given.plain()) general_ = std::make_unique<GeneralMean>(given.h(), levels_);
+  if (!array.one_common_input()) general_ = std::make_unique<GeneralMean>(array.h(), levels_);
 }
 
 Estimate InverseVariance::step(const Sample& y) const {

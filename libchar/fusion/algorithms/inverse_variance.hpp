@@ -11,13 +11,13 @@
 namespace libchar::fusion {
 
 struct InverseVariance {
-  static constexpr Card card{
+  static constexpr Description description{
       .name = "inverse-variance",
       .title = "Inverse-variance weights from known noise levels",
       .source = "[RV 4.12]",
       .complexity = "O(n r)",
       .needs = {.noise_levels = true, .observation_matrix = true, .accepts_missing = true}};
-  explicit InverseVariance(const Given& given);
+  explicit InverseVariance(const Array& array);
   Estimate step(const Sample& y) const;
   Eigen::MatrixXd weights() const {
     return general_ ? general_->weights() : Eigen::MatrixXd(weights_);

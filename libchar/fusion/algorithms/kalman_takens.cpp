@@ -21,14 +21,16 @@ constexpr double kLeastShare = 1e-6;
 
 }  // namespace
 
-KalmanTakensFilter::KalmanTakensFilter(const Given& given, const Settings& settings, bool taught)
-    : levels_(given.noise_levels),
+KalmanTakensFilter::KalmanTakensFilter(const Array& array,
+                                       const Settings& settings,
+                                       bool from_reference)
+    : levels_(array.noise_levels),
       weights_(levels_.minCoeff() * levels_.cwiseInverse()),
       dimension_(whole(settings, "dimension")),
       neighbours_(whole(settings, "neighbours")),
       dictionary_(whole(settings, "dictionary")),
-      theiler_(taught ? 0 : whole(settings, "theiler")),
-      taught_(taught),
+      theiler_(from_reference ? 0 : whole(settings, "theiler")),
+      from_reference_(from_reference),
       given_q_(settings["process_variance"]),
       keep_(1 - 1 / settings["memory"]),
       search_(dimension_, neighbours_, dictionary_),
@@ -57,14 +59,14 @@ void KalmanTakensFilter::widen_spread(double z) {
   spread_ += off * (z - mean_);
 }
 
-void KalmanTakensFilter::teach(double truth) {
+void KalmanTakensFilter::learn(double truth) {
   // One NaN parts the stretches; more would only push known ones out.
   if (std::isnan(truth) && last_ > first_ && std::isnan(series_[last_ - 1])) return;
   append(truth);
   if (!std::isnan(truth)) widen_spread(truth);
 }
 
-std::size_t KalmanTakensFilter::taught_stretches() const {
+std::size_t KalmanTakensFilter::learnt_stretches() const {
   std::size_t stretches = 0, length = 0;  // values without a gap so far
   for (std::size_t k = first_; k < last_; ++k) {
     length = std::isnan(series_[k]) ? 0 : length + 1;
@@ -75,10 +77,11 @@ std::size_t KalmanTakensFilter::taught_stretches() const {
 
 /// NaN while the past is too short: a few stretches would always find the same neighbours.
 double KalmanTakensFilter::predict() {
-  const std::size_t length = last_ - first_, behind = dimension_ + (taught_ ? 0 : theiler_ - 1);
+  const std::size_t length = last_ - first_,
+                    behind = dimension_ + (from_reference_ ? 0 : theiler_ - 1);
   if (heard_ < dimension_ || length <= behind) return std::nan("");
   const std::size_t starts = std::min(length - behind, dictionary_);
-  if (!taught_ && starts < std::min(2 * neighbours_, dictionary_)) return std::nan("");
+  if (!from_reference_ && starts < std::min(2 * neighbours_, dictionary_)) return std::nan("");
   const double* const series = series_.data() + first_;
   return prediction(search_.nearest(series, starts, recent_.data()), series, dimension_);
 }
@@ -100,7 +103,7 @@ void KalmanTakensFilter::remember(double z, bool measured) {
   std::copy(recent_.begin() + 1, recent_.end(), recent_.begin());
   recent_.back() = z;
   heard_ = std::isnan(z) ? 0 : std::min(heard_ + 1, dimension_);
-  if (!taught_) append(measured ? z : std::nan(""));
+  if (!from_reference_) append(measured ? z : std::nan(""));
   if (measured) widen_spread(z);
 }
 
@@ -131,12 +134,12 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
 }
 
 void KalmanTakensTaught::finish_learning() {
-  if (filter_.taught_stretches() >= 2 * filter_.neighbours()) return;
+  if (filter_.learnt_stretches() >= 2 * filter_.neighbours()) return;
   throw Error({ErrorKind::numeric,
                "E0862",
                "",
                "the learning window holds fewer than two stretches of the past for each neighbour",
-               std::to_string(filter_.taught_stretches()),
+               std::to_string(filter_.learnt_stretches()),
                "lengthen the learning window, or ask for fewer neighbours"});
 }
 

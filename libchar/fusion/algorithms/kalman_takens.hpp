@@ -38,10 +38,10 @@ inline constexpr std::array kKalmanTakensOptions{
 /// What both algorithms share: a series to look in and a Kalman update.
 class KalmanTakensFilter {
  public:
-  /// taught: the series is the reference of the learning window, else the channels' own past.
-  KalmanTakensFilter(const Given& given, const Settings& settings, bool taught);
-  void teach(double truth);
-  std::size_t taught_stretches() const;
+  /// from_reference: the series is the reference of the learning window, else the channels' own past.
+  KalmanTakensFilter(const Array& array, const Settings& settings, bool from_reference);
+  void learn(double truth);
+  std::size_t learnt_stretches() const;
   std::size_t neighbours() const { return neighbours_; }
   Estimate step(const Sample& y);
   double process_variance() const;
@@ -55,7 +55,7 @@ class KalmanTakensFilter {
 
   Eigen::VectorXd levels_, weights_;
   std::size_t dimension_, neighbours_, dictionary_, theiler_;
-  bool taught_;
+  bool from_reference_;
   double given_q_, least_q_ = 0, keep_;
   DelaySearch search_;
   std::vector<double> series_;  // room for twice as many: moved down only when full
@@ -68,13 +68,14 @@ class KalmanTakensFilter {
 };
 
 struct KalmanTakens {
-  static constexpr Card card{.name = "kalman-takens",
-                             .title = "Kalman-Takens on the channels' own past",
-                             .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
-                             .complexity = "O(n + d m), m stretches kept",
-                             .needs = {.noise_levels = true, .accepts_missing = true}};
+  static constexpr Description description{
+      .name = "kalman-takens",
+      .title = "Kalman-Takens on the channels' own past",
+      .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
+      .complexity = "O(n + d m), m stretches kept",
+      .needs = {.noise_levels = true, .accepts_missing = true}};
   static constexpr std::array options = kKalmanTakensOptions;
-  KalmanTakens(const Given& given, const Settings& settings) : filter_(given, settings, false) {}
+  KalmanTakens(const Array& array, const Settings& settings) : filter_(array, settings, false) {}
   Estimate step(const Sample& y) { return filter_.step(y); }
 
  private:
@@ -82,7 +83,7 @@ struct KalmanTakens {
 };
 
 struct KalmanTakensTaught {
-  static constexpr Card card{
+  static constexpr Description description{
       .name = "kalman-takens-taught",
       .title = "Kalman-Takens on the reference of the learning window",
       .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
@@ -90,11 +91,11 @@ struct KalmanTakensTaught {
       .needs = {.reference = true, .noise_levels = true, .accepts_missing = true},
       .learning_complexity = "O(1)"};
   static constexpr std::array options = kKalmanTakensOptions;
-  KalmanTakensTaught(const Given& given, const Settings& settings)
-      : filter_(given, settings, true) {}
-  void learn(const Sample&, const Sample& truth) { filter_.teach(truth[0]); }
+  KalmanTakensTaught(const Array& array, const Settings& settings)
+      : filter_(array, settings, true) {}
+  void learn(const Sample&, const Sample& truth) { filter_.learn(truth[0]); }
   /// No stretch of the past reaches over a gap.
-  void skip(const Sample&) { filter_.teach(std::nan("")); }
+  void skip(const Sample&) { filter_.learn(std::nan("")); }
   /// Throws Error(numeric): the learning window is too short for M neighbours.
   void finish_learning();
   Estimate step(const Sample& y) { return filter_.step(y); }

@@ -5,8 +5,8 @@
 
 namespace libchar::fusion {
 
-KalmanTakensPublished::KalmanTakensPublished(const Given& given, const Settings& settings)
-    : levels_(given.noise_levels * settings["noise_scale"]),
+KalmanTakensPublished::KalmanTakensPublished(const Array& array, const Settings& settings)
+    : levels_(array.noise_levels * settings["noise_scale"]),
       information_(levels_.cwiseInverse().sum()),
       dimension_(static_cast<std::size_t>(settings["dimension"])),
       training_(std::max(static_cast<std::size_t>(settings["training"]), dimension_ + 1)),

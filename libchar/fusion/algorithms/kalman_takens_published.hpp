@@ -16,11 +16,11 @@
 namespace libchar::fusion {
 
 struct KalmanTakensPublished {
-  static constexpr Card card{.name = "kalman-takens-published",
-                             .title = "Kalman-Takens as published",
-                             .source = "[RV 3.8]",
-                             .complexity = "O(n + d m), m training instants",
-                             .needs = {.noise_levels = true}};
+  static constexpr Description description{.name = "kalman-takens-published",
+                                           .title = "Kalman-Takens as published",
+                                           .source = "[RV 3.8]",
+                                           .complexity = "O(n + d m), m training instants",
+                                           .needs = {.noise_levels = true}};
   static constexpr std::array options{
       Option{"dimension", "samples", 6, 1, 64, "d: instants that the past is compared over", true},
       Option{"neighbours", "", 20, 1, 256, "M: stretches that predict", true},
@@ -40,7 +40,7 @@ struct KalmanTakensPublished {
              1e12,
              "R over the noise variance; 1/623 is the spectral density that the listing takes"}};
 
-  KalmanTakensPublished(const Given& given, const Settings& settings);
+  KalmanTakensPublished(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
 
  private:

@@ -162,12 +162,13 @@ template <bool kPublished>
 void LeastSquaresOf<kPublished>::remarks(Warnings& warnings) const {
   const LearntWeights& learnt = mean_.learnt();
   for (const int i : learnt.without_signal)
-    warnings.add("channel_without_signal",
-                 std::string(card.name) + " left out a channel that does not follow the reference",
-                 "channel " + std::to_string(i + 1));
+    warnings.add(
+        "channel_without_signal",
+        std::string(description.name) + " left out a channel that does not follow the reference",
+        "channel " + std::to_string(i + 1));
   if (learnt.dependent > 0)
     warnings.add("dependent_channels",
-                 std::string(card.name) + " found channels that are combinations of others",
+                 std::string(description.name) + " found channels that are combinations of others",
                  {},
                  static_cast<std::uint64_t>(learnt.dependent));
 }

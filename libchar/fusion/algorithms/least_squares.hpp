@@ -69,19 +69,19 @@ template <bool kPublished>
 struct LeastSquaresOf {
   static constexpr Needs kNeeds{
       .min_channels = 1, .learning_samples = 2, .reference = true, .accepts_missing = true};
-  static constexpr Card card = kPublished
-                                   ? Card{.name = "least-squares-published",
-                                          .title = "Least squares as published: weights free",
-                                          .source = "[RV 3.6]",
-                                          .complexity = "O(n)",
-                                          .needs = kNeeds,
-                                          .learning_complexity = "O(n^2)"}
-                                   : Card{.name = "least-squares",
-                                          .title = "Least squares, weights sum to one",
-                                          .source = "[RV 3.6]",
-                                          .complexity = "O(n)",
-                                          .needs = kNeeds,
-                                          .learning_complexity = "O(n^2)"};
+  static constexpr Description description =
+      kPublished ? Description{.name = "least-squares-published",
+                               .title = "Least squares as published: weights free",
+                               .source = "[RV 3.6]",
+                               .complexity = "O(n)",
+                               .needs = kNeeds,
+                               .learning_complexity = "O(n^2)"}
+                 : Description{.name = "least-squares",
+                               .title = "Least squares, weights sum to one",
+                               .source = "[RV 3.6]",
+                               .complexity = "O(n)",
+                               .needs = kNeeds,
+                               .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true},
       Option{"constant",
@@ -92,9 +92,9 @@ struct LeastSquaresOf {
              "1: the weighted sum has a constant besides (uncalibrated channels)",
              true}};
 
-  LeastSquaresOf(const Given& given, const Settings& settings)
+  LeastSquaresOf(const Array& array, const Settings& settings)
       : form_{settings["calibrate"] != 0, !kPublished, settings["constant"] != 0},
-        learner_(given.channels) {}
+        learner_(array.channels) {}
   void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
   void finish_learning() { mean_.take(learner_.weights(form_)); }
   Estimate step(const Sample& y) const { return mean_.step(y); }

@@ -6,11 +6,11 @@
 
 namespace libchar::fusion {
 
-Mean::Mean(const Given& given) : levels_(given.noise_levels), channels_(given.channels) {
+Mean::Mean(const Array& array) : levels_(array.noise_levels), channels_(array.channels) {
   const double n = static_cast<double>(channels_);
   variance_ = levels_.size() == channels_ ? levels_.sum() / (n * n) : std::nan("");
-  if (!given.plain())
-    general_ = std::make_unique<GeneralMean>(given.h(), Eigen::VectorXd::Ones(channels_));
+  if (!array.one_common_input())
+    general_ = std::make_unique<GeneralMean>(array.h(), Eigen::VectorXd::Ones(channels_));
 }
 
 Estimate Mean::step(const Sample& y) const {

@@ -10,12 +10,13 @@
 namespace libchar::fusion {
 
 struct Mean {
-  static constexpr Card card{.name = "mean",
-                             .title = "Mean (ordinary least squares for several inputs)",
-                             .source = "[RV 3.4]",
-                             .complexity = "O(n r)",
-                             .needs = {.observation_matrix = true, .accepts_missing = true}};
-  explicit Mean(const Given& given);
+  static constexpr Description description{
+      .name = "mean",
+      .title = "Mean (ordinary least squares for several inputs)",
+      .source = "[RV 3.4]",
+      .complexity = "O(n r)",
+      .needs = {.observation_matrix = true, .accepts_missing = true}};
+  explicit Mean(const Array& array);
   Estimate step(const Sample& y) const;
   Eigen::MatrixXd weights() const;
 

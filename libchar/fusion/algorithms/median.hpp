@@ -9,12 +9,12 @@
 namespace libchar::fusion {
 
 struct Median {
-  static constexpr Card card{.name = "median",
-                             .title = "Median",
-                             .source = "Tukey 1977",
-                             .complexity = "O(n)",
-                             .needs = {.accepts_missing = true}};
-  explicit Median(const Given& given) : sorted_(static_cast<std::size_t>(given.channels)) {}
+  static constexpr Description description{.name = "median",
+                                           .title = "Median",
+                                           .source = "Tukey 1977",
+                                           .complexity = "O(n)",
+                                           .needs = {.accepts_missing = true}};
+  explicit Median(const Array& array) : sorted_(static_cast<std::size_t>(array.channels)) {}
   Estimate step(const Sample& y);
 
  private:

@@ -21,7 +21,7 @@ FaultWatchOptions watching(const Settings& s) {
 constexpr double kRounding = 1e4;
 
 /// Relative standard deviation of a variance above which a reader must know.
-constexpr double kPoorlyKnown = 0.5;
+constexpr double kPoorlyKnownVariance = 0.5;
 
 /// A second moment can only be judged by variances that are known clearly better than itself.
 bool shorter(double fault_gamma, double gamma) {
@@ -30,20 +30,20 @@ bool shorter(double fault_gamma, double gamma) {
 
 }  // namespace
 
-Minque::Minque(const Given& given, const Settings& settings)
-    : scalar_(static_cast<std::size_t>(given.channels), reweighting(settings)),
-      watch_(static_cast<std::size_t>(given.channels), watching(settings)),
+Minque::Minque(const Array& array, const Settings& settings)
+    : scalar_(static_cast<std::size_t>(array.channels), reweighting(settings)),
+      watch_(static_cast<std::size_t>(array.channels), watching(settings)),
       asked_(settings["fault_detection"] != 0),
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
       // The variances must have settled before they can accuse anybody.
       armed_from_(std::max<std::int64_t>(
-          given.fault_free_samples,
+          array.fault_free_samples,
           static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
-      inputs_(given.inputs()),
-      present_(static_cast<std::size_t>(given.channels)),
-      m_(static_cast<int>(given.channels)) {
+      inputs_(array.inputs()),
+      present_(static_cast<std::size_t>(array.channels)),
+      m_(static_cast<int>(array.channels)) {
   std::iota(present_.begin(), present_.end(), 0);
-  if (!given.plain()) general_.emplace(given.observation_matrix, reweighting(settings));
+  if (!array.one_common_input()) general_.emplace(array.observation_matrix, reweighting(settings));
 }
 
 Estimate Minque::step(const Sample& y) {
@@ -126,7 +126,7 @@ void Minque::remarks(Warnings& warnings) const {
                  "fault rule (fault_gamma)");
   if (general_ || !scalar_.started()) return;
   std::vector<double> direction;
-  if (scalar_.blindness(direction) <= kPoorlyKnown) return;
+  if (scalar_.blindness(direction) <= kPoorlyKnownVariance) return;
   std::string names;
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);

@@ -15,7 +15,7 @@
 namespace libchar::fusion {
 
 struct Minque {
-  static constexpr Card card{
+  static constexpr Description description{
       .name = "minque",
       .title = "MINQUE, recursive and re-weighted",
       .source = "[RV 4, 5]; Patterson & Thompson 1971",
@@ -59,7 +59,7 @@ struct Minque {
              "instants below the threshold before a channel comes in again",
              true}};
 
-  Minque(const Given& given, const Settings& settings);
+  Minque(const Array& array, const Settings& settings);
   Minque(const Minque&) = delete;
   Minque& operator=(const Minque&) = delete;
   Estimate step(const Sample& y);

@@ -7,19 +7,19 @@
 
 namespace libchar::fusion {
 
-MinquePublished::MinquePublished(const Given& given, const Settings& settings)
-    : moments_(given.channels, settings["gamma"], settings["about_zero"] != 0),
+MinquePublished::MinquePublished(const Array& array, const Settings& settings)
+    : moments_(array.channels, settings["gamma"], settings["about_zero"] != 0),
       common_(settings["common_threshold"] != 0),
       factor_(settings["threshold"]),
       settling_(static_cast<std::int64_t>(settings["settling"])),
-      fault_free_(given.fault_free_samples),
+      fault_free_(array.fault_free_samples),
       recovery_(static_cast<std::int64_t>(settings["recovery_samples"])),
-      in_use_(static_cast<std::size_t>(given.channels)),
+      in_use_(static_cast<std::size_t>(array.channels)),
       out_(in_use_.size(), 0),
       out_since_(in_use_.size(), 0),
-      variances_(Eigen::VectorXd::Zero(given.channels)),
-      weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))),
-      threshold_(Eigen::VectorXd::Zero(given.channels)) {
+      variances_(Eigen::VectorXd::Zero(array.channels)),
+      weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))),
+      threshold_(Eigen::VectorXd::Zero(array.channels)) {
   if (settling_ < 0) settling_ = static_cast<std::int64_t>(std::ceil(3 / (1 - settings["gamma"])));
 }
 

@@ -21,7 +21,7 @@
 namespace libchar::fusion {
 
 struct MinquePublished {
-  static constexpr Card card{
+  static constexpr Description description{
       .name = "minque-published",
       .title = "MINQUE as published, with its fault rule mended",
       .source = "[RV 4, 5]",
@@ -59,7 +59,7 @@ struct MinquePublished {
              "from exclusion to the earliest return",
              true}};
 
-  MinquePublished(const Given& given, const Settings& settings);
+  MinquePublished(const Array& array, const Settings& settings);
   MinquePublished(const MinquePublished&) = delete;
   MinquePublished& operator=(const MinquePublished&) = delete;
   Estimate step(const Sample& y);

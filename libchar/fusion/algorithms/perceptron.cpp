@@ -20,9 +20,9 @@ std::size_t neurons_of(std::size_t inputs, const Settings& settings) {
 
 }  // namespace
 
-Perceptron::Perceptron(const Given& given, const Settings& settings)
-    : network_{static_cast<std::size_t>(given.channels),
-               neurons_of(static_cast<std::size_t>(given.channels), settings)},
+Perceptron::Perceptron(const Array& array, const Settings& settings)
+    : network_{static_cast<std::size_t>(array.channels),
+               neurons_of(static_cast<std::size_t>(array.channels), settings)},
       asked_(static_cast<std::size_t>(settings["neurons"])),
       scales_(network_.inputs),
       z_(network_.inputs),
@@ -77,22 +77,22 @@ void Perceptron::standardise() {
 
 void Perceptron::finish_learning() {
   const auto held_out = static_cast<std::size_t>(held_out_ * static_cast<double>(kept_));
-  const std::size_t taught = kept_ - held_out;
-  if (taught < 2 * network_.size() || held_out == 0)
+  const std::size_t training = kept_ - held_out;
+  if (training < 2 * network_.size() || held_out == 0)
     throw Error({ErrorKind::numeric,
                  "E0860",
                  "",
                  "the learning window holds fewer than two instants for each weight of the "
                  "perceptron (" +
                      std::to_string(network_.size()) + " weights)",
-                 std::to_string(taught),
+                 std::to_string(training),
                  "set fewer neurons, or lengthen the learning window"});
   standardise();
   if (!std::isfinite(target_.deviation)) target_.deviation = 1;  // a reference that stands still
-  const TrainingRows taught_rows{window_.data(), taught};
-  const TrainingRows rest{window_.data() + taught * (network_.inputs + 1), held_out};
+  const TrainingRows training_rows{window_.data(), training};
+  const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};
   Training best = train(
-      network_, taught_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
+      network_, training_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
   if (best.parameters.empty())
     throw Error({ErrorKind::numeric,
                  "E0861",

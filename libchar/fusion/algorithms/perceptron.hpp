@@ -1,5 +1,5 @@
 #pragma once
-// A tanh network (tanh_network.hpp) that is taught the input from all channels at once, by
+// A tanh network (tanh_network.hpp) that learns the input from all channels at once, by
 // Levenberg-Marquardt on   sum_k (out(z_k) - t_k)^2   over the learning window            [RV 3.7]
 // z and t are channels and reference with mean zero and deviation one, so an offset costs nothing.
 // Of several seeded starts the one that does best on the last part of the window (not used for the
@@ -15,12 +15,13 @@
 namespace libchar::fusion {
 
 struct Perceptron {
-  static constexpr Card card{.name = "perceptron",
-                             .title = "Perceptron: a tanh network taught in the learning window",
-                             .source = "[RV 3.7]",
-                             .complexity = "O(n h), h hidden neurons",
-                             .needs = {.learning_samples = 100, .reference = true},
-                             .learning_complexity = "O((n h)^2) an iteration"};
+  static constexpr Description description{
+      .name = "perceptron",
+      .title = "Perceptron: a tanh network trained in the learning window",
+      .source = "[RV 3.7]",
+      .complexity = "O(n h), h hidden neurons",
+      .needs = {.learning_samples = 100, .reference = true},
+      .learning_complexity = "O((n h)^2) an iteration"};
   static constexpr std::array options{
       Option{"neurons", "", 10, 1, 64, "h: hidden neurons; 3 to 30 make sense", true},
       Option{"starts", "", 3, 1, 100, "trainings from different random weights", true},
@@ -47,7 +48,7 @@ struct Perceptron {
              "of the network; wide arrays get fewer neurons, as time grows with the square",
              true}};
 
-  Perceptron(const Given& given, const Settings& settings);
+  Perceptron(const Array& array, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);
   /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave
   /// numbers.

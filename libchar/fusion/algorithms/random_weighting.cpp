@@ -10,11 +10,11 @@
 
 namespace libchar::fusion {
 
-RandomWeighting::RandomWeighting(const Given& given, const Settings& settings)
+RandomWeighting::RandomWeighting(const Array& array, const Settings& settings)
     : floor_(settings["floor"]),
-      squares_(Eigen::VectorXd::Zero(given.channels)),
+      squares_(Eigen::VectorXd::Zero(array.channels)),
       variances_(squares_),
-      weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))) {
+      weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {
 }
 
 Estimate RandomWeighting::step(const Sample& y) {
@@ -55,19 +55,19 @@ Estimate RandomWeighting::step(const Sample& y) {
   return Estimate::scalar(base + x, largest * inverse);
 }
 
-RandomWeightingPublished::RandomWeightingPublished(const Given& given, const Settings& settings)
+RandomWeightingPublished::RandomWeightingPublished(const Array& array, const Settings& settings)
     : reference_(static_cast<Eigen::Index>(settings["reference_channel"]) - 1),
       second_(static_cast<Eigen::Index>(settings["second_channel"]) - 1),
-      squares_(Eigen::VectorXd::Zero(given.channels)),
+      squares_(Eigen::VectorXd::Zero(array.channels)),
       products_(squares_),
       variances_(squares_),
-      weights_(Eigen::VectorXd::Constant(given.channels, 1 / static_cast<double>(given.channels))) {
-  if (reference_ >= given.channels || second_ >= given.channels || reference_ == second_)
+      weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {
+  if (reference_ >= array.channels || second_ >= array.channels || reference_ == second_)
     throw Error({ErrorKind::usage,
                  "E0855",
                  "",
                  "random-weighting-published compares with two different channels of the " +
-                     std::to_string(given.channels) + " of the scene",
+                     std::to_string(array.channels) + " of the scene",
                  std::to_string(reference_ + 1) + " and " + std::to_string(second_ + 1),
                  "set reference_channel and second_channel"});
 }

@@ -19,14 +19,14 @@
 namespace libchar::fusion {
 
 struct RandomWeighting {
-  static constexpr Card card{.name = "random-weighting",
-                             .title = "Random weighting on differences of channels",
-                             .source = "[RV 3.9]; Grubbs 1948",
-                             .complexity = "O(n)",
-                             .needs = {.min_channels = 3, .more_than_inputs = 2}};
+  static constexpr Description description{.name = "random-weighting",
+                                           .title = "Random weighting on differences of channels",
+                                           .source = "[RV 3.9]; Grubbs 1948",
+                                           .complexity = "O(n)",
+                                           .needs = {.min_channels = 3, .more_than_inputs = 2}};
   static constexpr std::array options{
       Option{"floor", "", 1e-6, 0, 1, "smallest variance relative to the largest one"}};
-  RandomWeighting(const Given& given, const Settings& settings);
+  RandomWeighting(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const { return weights_; }
   Eigen::VectorXd variances() const { return variances_; }
@@ -38,11 +38,11 @@ struct RandomWeighting {
 };
 
 struct RandomWeightingPublished {
-  static constexpr Card card{.name = "random-weighting-published",
-                             .title = "Random weighting as published",
-                             .source = "[RV 3.9]",
-                             .complexity = "O(n)",
-                             .needs = {.min_channels = 2}};
+  static constexpr Description description{.name = "random-weighting-published",
+                                           .title = "Random weighting as published",
+                                           .source = "[RV 3.9]",
+                                           .complexity = "O(n)",
+                                           .needs = {.min_channels = 2}};
   static constexpr std::array options{
       Option{"reference_channel",
              "",
@@ -58,7 +58,7 @@ struct RandomWeightingPublished {
              1e6,
              "channel that the reference channel itself is compared with",
              true}};
-  RandomWeightingPublished(const Given& given, const Settings& settings);
+  RandomWeightingPublished(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const { return weights_; }
   Eigen::VectorXd variances() const { return variances_; }

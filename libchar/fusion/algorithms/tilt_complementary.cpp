@@ -20,10 +20,10 @@ double ComplementaryFilter::step(const TiltSample& sample) {
   return angle_ = wrapped(lambda_ * predicted + (1 - lambda_) * gravity);
 }
 
-TiltComplementary::TiltComplementary(const Given& given, const Settings& settings)
-    : channels_(*given.tilt),
-      filter_(lambda_of(settings, 1 / given.rate_hz),
-              1 / given.rate_hz,
+TiltComplementary::TiltComplementary(const Array& array, const Settings& settings)
+    : channels_(*array.tilt),
+      filter_(lambda_of(settings, 1 / array.rate_hz),
+              1 / array.rate_hz,
               settings["start_at_zero"] == 1) {}
 
 }  // namespace libchar::fusion

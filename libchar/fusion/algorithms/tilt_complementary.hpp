@@ -23,11 +23,11 @@ class ComplementaryFilter {
 };
 
 struct TiltComplementary {
-  static constexpr Card card{.name = "tilt-complementary",
-                             .title = "Tilt: complementary filter",
-                             .source = "[RV 2.5]",
-                             .complexity = "O(1)",
-                             .needs = kTiltNeeds};
+  static constexpr Description description{.name = "tilt-complementary",
+                                           .title = "Tilt: complementary filter",
+                                           .source = "[RV 2.5]",
+                                           .complexity = "O(1)",
+                                           .needs = kTiltNeeds};
   static constexpr std::array options{
       Option{"time_constant", "s", 1, 0, 1e9, "tau: gravity is believed beyond it"},
       Option{"lambda",
@@ -37,7 +37,7 @@ struct TiltComplementary {
              1,
              "share of the gyroscope at a step; below zero: from the time constant"},
       kStartAtZero};
-  TiltComplementary(const Given& given, const Settings& settings);
+  TiltComplementary(const Array& array, const Settings& settings);
   Estimate step(const Sample& y) {
     return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan(""));
   }
@@ -49,14 +49,14 @@ struct TiltComplementary {
 
 /// Baseline: lambda = 1.
 struct TiltGyroscope {
-  static constexpr Card card{.name = "tilt-gyroscope",
-                             .title = "Tilt: integrated gyroscope",
-                             .source = "[RV 2.5]",
-                             .complexity = "O(1)",
-                             .needs = kTiltNeeds};
+  static constexpr Description description{.name = "tilt-gyroscope",
+                                           .title = "Tilt: integrated gyroscope",
+                                           .source = "[RV 2.5]",
+                                           .complexity = "O(1)",
+                                           .needs = kTiltNeeds};
   static constexpr std::array options{kStartAtZero};
-  TiltGyroscope(const Given& given, const Settings& settings)
-      : channels_(*given.tilt), filter_(1, 1 / given.rate_hz, settings["start_at_zero"] == 1) {}
+  TiltGyroscope(const Array& array, const Settings& settings)
+      : channels_(*array.tilt), filter_(1, 1 / array.rate_hz, settings["start_at_zero"] == 1) {}
   Estimate step(const Sample& y) {
     return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan(""));
   }
@@ -68,12 +68,13 @@ struct TiltGyroscope {
 
 /// Baseline: the angle of gravity, nothing remembered; no estimate where a sample is missing.
 struct TiltAccelerometer {
-  static constexpr Card card{.name = "tilt-accelerometer",
-                             .title = "Tilt: angle of gravity",
-                             .source = "[RV 2.7]",
-                             .complexity = "O(1)",
-                             .needs = {.min_channels = 3, .accepts_missing = true, .tilt = true}};
-  explicit TiltAccelerometer(const Given& given) : channels_(*given.tilt) {}
+  static constexpr Description description{
+      .name = "tilt-accelerometer",
+      .title = "Tilt: angle of gravity",
+      .source = "[RV 2.7]",
+      .complexity = "O(1)",
+      .needs = {.min_channels = 3, .accepts_missing = true, .tilt = true}};
+  explicit TiltAccelerometer(const Array& array) : channels_(*array.tilt) {}
   Estimate step(const Sample& y) const {
     return Estimate::scalar(tilt_sample(channels_, y).angle, std::nan(""));
   }

@@ -75,10 +75,10 @@ double TiltKalmanFilter::step(const TiltSample& sample) {
   return angle_;
 }
 
-TiltKalman::TiltKalman(const Given& given, const Settings& settings)
-    : channels_(*given.tilt),
+TiltKalman::TiltKalman(const Array& array, const Settings& settings)
+    : channels_(*array.tilt),
       filter_({settings["angle_noise"], settings["bias_noise"], settings["gravity_variance"]},
-              1 / given.rate_hz,
+              1 / array.rate_hz,
               settings["start_bias_variance"],
               settings["start_at_zero"] == 1) {}
 

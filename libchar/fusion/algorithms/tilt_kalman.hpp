@@ -54,11 +54,11 @@ class TiltKalmanFilter {
 };
 
 struct TiltKalman {
-  static constexpr Card card{.name = "tilt-kalman",
-                             .title = "Tilt: Kalman filter with gyroscope bias",
-                             .source = "[RV 2.5]; Bierman 1977",
-                             .complexity = "O(1)",
-                             .needs = kTiltNeeds};
+  static constexpr Description description{.name = "tilt-kalman",
+                                           .title = "Tilt: Kalman filter with gyroscope bias",
+                                           .source = "[RV 2.5]; Bierman 1977",
+                                           .complexity = "O(1)",
+                                           .needs = kTiltNeeds};
   static constexpr std::array options{
       Option{"angle_noise", "rad^2/s", TiltNoise{}.angle, 0, 1e12, "white noise of the rate"},
       Option{"bias_noise",
@@ -80,7 +80,7 @@ struct TiltKalman {
              1e12,
              "of the gyroscope's bias before the first instant"},
       kStartAtZero};
-  TiltKalman(const Given& given, const Settings& settings);
+  TiltKalman(const Array& array, const Settings& settings);
   Estimate step(const Sample& y) {
     const double angle = filter_.step(tilt_sample(channels_, y));
     return Estimate::scalar(angle, std::isnan(angle) ? angle : filter_.p00());

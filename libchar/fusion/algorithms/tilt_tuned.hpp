@@ -39,14 +39,15 @@ class TiltWindow {
 };
 
 struct TiltComplementaryTuned {
-  static constexpr Card card{.name = "tilt-complementary-tuned",
-                             .title = "Tilt: complementary filter, time constant learnt",
-                             .source = "[RV 2.5]",
-                             .complexity = "O(1)",
-                             .needs = kTiltTunedNeeds,
-                             .learning_complexity = "about 50 runs of the filter"};
-  explicit TiltComplementaryTuned(const Given& given)
-      : channels_(*given.tilt), dt_(1 / given.rate_hz) {}
+  static constexpr Description description{
+      .name = "tilt-complementary-tuned",
+      .title = "Tilt: complementary filter, time constant learnt",
+      .source = "[RV 2.5]",
+      .complexity = "O(1)",
+      .needs = kTiltTunedNeeds,
+      .learning_complexity = "about 50 runs of the filter"};
+  explicit TiltComplementaryTuned(const Array& array)
+      : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
   void learn(const Sample& y, const Sample& truth) {
     window_.add(tilt_sample(channels_, y), truth[0]);
   }
@@ -63,13 +64,13 @@ struct TiltComplementaryTuned {
 };
 
 struct TiltKalmanTuned {
-  static constexpr Card card{.name = "tilt-kalman-tuned",
-                             .title = "Tilt: Kalman filter, noise learnt",
-                             .source = "[RV 2.5]; Bierman 1977",
-                             .complexity = "O(1)",
-                             .needs = kTiltTunedNeeds,
-                             .learning_complexity = "about 150 runs of the filter"};
-  explicit TiltKalmanTuned(const Given& given) : channels_(*given.tilt), dt_(1 / given.rate_hz) {}
+  static constexpr Description description{.name = "tilt-kalman-tuned",
+                                           .title = "Tilt: Kalman filter, noise learnt",
+                                           .source = "[RV 2.5]; Bierman 1977",
+                                           .complexity = "O(1)",
+                                           .needs = kTiltTunedNeeds,
+                                           .learning_complexity = "about 150 runs of the filter"};
+  explicit TiltKalmanTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
   void learn(const Sample& y, const Sample& truth) {
     window_.add(tilt_sample(channels_, y), truth[0]);
   }

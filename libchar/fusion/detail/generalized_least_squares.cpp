@@ -39,9 +39,9 @@ bool GeneralizedLeastSquares::factor(const double* variances, const int* index, 
     const double length = q_.col(j).head(m).norm();
     for (int pass = 0; pass < 2; ++pass)
       for (Eigen::Index i = 0; i < j; ++i) {
-        const double along = q_.col(i).head(m).dot(q_.col(j).head(m));
-        upper_(i, j) += along;
-        q_.col(j).head(m) -= along * q_.col(i).head(m);
+        const double projection = q_.col(i).head(m).dot(q_.col(j).head(m));
+        upper_(i, j) += projection;
+        q_.col(j).head(m) -= projection * q_.col(i).head(m);
       }
     const double left = q_.col(j).head(m).norm();
     if (!(left > kDependent * length)) return false;
@@ -61,14 +61,14 @@ bool GeneralizedLeastSquares::factor(const double* variances, const int* index, 
 
 void GeneralizedLeastSquares::solve(const double* y, double* x, double* residual) const {
   const Eigen::Index r = h_.cols();
-  double along[kMaxStates];
+  double projection[kMaxStates];
   for (Eigen::Index j = 0; j < r; ++j) {
     double sum = 0;
     for (int k = 0; k < m_; ++k) sum += q_(k, j) * (root_[k] * y[index_[k]]);
-    along[j] = sum;
+    projection[j] = sum;
   }
   for (Eigen::Index j = r - 1; j >= 0; --j) {
-    double sum = along[j];
+    double sum = projection[j];
     for (Eigen::Index k = j + 1; k < r; ++k) sum -= upper_(j, k) * x[k];
     x[j] = sum / upper_(j, j);
   }
@@ -86,8 +86,8 @@ double GeneralizedLeastSquares::leverage(int k) const {
 double GeneralizedLeastSquares::predicted_variance(Eigen::Index i) const {
   double sum = 0;
   for (Eigen::Index j = 0; j < h_.cols(); ++j) {
-    const double along = h_.row(i).head(j + 1).dot(inverse_.col(j).head(j + 1));
-    sum += along * along;
+    const double projection = h_.row(i).head(j + 1).dot(inverse_.col(j).head(j + 1));
+    sum += projection * projection;
   }
   return sum;
 }

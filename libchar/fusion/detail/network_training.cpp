@@ -136,16 +136,16 @@ ceres::Solver::Options options_of(const TrainingPlan& plan, EarlyStop& watch) {
 }  // namespace
 
 Training train(const TanhNetwork& network,
-               const TrainingRows& taught,
+               const TrainingRows& rows,
                const TrainingRows& held_out,
                const TrainingPlan& plan) {
   Training training;
   training.held_out_square = std::numeric_limits<double>::infinity();
   Uniform draw(plan.seed);
   for (std::size_t start = 0; start < plan.starts; ++start) {
-    std::vector<double> p = start_of(network, taught, draw);
+    std::vector<double> p = start_of(network, rows, draw);
     ceres::Problem problem;
-    problem.AddResidualBlock(new Residuals(network, taught), nullptr, p.data());
+    problem.AddResidualBlock(new Residuals(network, rows), nullptr, p.data());
     EarlyStop watch(network, held_out, p, plan.patience);
     ceres::Solver::Summary summary;
     ceres::Solve(options_of(plan, watch), &problem, &summary);

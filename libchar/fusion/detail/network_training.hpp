@@ -30,7 +30,7 @@ struct Training {
 
 /// One thread; the same arguments give the same bits.
 Training train(const TanhNetwork& network,
-               const TrainingRows& taught,
+               const TrainingRows& rows,
                const TrainingRows& held_out,
                const TrainingPlan& plan);
 

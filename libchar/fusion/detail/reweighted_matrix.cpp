@@ -4,14 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/fusion/detail/reweighting_limits.hpp"
+
 namespace libchar::fusion {
-namespace {
-
-constexpr double kTiny = 1e-280;
-constexpr double kSmallestRatio = 1e-26;
-constexpr double kStart = 10;
-
-}  // namespace
 
 ReweightedMatrix::ReweightedMatrix(const Eigen::MatrixXd& h, const ReweightingOptions& options)
     : options_(options),

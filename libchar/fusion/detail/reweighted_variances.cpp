@@ -5,16 +5,11 @@
 #include <numeric>
 
 #include "libchar/core/dense.hpp"
+#include "libchar/fusion/detail/reweighting_limits.hpp"
 
 namespace libchar::fusion {
 namespace {
 
-/// Variances never reach the denormals, whatever is fed.
-constexpr double kTiny = 1e-280;
-/// Ratio of standard deviations of 1e13: beyond it the squares tell nothing.
-constexpr double kSmallestRatio = 1e-26;
-/// The falling gain of the start: a = 1 / (k + kStart).
-constexpr double kStart = 10;
 /// Instants that the start is made from.
 constexpr int kFirstInstants = 16;
 

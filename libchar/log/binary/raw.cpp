@@ -13,7 +13,7 @@
 namespace libchar {
 namespace {
 
-[[noreturn]] void refuse(std::string where, std::string what, std::string hint = "") {
+[[noreturn]] void refuse_raw(std::string where, std::string what, std::string hint = "") {
   throw Error({ErrorKind::input, "E0422", std::move(where), std::move(what), "", std::move(hint)});
 }
 
@@ -21,31 +21,32 @@ namespace {
 std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warnings& warnings) {
   const std::string& path = file.path();
   if (sidecar.offset > file.size())
-    refuse(fmt::format("{} (byte {})", path, file.size()),
-           fmt::format("the offset of {} bytes lies behind the end of the file ({} bytes)",
-                       sidecar.offset,
-                       file.size()));
+    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
+               fmt::format("the offset of {} bytes lies behind the end of the file ({} bytes)",
+                           sidecar.offset,
+                           file.size()));
   const std::uint64_t present = file.size() - sidecar.offset;
   const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
   const std::uint64_t whole = present / record;
   if (whole == 0)
-    refuse(fmt::format("{} (byte {})", path, file.size()),
-           fmt::format("{} bytes are less than one row of {}", present, record));
+    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
+               fmt::format("{} bytes are less than one row of {}", present, record));
   const std::uint64_t rows = sidecar.rows.value_or(whole);
   std::uint64_t needed = 0;
   if (__builtin_mul_overflow(rows, record, &needed) || needed > (std::uint64_t{1} << 62U))
-    refuse(path, fmt::format("rows × channels × bytes overflows: {} × {}", rows, record));
+    refuse_raw(path, fmt::format("rows × channels × bytes overflows: {} × {}", rows, record));
   if (rows > whole)
-    refuse(fmt::format("{} (byte {})", path, file.size()),
-           fmt::format("is truncated: {} of {} rows present", whole, rows),
-           "copy it again, or correct the sidecar's rows");
+    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
+               fmt::format("is truncated: {} of {} rows present", whole, rows),
+               "copy it again, or correct the sidecar's rows");
   if (!sidecar.rows && sidecar.planar && present % record != 0)
-    refuse(path,
-           fmt::format(
-               "{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
-               present,
-               record),
-           "give rows in the sidecar");
+    refuse_raw(
+        path,
+        fmt::format(
+            "{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
+            present,
+            record),
+        "give rows in the sidecar");
   if (present > needed)
     warnings.add("trailing_bytes",
                  "bytes behind the last row were left out",
@@ -58,9 +59,9 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   auto file = std::make_unique<BinaryFile>(path);
   const std::string beside = find_sidecar(path);
   if (beside.empty())
-    refuse(path,
-           "is raw binary and has no sidecar that says what it holds",
-           fmt::format("write {}.json, such as {}", path, minimal_sidecar()));
+    refuse_raw(path,
+               "is raw binary and has no sidecar that says what it holds",
+               fmt::format("write {}.json, such as {}", path, minimal_sidecar()));
   const Sidecar sidecar = read_sidecar(beside);
   BinaryLayout layout;
   layout.rows = count_rows(sidecar, *file, layout.warnings);

@@ -7,17 +7,16 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 #include "libchar/replay/detail/timeline.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 using Clock = std::chrono::steady_clock;
 
-// Teaching takes long enough for the scheduler to come in between, and for this clock's cost.
+// Learning takes long enough for the scheduler to come in between, and for this clock's cost.
 double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -39,7 +38,7 @@ AllanCurve curve_of(const AllanPyramid& pyramid, double dt_s) {
 AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why) {
   AlgorithmResult out;
   out.label = planned.label;
-  out.card = planned.entry->card;
+  out.description = planned.entry->description;
   out.settings = planned.settings;
   out.bound = planned.learns_run();
   out.why = why;
@@ -60,7 +59,7 @@ void AlgorithmRun::guarded(const Work& work) {
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric && error.problem().kind != ErrorKind::usage)
       throw;
-    const std::string what = error.problem().what, name(planned_->entry->card->name);
+    const std::string what = error.problem().what, name(planned_->entry->description->name);
     failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
     runner_.reset();
   }
@@ -90,10 +89,10 @@ double AlgorithmRun::accounted(const Work& work) {
 
 AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& frame)
     : planned_(&planned), frame_(&frame) {
-  const auto inputs = static_cast<std::size_t>(frame.given->inputs());
+  const auto inputs = static_cast<std::size_t>(frame.array->inputs());
   meters_.resize(inputs);
   if (frame.allan) allan_.resize(inputs);
-  guarded([&] { runner_ = planned.entry->make(*frame.given, planned.settings); });
+  guarded([&] { runner_ = planned.entry->make(*frame.array, planned.settings); });
 }
 
 void AlgorithmRun::learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
@@ -114,7 +113,7 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
 
 void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
-  x_.resize(frame_->given->inputs(), samples.cols());
+  x_.resize(frame_->array->inputs(), samples.cols());
   variance_.resize(x_.rows(), x_.cols());
   timed_run(samples);
   steps_ += static_cast<std::uint64_t>(samples.cols());
@@ -122,7 +121,7 @@ void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
 
 void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
-  x_.resize(frame_->given->inputs(), samples.cols());
+  x_.resize(frame_->array->inputs(), samples.cols());
   variance_.resize(x_.rows(), x_.cols());
   timed_run(samples);
 }
@@ -174,7 +173,7 @@ std::vector<FoundFault> AlgorithmRun::found_faults() const {
   std::vector<FoundFault> out;
   const fusion::FaultLog* log = runner_->faults();
   if (log == nullptr) return out;
-  std::vector<std::ptrdiff_t> open(static_cast<std::size_t>(frame_->given->channels), -1);
+  std::vector<std::ptrdiff_t> open(static_cast<std::size_t>(frame_->array->channels), -1);
   for (const fusion::FaultEvent& event : log->events()) {
     const double time_s = frame_->start_s + static_cast<double>(event.sample) / frame_->rate_hz;
     auto& place = open[static_cast<std::size_t>(event.channel)];

@@ -13,7 +13,7 @@ namespace libchar {
 
 /// What all runs of one replay share.
 struct RunFrame {
-  const fusion::Given* given = nullptr;
+  const fusion::Array* array = nullptr;
   HeapMeter* heap = nullptr;
   double rate_hz = 0, start_s = 0;  ///< of the run
   double output_scale = 1;

@@ -5,33 +5,33 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Every sensor left out costs a run over all the others.
 constexpr Eigen::Index kMostLeftOut = 32;
 
 }  // namespace
 
-BlindRun::BlindRun(const PlannedAlgorithm& planned, const fusion::Given& given)
+BlindRun::BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array)
     : planned_(&planned),
-      given_(&given),
-      h_(given.h()),
-      meters_(static_cast<std::size_t>(given.channels)) {
-  others_.resize(static_cast<std::size_t>(given.channels));
-  const Eigen::Index left_out = std::min(given.channels, kMostLeftOut);
+      array_(&array),
+      h_(array.h()),
+      meters_(static_cast<std::size_t>(array.channels)) {
+  others_.resize(static_cast<std::size_t>(array.channels));
+  const Eigen::Index left_out = std::min(array.channels, kMostLeftOut);
   for (Eigen::Index k = 0; k < left_out; ++k) {
-    const Eigen::Index out = k * given.channels / left_out;
+    const Eigen::Index out = k * array.channels / left_out;
     std::vector<Eigen::Index> channels;
-    for (Eigen::Index i = 0; i < given.channels; ++i)
+    for (Eigen::Index i = 0; i < array.channels; ++i)
       if (i != out) channels.push_back(i);
     others_[static_cast<std::size_t>(out)] = part(channels);
   }
   for (const Eigen::Index start : {0, 1}) {
     std::vector<Eigen::Index> channels;
-    for (Eigen::Index i = start; i < given.channels; i += 2) channels.push_back(i);
+    for (Eigen::Index i = start; i < array.channels; i += 2) channels.push_back(i);
     halves_.push_back(part(channels));
   }
 }
@@ -39,10 +39,11 @@ BlindRun::BlindRun(const PlannedAlgorithm& planned, const fusion::Given& given)
 BlindRun::Part BlindRun::part(const std::vector<Eigen::Index>& channels) const {
   Part out;
   out.channels = channels;
-  const fusion::Given given = subset(*given_, channels);
-  if (channels.empty() || !fusion::why_not(*planned_->entry->card, given).empty()) return out;
+  const fusion::Array array = subset(*array_, channels);
+  if (channels.empty() || !fusion::why_not(*planned_->entry->description, array).empty())
+    return out;
   try {
-    out.runner = planned_->entry->make(given, planned_->settings);
+    out.runner = planned_->entry->make(array, planned_->settings);
     out.runner->finish_learning();
   } catch (const Error&) {
     out.runner.reset();  // an option that does not fit fewer channels: no score of this part
@@ -53,7 +54,7 @@ BlindRun::Part BlindRun::part(const std::vector<Eigen::Index>& channels) const {
 bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples) {
   if (!part.runner) return false;
   part.samples = samples(part.channels, Eigen::all);
-  part.x.resize(given_->inputs(), samples.cols());
+  part.x.resize(array_->inputs(), samples.cols());
   part.variance.resize(part.x.rows(), part.x.cols());
   part.runner->run(part.samples, part.x, part.variance);
   steps_ += static_cast<std::uint64_t>(samples.cols());

@@ -16,7 +16,7 @@ namespace libchar {
 
 class BlindRun {
  public:
-  BlindRun(const PlannedAlgorithm& planned, const fusion::Given& given);
+  BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array);
   void run(const Eigen::MatrixXd& samples);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
   /// Root mean square over the sensors, instant by instant: for intervals and comparisons.
@@ -33,7 +33,7 @@ class BlindRun {
   bool step(Part& part, const Eigen::MatrixXd& samples);
 
   const PlannedAlgorithm* planned_;
-  const fusion::Given* given_;
+  const fusion::Array* array_;
   Eigen::MatrixXd h_;
   std::vector<Part> others_;  // without sensor i
   std::vector<Part> halves_;

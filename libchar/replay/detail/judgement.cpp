@@ -5,16 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/not_known.hpp"
+
 namespace libchar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// A method that has an estimate at clearly fewer instants than others does not win by them.
 constexpr double kLeastShare = 0.9;
 
 // The diagonal of (H' R^-1 H)^-1, R the sensors' mean square errors: by QR of R^-1/2 H.
-Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Given& given) {
-  Eigen::MatrixXd scaled = given.h();
+Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Array& array) {
+  Eigen::MatrixXd scaled = array.h();
   for (std::size_t i = 0; i < rms.size(); ++i) {
     // A sensor that was never healthy tells nothing.
     const double information = rms[i] > 0 ? 1 / rms[i] : 0;
@@ -42,17 +43,17 @@ double regret_of(const AlgorithmResult& algorithm) {
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
                    const std::vector<double>& healthy_rms,
-                   const fusion::Given& given) {
+                   const fusion::Array& array) {
   if (!result.has_reference) return;
   ScoreOptions quick;
   quick.replicates = 0;
-  if (given.plain() || given.tilt) {
+  if (array.one_common_input() || array.tilt) {
     for (const AlgorithmRun& bound : optimum)
       if (bound.alive())
         result.inputs[0].optimum_rmse = std::fmin(
             result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
   } else {
-    const Eigen::VectorXd best = gauss_markov(healthy_rms, given);
+    const Eigen::VectorXd best = gauss_markov(healthy_rms, array);
     for (std::size_t j = 0; j < result.inputs.size(); ++j)
       result.inputs[j].optimum_rmse = best[static_cast<Eigen::Index>(j)];
   }
@@ -68,8 +69,9 @@ void judge_tracking(AlgorithmResult& algorithm,
                     const AlgorithmRun& run,
                     const std::vector<AlgorithmRun>& optimum,
                     const ReplayResult& result,
-                    const fusion::Given& given) {
-  if (!algorithm.ran || !result.has_reference || !given.plain() || !given.section_starts.empty())
+                    const fusion::Array& array) {
+  if (!algorithm.ran || !result.has_reference || !array.one_common_input() ||
+      !array.section_starts.empty())
     return;
   const auto& weights = run.weight_samples();
   if (!weights.empty() && !optimum.empty() && optimum[0].alive())

@@ -18,14 +18,14 @@ namespace libchar {
 void judge_optimum(ReplayResult& result,
                    const std::vector<AlgorithmRun>& optimum,
                    const std::vector<double>& healthy_rms,
-                   const fusion::Given& given);
+                   const fusion::Array& array);
 
 /// Distances over time; needs `sensors` of the result.
 void judge_tracking(AlgorithmResult& algorithm,
                     const AlgorithmRun& run,
                     const std::vector<AlgorithmRun>& optimum,
                     const ReplayResult& result,
-                    const fusion::Given& given);
+                    const fusion::Array& array);
 
 /// Which known faults were found, and when.
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);

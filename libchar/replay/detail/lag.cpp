@@ -16,6 +16,8 @@
 #include <optional>
 #include <vector>
 
+#include "libchar/core/not_known.hpp"
+
 namespace libchar {
 namespace {
 
@@ -24,7 +26,6 @@ constexpr std::int64_t kLobes = 8;         // of the interpolation
 constexpr std::int64_t kFewestPairs = 10;  // that say anything
 constexpr std::int64_t kRadius = 3;        // looked at around the best lag of blocks, in blocks
 constexpr double kTie = 1e-3;              // coefficients nearer than this are one
-const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Series = std::vector<double>;
 

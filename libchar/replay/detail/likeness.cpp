@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Same samples, same reference: other rounding is the most that may differ.
 constexpr double kRounding = 1e-6;
 

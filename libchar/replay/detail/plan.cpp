@@ -77,27 +77,27 @@ std::vector<std::int64_t> section_starts(const Instants& instants,
   return {starts.begin(), starts.end()};
 }
 
-fusion::Given make_given(const Scene& scene,
-                         const Instants& instants,
-                         const SensorKnowledge& knowledge,
-                         const ReplayPlan& plan) {
-  fusion::Given given;
+fusion::Array describe_array(const Scene& scene,
+                             const Instants& instants,
+                             const SensorKnowledge& knowledge,
+                             const ReplayPlan& plan) {
+  fusion::Array array;
   const InstantsInfo& info = instants.info();
-  given.channels = static_cast<Eigen::Index>(scene.sensors.size());
-  given.observation_matrix = observation_matrix(scene, info.input_names.size());
+  array.channels = static_cast<Eigen::Index>(scene.sensors.size());
+  array.observation_matrix = observation_matrix(scene, info.input_names.size());
   const auto& levels = knowledge.noise_variances;
   if (std::all_of(levels.begin(), levels.end(), [](double v) { return v > 0; }))
-    given.noise_levels = Eigen::Map<const Eigen::VectorXd>(levels.data(), given.channels);
-  given.rate_hz = info.rate_hz;
-  given.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
-  given.reference_throughout = info.has_reference;
-  given.fault_free_samples = fault_free(scene, instants, plan.run_from, plan.run_to);
-  given.section_starts = section_starts(instants, plan.run_from, plan.run_to);
+    array.noise_levels = Eigen::Map<const Eigen::VectorXd>(levels.data(), array.channels);
+  array.rate_hz = info.rate_hz;
+  array.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
+  array.reference_throughout = info.has_reference;
+  array.fault_free_samples = fault_free(scene, instants, plan.run_from, plan.run_to);
+  array.section_starts = section_starts(instants, plan.run_from, plan.run_to);
   if (scene.tilt)
-    given.tilt = fusion::TiltChannels{static_cast<Eigen::Index>(scene.tilt->gyroscope),
+    array.tilt = fusion::TiltChannels{static_cast<Eigen::Index>(scene.tilt->gyroscope),
                                       static_cast<Eigen::Index>(scene.tilt->accelerometer_x),
                                       static_cast<Eigen::Index>(scene.tilt->accelerometer_z)};
-  return given;
+  return array;
 }
 
 // Seconds from the recording's first sample to instants.
@@ -193,8 +193,8 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   }
   if (asked.empty() || options.no_skip)
     for (const fusion::Entry& entry : fusion::algorithms())
-      if (!times.contains(std::string(entry.card->name)))
-        out.push_back({std::string(entry.card->name),
+      if (!times.contains(std::string(entry.description->name)))
+        out.push_back({std::string(entry.description->name),
                        &entry,
                        fusion::Settings(entry.options),
                        "",
@@ -205,18 +205,18 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
 // The smallest error that fixed weights can have, learnt on the run itself: with and without
 // calibration, of the sensors that are healthy at each instant. For a tilt: the best filter,
 // as it stands or tuned on the run, and either sensor alone.
-std::vector<PlannedAlgorithm> optimum(const fusion::Given& given) {
+std::vector<PlannedAlgorithm> optimum(const fusion::Array& array) {
   std::vector<PlannedAlgorithm> out;
   const auto add = [&](const char* name, std::vector<std::pair<std::string, double>> options) {
     const fusion::Entry& entry = fusion::algorithm(name);
     PlannedAlgorithm bound{name, &entry, fusion::Settings(entry.options), "", false};
     for (const auto& [option, value] : options) bound.settings.set(option, value);
-    fusion::Given on_run = given;
-    if (given.tilt) on_run.learning_samples = std::numeric_limits<std::int64_t>::max();
-    bound.why = fusion::why_not(*entry.card, on_run);
+    fusion::Array on_run = array;
+    if (array.tilt) on_run.learning_samples = std::numeric_limits<std::int64_t>::max();
+    bound.why = fusion::why_not(*entry.description, on_run);
     if (bound.runs()) out.push_back(std::move(bound));
   };
-  if (given.tilt) {
+  if (array.tilt) {
     for (const char* name : {"tilt-kalman-tuned",
                              "tilt-complementary-tuned",
                              "tilt-kalman",
@@ -247,11 +247,11 @@ ReplayPlan make_plan(const Scene& scene,
                           "a sensor is part of the reference: its error is hidden in every score",
                           sensor.name);
     }
-  plan.given = make_given(scene, instants, knowledge, plan);
+  plan.array = describe_array(scene, instants, knowledge, plan);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
-    algorithm.why = fusion::why_not(*algorithm.entry->card, plan.given);
-  if (instants.info().has_reference) plan.optimum = optimum(plan.given);
+    algorithm.why = fusion::why_not(*algorithm.entry->description, plan.array);
+  if (instants.info().has_reference) plan.optimum = optimum(plan.array);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {
       return a.runs() && wanted(a);
@@ -279,12 +279,12 @@ ReplayPlan make_plan(const Scene& scene,
   return plan;
 }
 
-fusion::Given subset(const fusion::Given& given, const std::vector<Eigen::Index>& channels) {
-  fusion::Given part = given;
+fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels) {
+  fusion::Array part = array;
   part.channels = static_cast<Eigen::Index>(channels.size());
-  if (given.observation_matrix.size() > 0)
-    part.observation_matrix = given.observation_matrix(channels, Eigen::all);
-  if (given.noise_levels.size() > 0) part.noise_levels = given.noise_levels(channels);
+  if (array.observation_matrix.size() > 0)
+    part.observation_matrix = array.observation_matrix(channels, Eigen::all);
+  if (array.noise_levels.size() > 0) part.noise_levels = array.noise_levels(channels);
   return part;
 }
 

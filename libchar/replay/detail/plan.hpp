@@ -18,8 +18,8 @@ struct PlannedAlgorithm {
   std::string why;    ///< why it does not run, a sentence; empty: it runs
   bool asked = true;  ///< false: run for `no_skip` alone, shown nowhere
   bool runs() const { return why.empty(); }
-  bool learns_before() const { return entry->card->needs.reference; }
-  bool learns_run() const { return entry->card->needs.reference_throughout; }
+  bool learns_before() const { return entry->description->needs.reference; }
+  bool learns_run() const { return entry->description->needs.reference_throughout; }
 };
 
 /// What was found out about each sensor before the plan.
@@ -33,7 +33,7 @@ struct SensorKnowledge {
 SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress);
 
 struct ReplayPlan {
-  fusion::Given given;
+  fusion::Array array;
   TimeWindow learning, evaluation;
   std::int64_t learn_from = 0, learn_to = 0;  ///< instants of the learning window; equal: none
   std::int64_t run_from = 0, run_to = 0;
@@ -60,6 +60,6 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const SensorKnowledge& knowledge);
 
 /// The same array with some of its channels only.
-fusion::Given subset(const fusion::Given& given, const std::vector<Eigen::Index>& channels);
+fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels);
 
 }  // namespace libchar

@@ -70,10 +70,10 @@ std::string levels(const Scene& scene, const SensorKnowledge& knowledge) {
 
 std::string optimum(const ReplayPlan& plan) {
   if (plan.optimum.empty()) return "";
-  return plan.given.tilt
+  return plan.array.tilt
              ? "optimum: the best filter tuned on the evaluation itself"
-             : fmt::format("optimum: best fixed weights taught on the evaluation itself{}",
-                           plan.given.section_starts.empty() ? "" : ", failed sensors left out");
+             : fmt::format("optimum: best fixed weights learnt on the evaluation itself{}",
+                           plan.array.section_starts.empty() ? "" : ", failed sensors left out");
 }
 
 }  // namespace
@@ -94,10 +94,10 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                             significant(instants.info().rate_hz, 6),
                             seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
-  if (plan.given.fault_free_samples > 0)
+  if (plan.array.fault_free_samples > 0)
     out.push_back(fmt::format(
         "no sensor fails in the first {} of it",
-        seconds(static_cast<double>(plan.given.fault_free_samples) / instants.info().rate_hz)));
+        seconds(static_cast<double>(plan.array.fault_free_samples) / instants.info().rate_hz)));
   if (const std::string text = optimum(plan); !text.empty()) out.push_back(text);
   out.push_back("runs " + names_of(plan.algorithms, [](const auto&) { return true; }));
   for (const PlannedAlgorithm& a : plan.algorithms)

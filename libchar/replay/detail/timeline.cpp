@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/not_known.hpp"
+
 namespace libchar {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool still(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [&](double v) {

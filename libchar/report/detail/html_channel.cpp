@@ -39,7 +39,7 @@ std::string in_field_units(const Coefficient& c, std::size_t term, const std::st
   if (!c.value && !c.upper95) return out;
   for (const HabitualValue& habit : habitual_units(kTermNames[term].key, unit)) {
     out += fmt::format("<div><b>{}</b> {} <span class=\"dim\">{}</span></div>",
-                       html_text(people_value(c, habit.factor)),
+                       html_text(value_text(c, habit.factor)),
                        html_text(habit.symbol),
                        html_text(habit.name));
   }
@@ -50,8 +50,8 @@ std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::strin
   const Coefficient& c = fit.term[t];
   const TermName& name = kTermNames[t];
   const std::string interval =
-      c.value ? people_coefficient(c).substr(people_coefficient(c).find('[')) : "–";
-  const std::string known = c.value ? "±" + people(100 * c.relative_sd, 2) + " %" : "–";
+      c.value ? coefficient_text(c).substr(coefficient_text(c).find('[')) : "–";
+  const std::string known = c.value ? "±" + number_text(100 * c.relative_sd, 2) + " %" : "–";
   return fmt::format(
       "<tr><th scope=\"row\">{} <b>{}</b><span class=\"dim\"> IEEE 952: {}</span></th><td "
       "class=\"n\"><b>{}</b></td><td class=\"n\">{}</td>"
@@ -60,14 +60,14 @@ std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::strin
       term_title(static_cast<Term>(t)),
       name.letter,
       name.ieee,
-      html_text(people_value(c)),
+      html_text(value_text(c)),
       html_text(interval),
       html_text(term_unit(name.key, unit)),
       in_field_units(c, t, unit),
       status_chip(c.status),
       known,
-      c.bound ? "±" + people(100 * *c.bound, 2) + " %" : "–",
-      c.seconds_for_10_percent ? html_text(people_seconds(*c.seconds_for_10_percent)) : "–");
+      c.bound ? "±" + number_text(100 * *c.bound, 2) + " %" : "–",
+      c.seconds_for_10_percent ? html_text(duration_text(*c.seconds_for_10_percent)) : "–");
 }
 
 std::string derived_rows(const ChannelView& view, double rate_hz) {
@@ -86,18 +86,18 @@ std::string derived_rows(const ChannelView& view, double rate_hz) {
   };
   if (white.value) {
     row("Noise of a single sample",
-        people_value(white, std::sqrt(rate_hz)),
+        value_text(white, std::sqrt(rate_hz)),
         fmt::format("Q·√f: what white noise alone gives at f = {} Hz; the samples of this "
                     "recording have a standard deviation of {} {}",
                     significant(rate_hz, 6),
-                    people(c.quality.standard_deviation, 4),
+                    number_text(c.quality.standard_deviation, 4),
                     unit));
   }
   if (const AllanPoint* lowest = view.allan_minimum) {
     row("Minimum of the Allan curve",
-        people(lowest->deviation, 4),
+        number_text(lowest->deviation, 4),
         fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
-                    people_seconds(lowest->tau_s)));
+                    duration_text(lowest->tau_s)));
   }
   if (c.fit->bandwidth_hz) {
     const auto& ci = c.fit->bandwidth_ci95;
@@ -105,8 +105,8 @@ std::string derived_rows(const ChannelView& view, double rate_hz) {
         "<tr class=\"derived\"><th scope=\"row\">Bandwidth</th><td class=\"n\"><b>{}</b></td><td "
         "class=\"n\">{}</td><td>Hz</td>"
         "<td colspan=\"5\">corner of the first-order low-pass that the fit needed</td></tr>\n",
-        people(*c.fit->bandwidth_hz, 4),
-        ci ? fmt::format("[{}, {}]", people(ci->low, 4), people(ci->high, 4)) : "");
+        number_text(*c.fit->bandwidth_hz, 4),
+        ci ? fmt::format("[{}, {}]", number_text(ci->low, 4), number_text(ci->high, 4)) : "");
   }
   return out;
 }
@@ -139,11 +139,11 @@ std::string second_opinion_table(const ChannelView& view) {
                     table_head({"Term", "Spectral fit", "Allan fit", "± sd", "Unit", "Apart by"});
   for (const OtherOpinion& other : view.other_opinions)
     out += table_row({term_title(other.term),
-                      people_value(fit[other.term]),
-                      people(other.value),
-                      people(other.sd, 2),
+                      value_text(fit[other.term]),
+                      number_text(other.value),
+                      number_text(other.sd, 2),
                       term_unit(kTermNames[static_cast<std::size_t>(other.term)].key, view.unit),
-                      other.apart ? people(*other.apart, 2) + " sd" : "–"});
+                      other.apart ? number_text(*other.apart, 2) + " sd" : "–"});
   out += "</tbody></table></div>\n";
   // The badge above says that much already.
   return opinion.sentence == "agrees" ? out : out + "<p>" + html_text(opinion.sentence) + "</p>\n";
@@ -152,7 +152,7 @@ std::string second_opinion_table(const ChannelView& view) {
 std::string trust(const ChannelView& view, std::size_t index) {
   const ChannelResult& c = *view.result;
   const NoiseFit& fit = *c.fit;
-  std::string out = "<div class=\"halves\">\n<div>\n";
+  std::string out = "<div class=\"two-columns\">\n<div>\n";
   if (!fit.residuals.empty()) {
     out +=
         plot_figure("residuals",
@@ -175,7 +175,7 @@ std::string trust(const ChannelView& view, std::size_t index) {
     out += "<h4>What was done to the data before the fit</h4>\n<table>\n" +
            table_head({"Remedy", "Because", "What was done", "Count"});
     for (const Remedy& r : fit.remedies)
-      out += table_row({r.kind, r.alarm, r.action, people_count(r.count)});
+      out += table_row({r.kind, r.alarm, r.action, count_text(r.count)});
     out += "</tbody></table>\n";
   }
   if (fit.second_opinion) {
@@ -197,8 +197,8 @@ std::string verification_section(const ChannelView& view) {
                     table_head({"Term", "Model", "Fit of the simulated record", "Unit", ""});
   for (const TermVerification& t : v.terms) {
     out += table_row({term_title(t.term),
-                      people_value(t.model),
-                      people_coefficient(t.simulated),
+                      value_text(t.model),
+                      coefficient_text(t.simulated),
                       term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, view.unit),
                       t.agrees ? "agrees" : "disagrees"});
   }
@@ -211,10 +211,10 @@ std::string lines_table(const ChannelView& view) {
   std::string out = "<h4>Spectral lines</h4>\n<table>\n" +
                     table_head({"Frequency", "Amplitude (peak)", "Above the floor", "Width"});
   for (const SpectralLine& line : c.lines) {
-    out += table_row({people(line.frequency_hz, 5) + " Hz",
-                      people(line.amplitude, 3) + " " + view.unit,
-                      "×" + people(line.excess, 3),
-                      people(line.width_hz, 2) + " Hz"});
+    out += table_row({number_text(line.frequency_hz, 5) + " Hz",
+                      number_text(line.amplitude, 3) + " " + view.unit,
+                      "×" + number_text(line.excess, 3),
+                      number_text(line.width_hz, 2) + " Hz"});
   }
   return out + "</tbody></table>\n";
 }
@@ -224,35 +224,36 @@ std::string quality(const ChannelView& view) {
   const std::string unit = view.unit.empty() ? "U" : view.unit;
   const double all = static_cast<double>(q.samples + q.missing);
   std::string out = "<h3>Data quality</h3>\n<table class=\"facts\"><tbody>\n";
-  out += table_row({"Samples", people_count(q.samples)});
+  out += table_row({"Samples", count_text(q.samples)});
   out += table_row({"Missing",
                     q.missing == 0
                         ? "none"
                         : fmt::format("{} ({} %)",
-                                      people_count(q.missing),
-                                      people(100 * static_cast<double>(q.missing) / all, 2))});
-  out += table_row({"Mean", people(q.mean, 6) + " " + unit});
+                                      count_text(q.missing),
+                                      number_text(100 * static_cast<double>(q.missing) / all, 2))});
+  out += table_row({"Mean", number_text(q.mean, 6) + " " + unit});
   const bool constant = q.samples > 0 && q.minimum == q.maximum;
-  out += table_row(
-      {"Standard deviation", constant ? "constant" : people(q.standard_deviation, 4) + " " + unit});
+  out += table_row({"Standard deviation",
+                    constant ? "constant" : number_text(q.standard_deviation, 4) + " " + unit});
   if (q.samples > 0)
     out += table_row(
-        {"Range", fmt::format("{} … {} {}", people(q.minimum, 5), people(q.maximum, 5), unit)});
-  out +=
-      table_row({"Resolution (LSB)",
-                 q.resolution ? people(*q.resolution, 4) + " " + unit : "no grid of values found"});
+        {"Range",
+         fmt::format("{} … {} {}", number_text(q.minimum, 5), number_text(q.maximum, 5), unit)});
+  out += table_row(
+      {"Resolution (LSB)",
+       q.resolution ? number_text(*q.resolution, 4) + " " + unit : "no grid of values found"});
   out += table_row({"Distinct values",
-                    q.distinct_values >= 4096 ? "4096 or more" : people_count(q.distinct_values)});
-  out += table_row({"Saturated samples", q.saturated == 0 ? "none" : people_count(q.saturated)});
-  out +=
-      table_row({"Longest run of one value",
-                 people_count(q.longest_stuck) + (q.longest_stuck == 1 ? " sample" : " samples")});
+                    q.distinct_values >= 4096 ? "4096 or more" : count_text(q.distinct_values)});
+  out += table_row({"Saturated samples", q.saturated == 0 ? "none" : count_text(q.saturated)});
+  out += table_row({"Longest run of one value",
+                    count_text(q.longest_stuck) + (q.longest_stuck == 1 ? " sample" : " samples")});
   if (!constant)
-    out += table_row({"Kurtosis of differences",
-                      people(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
+    out +=
+        table_row({"Kurtosis of differences",
+                   number_text(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
   if (q.float32 && !constant)
-    out += table_row(
-        {"Number format", "32-bit floats, in steps of " + people(q.float32_step, 2) + " " + unit});
+    out += table_row({"Number format",
+                      "32-bit floats, in steps of " + number_text(q.float32_step, 2) + " " + unit});
   out += "</tbody></table>\n" + lines_table(view);
   return out + bullet_list(q.suggestions, "plain");
 }
@@ -300,14 +301,14 @@ std::string curve_points(const ChannelView& view) {
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const AllanPoint& p = points[i];
     const auto interval = [&](const Interval& ci) {
-      return p.edf > 0 ? people(ci.low) + " … " + people(ci.high) : std::string("–");
+      return p.edf > 0 ? number_text(ci.low) + " … " + number_text(ci.high) : std::string("–");
     };
-    out += table_row({people(p.tau_s, 6),
-                      people(p.deviation, 5),
+    out += table_row({number_text(p.tau_s, 6),
+                      number_text(p.deviation, 5),
                       interval(p.ci68),
                       interval(p.ci95),
-                      p.edf > 0 ? people(p.edf, 4) : "–",
-                      people_count(p.terms),
+                      p.edf > 0 ? number_text(p.edf, 4) : "–",
+                      count_text(p.terms),
                       p.reliable ? "" : "unreliable"});
   }
   out += "</tbody></table></div>\n";
@@ -356,7 +357,7 @@ std::string channel_section(const ChannelView& view, const LogInfo& log, std::si
          curve_plots(view, index);
   if (c.fit) out += numbers_table(view, rate_hz) + trust(view, index);
   if (c.verification) out += verification_section(view);
-  out += "<div class=\"halves\">\n<div>\n" + quality(view) + "</div>\n<div>\n" +
+  out += "<div class=\"two-columns\">\n<div>\n" + quality(view) + "</div>\n<div>\n" +
          consumers(view, rate_hz) + "</div>\n</div>\n";
   return out + curve_points(view) + "</section>\n";
 }

@@ -102,7 +102,7 @@ std::string warnings_part(const Warnings& warnings) {
   for (const Warning& w : warnings.list()) {
     std::string places;
     for (const std::string& place : w.places) places += (places.empty() ? "" : ", ") + place;
-    out += table_row({w.code, w.message, people_count(w.count), places});
+    out += table_row({w.code, w.message, count_text(w.count), places});
   }
   return out + "</tbody></table>\n";
 }

@@ -60,10 +60,10 @@ std::string spectrum_caption(const Spectrum& s) {
       "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean "
       "was removed. "
       "Line: fitted model. Dashed: its terms.",
-      people_count(s.segments),
+      count_text(s.segments),
       s.segments == 1 ? "" : "s",
-      people_count(s.segment),
-      people_seconds(static_cast<double>(s.segment) / s.rate_hz),
+      count_text(s.segment),
+      duration_text(static_cast<double>(s.segment) / s.rate_hz),
       window_title(s.window));
 }
 

@@ -8,7 +8,6 @@
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/replay/verdict.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_parts.hpp"
 #include "libchar/report/detail/replay_words.hpp"
@@ -52,7 +51,8 @@ std::string name_cell(const AlgorithmView& v) {
     return text.empty() ? "" : "<span class=\"ci dim\">" + html_text(text) + "</span>";
   };
   return "<th scope=\"row\">" + html_text(a.label) + chips_of(v) +
-         (a.card != nullptr ? below(std::string(a.card->title)) : "") + below(v.settings) + "</th>";
+         (a.description != nullptr ? below(std::string(a.description->title)) : "") +
+         below(v.settings) + "</th>";
 }
 
 const char* css_of(const AlgorithmView& v) {
@@ -60,7 +60,7 @@ const char* css_of(const AlgorithmView& v) {
 }
 
 std::string regret_in_words(double regret) {
-  return regret > kLargeRegret ? people(1 + regret, 3) + " × optimum" : people_percent(regret);
+  return regret > kLargeRegret ? number_text(1 + regret, 3) + " × optimum" : percent_text(regret);
 }
 
 std::string plain_number(double value) {
@@ -73,32 +73,33 @@ std::string with_reference_cells(const AlgorithmResult& a) {
   const ErrorScore& e = any ? a.inputs[0].error : none;
   const double nan = std::nan("");
   const std::string ratio = a.ratio_to_best && std::isfinite(a.ratio_to_best->low)
-                                ? "× best: " + people_interval(*a.ratio_to_best)
+                                ? "× best: " + interval_text(*a.ratio_to_best)
                                 : "";
   std::string out = cell(regret_in_words(a.regret), a.regret, ratio);
-  out += cell(people(any ? e.bias : nan, 3),
+  out += cell(number_text(any ? e.bias : nan, 3),
               any ? std::fabs(e.bias) : nan,
-              any && std::isfinite(e.bias_ci95.low) ? people_interval(e.bias_ci95, 2) : "");
-  out += cell(people(any ? e.maximum : nan, 3), any ? e.maximum : nan);
-  out += cell(people_seconds(any ? e.converged_s : nan), any ? e.converged_s : nan);
+              any && std::isfinite(e.bias_ci95.low) ? interval_text(e.bias_ci95, 2) : "");
+  out += cell(number_text(any ? e.maximum : nan, 3), any ? e.maximum : nan);
+  out += cell(duration_text(any ? e.converged_s : nan), any ? e.converged_s : nan);
   return out;
 }
 
 std::string ranking_row(const ReplayResult& r, const AlgorithmView& v) {
   const AlgorithmResult& a = *v.result;
   std::string out = fmt::format("<tr class=\"{}\">", css_of(v)) + name_cell(v);
-  out += cell(
-      people(a.rmse), a.rmse, std::isfinite(a.rmse_ci95.low) ? people_interval(a.rmse_ci95) : "");
+  out += cell(number_text(a.rmse),
+              a.rmse,
+              std::isfinite(a.rmse_ci95.low) ? interval_text(a.rmse_ci95) : "");
   if (r.has_reference)
     out += with_reference_cells(a);
   else
-    out += cell(a.blind ? people(a.blind->split_rms) : "–",
+    out += cell(a.blind ? number_text(a.blind->split_rms) : "–",
                 a.blind ? a.blind->split_rms : std::nan(""));
-  out += cell(people_percent(a.availability, 1), a.availability);
-  out += cell(people(a.ns_per_sample, 3), a.ns_per_sample);
+  out += cell(percent_text(a.availability, 1), a.availability);
+  out += cell(number_text(a.ns_per_sample, 3), a.ns_per_sample);
   const double bytes = a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::nan("");
-  out += cell(people_bytes(a.peak_bytes), bytes);
-  out += cell(people_seconds(a.learning_s), a.learning_s);
+  out += cell(bytes_text(a.peak_bytes), bytes);
+  out += cell(duration_text(a.learning_s), a.learning_s);
   return out + "</tr>\n";
 }
 
@@ -143,15 +144,16 @@ std::string needs_table(const ReplayView& view) {
                                                                   "Here"});
   for (const AlgorithmView& v : view.algorithms) {
     const AlgorithmResult& a = *v.result;
-    if (a.card == nullptr) continue;
-    out += table_row(
-        {a.label,
-         std::string(a.card->title),
-         v.needs.empty() ? "nothing but the samples" : joined(v.needs),
-         std::string(a.card->complexity),
-         a.card->learning_complexity.empty() ? "–" : std::string(a.card->learning_complexity),
-         std::string(a.card->source),
-         a.ran ? "ran" : "skipped: " + a.why});
+    if (a.description == nullptr) continue;
+    out += table_row({a.label,
+                      std::string(a.description->title),
+                      v.needs.empty() ? "nothing but the samples" : joined(v.needs),
+                      std::string(a.description->complexity),
+                      a.description->learning_complexity.empty()
+                          ? "–"
+                          : std::string(a.description->learning_complexity),
+                      std::string(a.description->source),
+                      a.ran ? "ran" : "skipped: " + a.why});
   }
   return out + "</tbody></table></div>\n";
 }
@@ -163,15 +165,15 @@ std::string input_row(const AlgorithmView& v, std::size_t j) {
   const InputScore& input = a.inputs[j];
   const ErrorScore& e = input.error;
   const auto interval = [](const Interval& i) {
-    return std::isfinite(i.low) ? people_interval(i, 3) : "";
+    return std::isfinite(i.low) ? interval_text(i, 3) : "";
   };
   return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>", css_of(v), html_text(a.label)) +
-         cell(people(e.rmse), e.rmse, interval(e.rmse_ci95)) +
+         cell(number_text(e.rmse), e.rmse, interval(e.rmse_ci95)) +
          cell(regret_in_words(input.optimum_ratio - 1), input.optimum_ratio) +
-         cell(people(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
-         cell(people(e.maximum, 3), e.maximum) +
-         cell(people_seconds(e.converged_s), e.converged_s) +
-         cell(people_percent(e.availability, 1), e.availability) + "</tr>\n";
+         cell(number_text(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
+         cell(number_text(e.maximum, 3), e.maximum) +
+         cell(duration_text(e.converged_s), e.converged_s) +
+         cell(percent_text(e.availability, 1), e.availability) + "</tr>\n";
 }
 
 std::string input_table(const ReplayView& view, std::size_t j) {
@@ -213,16 +215,16 @@ std::string sensors_table(const ReplayView& view) {
     const SensorResult& s = r.sensors[i];
     std::vector<std::string> row = {s.name};
     if (r.has_reference) {
-      row.push_back(people(s.error.rmse));
-      row.push_back(std::isfinite(s.error.rmse) ? people_interval(s.error.rmse_ci95) : "–");
-      row.push_back(people(s.error.bias, 3));
-      row.push_back(people(s.error.maximum, 3));
+      row.push_back(number_text(s.error.rmse));
+      row.push_back(std::isfinite(s.error.rmse) ? interval_text(s.error.rmse_ci95) : "–");
+      row.push_back(number_text(s.error.bias, 3));
+      row.push_back(number_text(s.error.maximum, 3));
     }
     row.push_back(usual_unit(s.unit));
-    row.push_back(view.noise_sd[i] ? people(*view.noise_sd[i], 4) : "not known");
+    row.push_back(view.noise_sd[i] ? number_text(*view.noise_sd[i], 4) : "not known");
     row.push_back(s.noise_source);
-    row.push_back(s.offset == 0 ? "–" : people(s.offset, 4));
-    row.push_back(s.missing > 0 ? people_percent(s.missing) : "none");
+    row.push_back(s.offset == 0 ? "–" : number_text(s.offset, 4));
+    row.push_back(s.missing > 0 ? percent_text(s.missing) : "none");
     std::string h;
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
     row.push_back(r.scene.tilt ? "–" : h);
@@ -243,7 +245,7 @@ std::string blind_table(const ReplayView& view) {
     const AlgorithmResult& a = *one->result;
     if (!a.blind) continue;
     std::vector<std::string> row = {a.label};
-    for (const double v : a.blind->leave_one_out) row.push_back(people(v));
+    for (const double v : a.blind->leave_one_out) row.push_back(number_text(v));
     row.resize(head.size(), "–");
     out += table_row(row);
   }
@@ -258,9 +260,9 @@ std::string weights_table(const ReplayView& view) {
   std::string rows;
   for (const FinalRow& final : view.final_rows) {
     std::vector<std::string> row = {final.label};
-    for (const double value : final.values) row.push_back(people(value, 4));
+    for (const double value : final.values) row.push_back(number_text(value, 4));
     row.resize(head.size() - 1, "–");
-    row.push_back(people(final.distance, 3));
+    row.push_back(number_text(final.distance, 3));
     rows += table_row(row);
   }
   return "<details><summary>Weights and noise levels at the end</summary>\n<div "
@@ -278,9 +280,9 @@ namespace {
 std::string answer_in_words(const FaultAnswer* answer) {
   if (answer == nullptr) return "–";
   if (!answer->found_s) return "missed";
-  return "found after " + people_seconds(*answer->found_s) +
+  return "found after " + duration_text(*answer->found_s) +
          (answer->returned_s
-              ? ", used again " + people_seconds(*answer->returned_s) + " after its end"
+              ? ", used again " + duration_text(*answer->returned_s) + " after its end"
               : "");
 }
 
@@ -291,8 +293,8 @@ std::string fault_row(const ReplayView& view, std::size_t f) {
   std::vector<std::string> row = {
       std::string(name_of(fault.kind)) + (valueless ? "" : " " + plain_number(fault.value)),
       fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
-      people_instant(fault.from_s),
-      std::isfinite(fault.to_s) ? people_instant(fault.to_s) : "the end"};
+      instant_text(fault.from_s),
+      std::isfinite(fault.to_s) ? instant_text(fault.to_s) : "the end"};
   for (const AlgorithmView* a : view.watching) row.push_back(answer_in_words(a->answers[f]));
   return table_row(row);
 }
@@ -300,9 +302,9 @@ std::string fault_row(const ReplayView& view, std::size_t f) {
 std::string alarms_row(const ReplayView& view) {
   std::vector<std::string> row = {"alarms where no fault is known", "", "", ""};
   for (const AlgorithmView* a : view.watching)
-    row.push_back(people_count(a->alarms_without_fault) +
+    row.push_back(count_text(a->alarms_without_fault) +
                   (a->result->faults_not_kept > 0
-                       ? " (" + people_count(a->result->faults_not_kept) + " events not kept)"
+                       ? " (" + count_text(a->result->faults_not_kept) + " events not kept)"
                        : ""));
   return view.watching.empty() ? "" : table_row(row);
 }

@@ -25,30 +25,30 @@ std::string score_unit(const ReplayResult& result) {
 }
 
 std::string with_unit(double value, int digits, const std::string& unit) {
-  const std::string number = people(value, digits);
+  const std::string number = number_text(value, digits);
   return unit.empty() || !std::isfinite(value) ? number : number + " " + unit;
 }
 
-std::string people_percent(double share, int digits) {
+std::string percent_text(double share, int digits) {
   if (!std::isfinite(share)) return "–";
   const double percent = 100 * share;
   // A regret of 3e-7 is none: it would be written as a power of ten.
   if (std::fabs(percent) < 0.005) return "0.00 %";
-  if (std::fabs(percent) >= 1000) return people(percent, 4) + " %";
+  if (std::fabs(percent) >= 1000) return number_text(percent, 4) + " %";
   return fmt::format("{:.{}f} %", percent, std::fabs(percent) < 10 ? digits : digits > 1 ? 1 : 0);
 }
 
-std::string people_instant(double seconds) {
+std::string instant_text(double seconds) {
   return std::isfinite(seconds) ? significant(seconds, 8) + " s" : "–";
 }
 
-std::string people_stretch(double from_s, double to_s) {
-  return people_instant(from_s) + " … " + (std::isfinite(to_s) ? people_instant(to_s) : "the end");
+std::string stretch_text(double from_s, double to_s) {
+  return instant_text(from_s) + " … " + (std::isfinite(to_s) ? instant_text(to_s) : "the end");
 }
 
-std::string people_interval(const Interval& interval, int digits) {
+std::string interval_text(const Interval& interval, int digits) {
   if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "–";
-  return people(interval.low, digits) + " … " + people(interval.high, digits);
+  return number_text(interval.low, digits) + " … " + number_text(interval.high, digits);
 }
 
 }  // namespace libchar

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/json_pieces.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
 

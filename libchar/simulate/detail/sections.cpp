@@ -12,7 +12,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kSectionBlock = 256;
 constexpr std::size_t kMostVectors = 7;
 
 /// V vectors of sections over a block: their sum is put into (First) or added to `sums`.
@@ -78,7 +78,7 @@ LIBCHAR_WIDE_LANES void run_block(const double* loss,
                                   double level,
                                   double* values,
                                   std::size_t count) {
-  std::array<Four, kBlock> sums;
+  std::array<Four, kSectionBlock> sums;
   std::size_t passes = (vectors + kMostVectors - 1) / kMostVectors, done = 0;
   for (bool first = true; done < vectors; first = false, --passes) {
     const std::size_t now = (vectors - done) / passes;
@@ -96,14 +96,14 @@ LIBCHAR_WIDE_LANES void run_block(const double* loss,
 }  // namespace
 
 void run_sections(const Sections& sections, double level, std::span<double> values) {
-  for (std::size_t t = 0; t < values.size(); t += kBlock)
+  for (std::size_t t = 0; t < values.size(); t += kSectionBlock)
     run_block(sections.loss,
               sections.weight,
               sections.state,
               sections.vectors,
               level,
               values.data() + t,
-              std::min(kBlock, values.size() - t));
+              std::min(kSectionBlock, values.size() - t));
 }
 
 }  // namespace libchar

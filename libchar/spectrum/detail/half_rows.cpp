@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace libchar::halves {
+namespace libchar::half_segments {
 namespace {
 
 constexpr std::size_t kColumns = 8;  // a line of the cache from each half
@@ -146,4 +146,4 @@ void RowPool::give_back(std::unique_ptr<RowScratch> scratch) {
   idle_.push_back(std::move(scratch));
 }
 
-}  // namespace libchar::halves
+}  // namespace libchar::half_segments

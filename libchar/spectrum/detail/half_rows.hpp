@@ -14,7 +14,7 @@
 #include "libchar/spectrum/detail/half_segment_kernels.hpp"
 #include "libchar/spectrum/fft.hpp"
 
-namespace libchar::halves {
+namespace libchar::half_segments {
 
 /// Doubles between rows: without them a column of rows, or a row and its neighbours, would fall
 /// into few sets of the cache.
@@ -89,4 +89,4 @@ class RowPool {
   std::vector<std::unique_ptr<RowScratch>> idle_;
 };
 
-}  // namespace libchar::halves
+}  // namespace libchar::half_segments

@@ -2,7 +2,7 @@
 
 #include "libchar/core/lanes.hpp"
 
-namespace libchar::halves {
+namespace libchar::half_segments {
 namespace {
 
 // Interleaved complex numbers, two in a vector.
@@ -151,4 +151,4 @@ LIBCHAR_WIDE_LANES double mean_about_first(const double* x, std::size_t n) {
   return first + total / static_cast<double>(n);
 }
 
-}  // namespace libchar::halves
+}  // namespace libchar::half_segments

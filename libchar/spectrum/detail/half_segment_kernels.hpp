@@ -4,7 +4,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace libchar::halves {
+namespace libchar::half_segments {
 
 using Complex = std::complex<double>;
 
@@ -87,4 +87,4 @@ void add_windowed(const Neighbours& x, const Neighbours& y, std::size_t bins, do
 /// Mean about the first value, in eight lanes.
 double mean_about_first(const double* x, std::size_t n);
 
-}  // namespace libchar::halves
+}  // namespace libchar::half_segments

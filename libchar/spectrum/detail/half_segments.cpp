@@ -35,7 +35,7 @@
 
 namespace libchar {
 
-using namespace halves;
+using namespace half_segments;
 
 namespace {
 

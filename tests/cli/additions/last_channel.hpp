@@ -6,11 +6,11 @@
 namespace libchar::fusion {
 
 struct LastChannel {
-  static constexpr Card card{.name = "last-channel",
-                             .title = "The last channel",
-                             .source = "a test",
-                             .complexity = "O(1)"};
-  explicit LastChannel(const Given&) {}
+  static constexpr Description description{.name = "last-channel",
+                                           .title = "The last channel",
+                                           .source = "a test",
+                                           .complexity = "O(1)"};
+  explicit LastChannel(const Array&) {}
   Estimate step(const Sample& y) const { return Estimate::scalar(y[y.size() - 1], std::nan("")); }
 };
 

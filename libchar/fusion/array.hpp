@@ -1,5 +1,5 @@
 #pragma once
-// What a scene can feed, as plain numbers: the fusion floor knows nothing of logs and files.
+// What is known of an array of sensors, as numbers: the fusion floor knows nothing of logs and files.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,7 +15,8 @@ struct TiltChannels {
   Eigen::Index accelerometer_z = 2;  ///< grows with cos(tilt)
 };
 
-struct Given {
+/// What is known of an array of sensors before its samples come.
+struct Array {
   Eigen::Index channels = 0;  ///< n
   /// H, n rows of r inputs; empty: one input seen equally by all (H = 1)
   Eigen::MatrixXd observation_matrix;
@@ -41,7 +42,7 @@ struct Given {
                                           : observation_matrix;
   }
   /// One input, seen by every channel with gain one: means need no matrix.
-  bool plain() const {
+  bool one_common_input() const {
     return observation_matrix.size() == 0 ||
            (observation_matrix.cols() == 1 && (observation_matrix.array() == 1).all());
   }

@@ -1,9 +1,16 @@
 #pragma once
-// One channel's share of each shared document (outputs_json.cpp), for those who assemble them.
+// What several JSON documents share: their head, an interval, and one channel's part of a document (outputs_json.cpp).
+
+#include <string_view>
 
 #include "libchar/characterize/characterization_view.hpp"
 
 namespace libchar {
+
+/// The head of a document: its format and version.
+Json json_frame(std::string_view format);
+/// [low, high]; null where it is not known.
+Json interval_json(const Interval& interval);
 
 /// With a model, also what it predicts at each point.
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const ModelCurve* model);

@@ -1,0 +1,21 @@
+# libchar_sources(ARCHIVE [SAMPLES FILE…] [DOCUMENTS FILE…]): the sources of the floor that this is called in.
+#   SAMPLES    what runs over samples and curves: optimised as the build type says
+#   DOCUMENTS  what reads, judges and writes documents, once a run: -O1 in a Release build, half the compile time
+# With LIBCHAR_UNITY the sources of a folder are compiled as one: their names in anonymous namespaces have to differ.
+function(libchar_sources archive)
+  cmake_parse_arguments(PARSE_ARGV 1 floor "" "" "SAMPLES;DOCUMENTS")
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME name)
+  foreach(kind SAMPLES DOCUMENTS)
+    set(target ${archive})
+    if(kind STREQUAL DOCUMENTS)
+      set(target ${archive}_documents)
+    endif()
+    foreach(file IN LISTS floor_${kind})
+      cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+      target_sources(${target} PRIVATE "${file}")
+      cmake_path(GET file PARENT_PATH folder)
+      cmake_path(GET folder FILENAME folder)
+      set_source_files_properties("${file}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP "${name}_${folder}")
+    endforeach()
+  endforeach()
+endfunction()
