@@ -340,6 +340,10 @@ PowerBinner::~PowerBinner() = default;
 PowerBinner::PowerBinner(PowerBinner&&) noexcept = default;
 PowerBinner& PowerBinner::operator=(PowerBinner&&) noexcept = default;
 
+bool PowerBinner::suits(std::uint64_t block) {
+  return block >= 4096 && block <= (std::uint64_t{1} << 16U);
+}
+
 void PowerBinner::push(std::span<const double> samples) {
   state_->push(samples);
 }
@@ -347,7 +351,7 @@ void PowerBinner::push(std::span<const double> samples) {
 bool PowerBinner::take_block(std::span<const double> samples) {
   return state_->take_block(samples);
 }
-void PowerBinner::set_taken_power(std::vector<double> power) {
+void PowerBinner::take_power(std::vector<double> power) {
   state_->taken_power = std::move(power);
 }
 

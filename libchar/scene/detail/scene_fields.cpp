@@ -7,16 +7,6 @@ namespace {
 
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
 
-const std::vector<Word>& kind_words() {
-  static const std::vector<Word> words = [] {
-    std::vector<Word> all;
-    for (const EnumWord<FaultKind>& row : enum_table<FaultKind>)
-      all.push_back({row.word, static_cast<int>(row.value)});
-    return all;
-  }();
-  return words;
-}
-
 // Beside the value of a member: read and written by whoever knows the rest of the scene.
 template <class T>
 void read_elsewhere(const MapReader&, std::string_view, T&) {}
@@ -87,11 +77,8 @@ const Fields<FaultText>& fault_fields() {
   static const Fields<FaultText> rows = {
       field<&FaultText::sensor>(
           "sensor", {.meaning = "its name", .written = Written::always, .required = true}),
-      field<&FaultText::kind>("kind",
-                              {.words = kind_words(),
-                               .meaning = "what goes wrong",
-                               .written = Written::always,
-                               .required = true}),
+      field<&FaultText::kind>(
+          "kind", {.meaning = "what goes wrong", .written = Written::always, .required = true}),
       field<&FaultText::value>("value",
                                {.meaning = "factor, offset, slope, limit or standard deviation"}),
       field<&FaultText::from_s>("from_s",
