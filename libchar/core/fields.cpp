@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "libchar/core/match.hpp"
+#include "libchar/core/detail/match.hpp"
 
 namespace libchar {
 namespace {
