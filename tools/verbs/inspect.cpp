@@ -113,7 +113,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
     const libchar::LogInfo& info = inspections.back().info;
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
     if (!verb.json)
-      print((inspections.size() > 1 ? "\n" : "") + inspection_text(verb, inspections.back()));
+      print_text((inspections.size() > 1 ? "\n" : "") + inspection_text(verb, inspections.back()));
   }
   if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;

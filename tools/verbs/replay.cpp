@@ -167,7 +167,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
     const auto plan = explain_replay(scene, options, session.terminal);
     session.terminal.clear();
     session.terminal.warn(scene.warnings, verb.scene);
-    for (const std::string& sentence : plan) print(printable(sentence) + "\n");
+    for (const std::string& sentence : plan) print_text(printable(sentence) + "\n");
     return;
   }
   if (verb.folder.empty())
@@ -204,7 +204,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
       for (const std::string& file : estimates->finish()) files.push_back(file);
   });
   if (verb.json) return print(dump_json(document));
-  print(replay_text(view));
+  print_text(replay_text(view));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
   print(written + "\n");

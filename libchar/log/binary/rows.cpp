@@ -251,7 +251,7 @@ class BinaryRows final : public RowSource {
                    fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
                    "a time stamp does not fit 64-bit nanoseconds",
                    shortest(got),
-                   "is the time unit right? --time-unit"});
+                   "is the time unit right? `time_unit` says it"});
     };
     if (!is_float(column.number.type)) {
       if (const auto bad = read_integers(first, stride, column.number, block.time_ns))

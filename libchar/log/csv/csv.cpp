@@ -90,7 +90,7 @@ class CsvSource final : public RowSource {
                      info_.file,
                      "column " + info_.channels[c].name + " has no finite value",
                      "",
-                     "--channel reads only the columns named there"});
+                     "`channels` reads only the columns named there"});
     warnings.merge(std::exchange(pending_, {}));
     add(warnings, "blank_line", "blank lines skipped", blank_);
     add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
