@@ -382,10 +382,9 @@ TEST_CASE("names that are given go by what is read") {
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
              Catch::Contains("3 given, and 1 channel is read: gz"));
   options.channels = {"a"};
-  CHECK_THAT(
-      failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
-      Catch::Contains(
-          "`channels` chooses by the names in the log, gx, gy, gz, and `names` then name what was chosen"));
+  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
+             Catch::Contains("`channels` chooses by the names in the log, gx, gy, gz, and `names` "
+                             "then name what was chosen"));
 }
 
 TEST_CASE("web pages and JSON documents are called by their names") {

@@ -436,6 +436,7 @@ Format csv_format() {
   row.about.rate = "by stamps";
   row.about.start = "yes";
   row.about.written_suffixes = {".csv"};
+  row.about.writes_stamps = true;
   row.about.from_pipes = true;
   row.sniff = csv::sniff;
   row.open = csv::open;
