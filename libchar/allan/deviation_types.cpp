@@ -5,6 +5,11 @@ namespace {
 
 using Type = DeviationType;
 
+// Rows of a program that adds its own (tests/cli/additions); their types follow those of the enumeration.
+#ifndef LIBCHAR_MORE_DEVIATIONS
+#define LIBCHAR_MORE_DEVIATIONS
+#endif
+
 // clang-format off
 constexpr DeviationRow kRows[] = {
     // type       word      title                             order sum   div over  time  reflected
@@ -15,6 +20,7 @@ constexpr DeviationRow kRows[] = {
     {Type::hdev,   "hdev",   "Hadamard deviation",             3, false, 6, false, false, false},
     {Type::ohdev,  "ohdev",  "Overlapping Hadamard deviation", 3, false, 6, true,  false, false},
     {Type::totdev, "totdev", "Total deviation",                2, false, 2, true,  false, true},
+    LIBCHAR_MORE_DEVIATIONS
 };
 // clang-format on
 

@@ -1,13 +1,14 @@
-# libchar_sources(ARCHIVE [SAMPLES FILE…] [DOCUMENTS FILE…]): the sources of the floor that this is called in.
+# libchar_sources(ARCHIVE [SAMPLES FILE…] [DOCUMENTS FILE…] [TABLES FILE…]): the sources of the floor that this is called in.
 #   SAMPLES    what runs over samples and curves: optimised as the build type says
 #   DOCUMENTS  what reads, judges and writes documents, once a run: -O1 in a Release build, half the compile time
+#   TABLES     documents that a program may link its own version of: an object each
 # With LIBCHAR_UNITY the sources of a folder are compiled as one: their names in anonymous namespaces have to differ.
 function(libchar_sources archive)
-  cmake_parse_arguments(PARSE_ARGV 1 floor "" "" "SAMPLES;DOCUMENTS")
+  cmake_parse_arguments(PARSE_ARGV 1 floor "" "" "SAMPLES;DOCUMENTS;TABLES")
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME name)
-  foreach(kind SAMPLES DOCUMENTS)
+  foreach(kind SAMPLES DOCUMENTS TABLES)
     set(target ${archive})
-    if(kind STREQUAL DOCUMENTS)
+    if(NOT kind STREQUAL SAMPLES)
       set(target ${archive}_documents)
     endif()
     foreach(file IN LISTS floor_${kind})
@@ -16,6 +17,9 @@ function(libchar_sources archive)
       cmake_path(GET file PARENT_PATH folder)
       cmake_path(GET folder FILENAME folder)
       set_source_files_properties("${file}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP "${name}_${folder}")
+      if(kind STREQUAL TABLES)
+        set_source_files_properties("${file}" TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+      endif()
     endforeach()
   endforeach()
 endfunction()

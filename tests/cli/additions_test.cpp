@@ -1,13 +1,17 @@
-// What docs/contributing.md says that adding costs: a program with one fusion algorithm, log format, export target and verb
-// more, each from its own file in tests/cli/additions, has them in its help, lists, JSON, work and messages. The pages' tests
+// What docs/contributing.md says that adding costs: a program with one fusion algorithm, log format, export target, Allan
+// statistic and verb more, each from its own file in tests/cli/additions, has them in its help, lists, JSON, work and messages. The pages' tests
 // compare with the same tables, so that an addition without its row in docs/ fails there.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "libchar/core/json.hpp"
 #include "tests/support/run.hpp"
+#include "tests/support/shared.hpp"
 
 using Catch::Matchers::Contains;
 
@@ -65,4 +69,49 @@ TEST_CASE("an export target is a file and a line: list, work and messages have i
   CHECK_THAT(run_with_additions({"model", model, "--to", "name"}).err,
              Contains("did you mean names?"));
   CHECK(test::run({"model", model, "--to", "names"}).code == 2);
+}
+
+TEST_CASE("an Allan statistic is a row: help, work, JSON and messages have it") {
+  CHECK_THAT(run_with_additions({"allan", "--help"}).out, Contains("scaled-oadev"));
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto curve = [&](const std::string& type) {
+    const auto ran = run_with_additions({"allan", log, "-c", "gyro_z", "--type", type, "--json"});
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    return libchar::parse_json(ran.out, "");
+  };
+  const auto scaled = curve("scaled-oadev"), oadev = curve("oadev");
+  CHECK(scaled.at("type") == "scaled-oadev");
+  const auto &a = scaled.at("channels")[0], &b = oadev.at("channels")[0];
+  REQUIRE(a.at("tau_s") == b.at("tau_s"));
+  for (std::size_t i = 0; i < a.at("tau_s").size(); ++i)
+    CHECK(a.at("deviation")[i].get<double>() ==
+          Approx(b.at("deviation")[i].get<double>() * a.at("tau_s")[i].get<double>() /
+                 std::sqrt(3.0)));
+  CHECK_THAT(run_with_additions({"allan", log, "--type", "scaled-odev"}).err,
+             Contains("scaled-oadev"));
+  CHECK(test::run({"allan", log, "--type", "scaled-oadev"}).code == 2);
+}
+
+TEST_CASE(
+    "the pages lack what was added, and nothing else: the comparison with the tables finds it") {
+  const auto missing = [](const std::string& listed, const std::string& file) {
+    const std::string page = test::slurp(test::source_folder() / "docs" / file);
+    std::vector<std::string> names;
+    std::istringstream lines(listed);
+    for (std::string line; std::getline(lines, line);) {
+      const std::string name = line.substr(0, line.find(' '));
+      if (!name.empty() && page.find("`" + name + "`") == std::string::npos) names.push_back(name);
+    }
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(missing(run_with_additions({"replay", "--list"}).out, "replay.md") ==
+        Names{"last-channel"});
+  CHECK(missing(run_with_additions({"model", "--list"}).out, "exports.md") == Names{"names"});
+  const std::string help = run_with_additions({"allan", "--help"}).out;
+  const std::size_t from = help.find("--type ") + 7;
+  std::string types = help.substr(from, help.find('\n', from) - from);
+  std::replace(types.begin(), types.end(), '|', '\n');
+  CHECK(missing(types, "theory/allan.md") == Names{"scaled-oadev"});
 }
