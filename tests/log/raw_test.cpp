@@ -69,6 +69,36 @@ TEST_CASE("interleaved and planar, little and big, integers with scale and offse
   }
 }
 
+TEST_CASE("the time channel has its scale and offset, too") {
+  const std::string ticks("\x00\x00\x01\x00\x64\x00\x02\x00\xC8\x00\x03\x00",
+                          12);  // 0, 100, 200 beside 1, 2, 3
+  const auto stamps = [&](const std::string& time, const ReadOptions& options = {}) {
+    const std::string front = R"({"dtype": "i16", "endian": "little", "channels": [)";
+    return Raw(ticks, front + time + R"(, {"name": "a"}]})").read(options);
+  };
+  using Stamps = std::vector<std::int64_t>;
+  // Whole nanoseconds a tick, a fraction of one, and offsets of both kinds.
+  CHECK(stamps(R"({"name": "t", "unit": "s", "scale": 0.0001})").time_ns ==
+        Stamps{0, 10000000, 20000000});
+  CHECK(stamps(R"({"name": "t", "unit": "ns", "scale": 30.517578125, "offset": 0.25})").time_ns ==
+        Stamps{0, 3052, 6104});
+  CHECK(stamps(R"({"name": "t", "unit": "us", "offset": 5})").time_ns ==
+        Stamps{5000, 105000, 205000});
+  // Stamps since 1970 beyond what a double holds stay exact.
+  CHECK(stamps(R"({"name": "t", "unit": "ns", "offset": 1403636579758555392})").time_ns[2] ==
+        1403636579758555392 + 200);
+  // A unit is guessed from the time, not from the ticks, and a named column is scaled as well.
+  const auto guessed = stamps(R"({"name": "t", "scale": 0.0001})");
+  CHECK(guessed.info.time.unit == "s");
+  CHECK(guessed.time_ns == Stamps{0, 10000000, 20000000});
+  ReadOptions named;
+  named.time_column = "clock";
+  CHECK(stamps(R"({"name": "clock", "unit": "s", "scale": 0.01})", named).time_ns ==
+        Stamps{0, 1000000000, 2000000000});
+  CHECK_THROWS_WITH(stamps(R"({"name": "t", "unit": "s", "scale": 1e9})"),
+                    Catch::Contains("E0314"));
+}
+
 TEST_CASE("a YAML sidecar says the same as a JSON one") {
   const std::string bytes("\x00\x00\x80\x3F\x00\x00\x00\x40", 8);
   const Raw yaml(

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <optional>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
@@ -18,6 +19,25 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kOrderProbe = 4096;  // rows looked at for a wrong byte order
+
+bool is_integer(const BinaryColumn& column) {
+  return !is_float(column.number.type) && column.scale == 1 && column.offset == 0;
+}
+
+// Stamps stored as integers, number * scale + offset in whole nanoseconds: then they are exact, even where a
+// double could not hold them.
+struct WholeStamps {
+  std::int64_t scale_ns = 1, offset_ns = 0;
+};
+
+std::optional<WholeStamps> whole_stamps(const BinaryColumn& column, std::int64_t unit_ns) {
+  if (is_float(column.number.type)) return std::nullopt;
+  const double scale = column.scale * static_cast<double>(unit_ns),
+               offset = column.offset * static_cast<double>(unit_ns);
+  const auto whole = [](double x) { return std::abs(x) < 0x1p63 && x == std::trunc(x); };
+  if (!whole(scale) || !whole(offset)) return std::nullopt;
+  return WholeStamps{static_cast<std::int64_t>(scale), static_cast<std::int64_t>(offset)};
+}
 
 // A column that is read: where its values of the current block stand in memory.
 struct Wanted {
@@ -45,10 +65,7 @@ class BinaryRows final : public RowSource {
     for (const std::size_t i : choose_channels(columns, options, file_->path())) {
       const BinaryColumn& column = layout_.columns[i];
       values_.push_back({column, {}});
-      info_.channels.push_back(
-          {column.name,
-           column.unit,
-           !is_float(column.number.type) && column.scale == 1 && column.offset == 0});
+      info_.channels.push_back({column.name, column.unit, is_integer(column)});
       row_bytes += size_of(column.number.type);
     }
     if (layout_.rows == 0)
@@ -228,46 +245,61 @@ class BinaryRows final : public RowSource {
 
   FirstValues first_values(const BinaryColumn& column) const {
     FirstValues first;
-    first.integers = !is_float(column.number.type);
+    first.integers = is_integer(column);
     std::vector<std::byte> bytes(size_of(column.number.type));
     const std::uint64_t rows = std::min<std::uint64_t>(layout_.rows, kFirstRows);
     for (std::uint64_t row = 0; row < rows; ++row) {
       double value = 0;
       file_->read(column.first_byte + row * column.stride, bytes);
       read_numbers(bytes.data(), bytes.size(), column.number, {&value, 1});
+      value = value * column.scale + column.offset;
       if (std::isfinite(value)) first.values.push_back(value);
     }
     return first;
   }
 
+  [[noreturn]] void refuse_stamp(std::size_t i, double got) const {
+    throw Error({ErrorKind::input,
+                 "E0314",
+                 fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i)),
+                 "a time stamp does not fit 64-bit nanoseconds",
+                 shortest(got),
+                 "is the time unit right? `time_unit` says it"});
+  }
+
   void read_stamps(RowBlock& block, Warnings& warnings) {
-    const BinaryColumn& column = *time_;
     block.time_ns.resize(block.rows);
+    if (const auto whole = whole_stamps(*time_, nanoseconds_))
+      read_whole_stamps(*whole, block);
+    else
+      read_real_stamps(block, warnings);
+  }
+
+  void read_whole_stamps(const WholeStamps& line, RowBlock& block) {
+    const BinaryColumn& column = *time_;
     const std::byte* first = locate(column, block.rows);
-    const auto stride = static_cast<std::size_t>(column.stride);
-    const auto refuse = [&](std::size_t i, double got) {
-      throw Error({ErrorKind::input,
-                   "E0314",
-                   fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
-                   "a time stamp does not fit 64-bit nanoseconds",
-                   shortest(got),
-                   "is the time unit right? `time_unit` says it"});
-    };
-    if (!is_float(column.number.type)) {
-      if (const auto bad = read_integers(first, stride, column.number, block.time_ns))
-        refuse(*bad, 1.8e19);
-      for (std::size_t i = 0; i < block.rows; ++i) {
-        const std::int64_t stamp = block.time_ns[i];
-        if (__builtin_mul_overflow(stamp, nanoseconds_, &block.time_ns[i]))
-          refuse(i, static_cast<double>(stamp));
-      }
-      return;
-    }
-    stamps_.resize(block.rows);
-    read_numbers(first, stride, column.number, stamps_);
+    if (const auto bad = read_integers(
+            first, static_cast<std::size_t>(column.stride), column.number, block.time_ns))
+      refuse_stamp(*bad, 1.8e19);
     for (std::size_t i = 0; i < block.rows; ++i) {
-      const double ns = stamps_[i] * static_cast<double>(nanoseconds_);
-      if (std::isfinite(stamps_[i]) && !(std::abs(ns) < 9.2e18)) refuse(i, stamps_[i]);
+      std::int64_t& stamp = block.time_ns[i];
+      const auto stored = static_cast<double>(stamp);
+      if (__builtin_mul_overflow(stamp, line.scale_ns, &stamp) ||
+          __builtin_add_overflow(stamp, line.offset_ns, &stamp))
+        refuse_stamp(i, stored * column.scale + column.offset);
+    }
+  }
+
+  void read_real_stamps(RowBlock& block, Warnings& warnings) {
+    const BinaryColumn& column = *time_;
+    stamps_.resize(block.rows);
+    const std::byte* first = locate(column, block.rows);
+    read_numbers(first, static_cast<std::size_t>(column.stride), column.number, stamps_);
+    for (std::size_t i = 0; i < block.rows; ++i) {
+      if (!std::isfinite(stamps_[i])) continue;
+      stamps_[i] = stamps_[i] * column.scale + column.offset;
+      if (!(std::abs(stamps_[i] * static_cast<double>(nanoseconds_)) < 9.2e18))
+        refuse_stamp(i, stamps_[i]);
     }
     drop_rows_without_stamp(block, warnings);
     for (std::size_t i = 0; i < block.rows; ++i)

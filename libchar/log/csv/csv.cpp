@@ -1,25 +1,19 @@
-// CSV as a source of rows: chunks of whole lines are read in order by whichever worker is free,
-// parsed side by side, hashed in order behind the parsing, and handed out in order. With one thread
-// everything happens inside next().
+// CSV as a source of rows: chunks of whole lines, parsed by workers ahead of the caller (chunk_workers.hpp) or, with one
+// thread, inside next(); here they become rows with warnings, and every byte and cell is accounted for.
 
 #include "libchar/log/write/csv.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <condition_variable>
-#include <exception>
-#include <map>
-#include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256_blocks.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
+#include "libchar/log/csv/chunk_workers.hpp"
 #include "libchar/log/csv/dialect.hpp"
 #include "libchar/log/csv/header.hpp"
 #include "libchar/log/csv/plan.hpp"
@@ -52,15 +46,11 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
-    room_ = static_cast<std::size_t>(threads) + 2;  // before the first worker looks at it
-    interleave_ = chunks_.interleaves_hash();
-    for (int i = 0; threads > 1 && !small && i < threads; ++i)
-      workers_.emplace_back([this] { work(); });
-    info_.read_ahead = !workers_.empty();
+    if (threads > 1 && !small) workers_ = std::make_unique<ChunkWorkers>(chunks_, plan_, threads);
+    info_.read_ahead = workers_ != nullptr;
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;
-  ~CsvSource() override { stop(); }
 
   const LogInfo& info() const override { return info_; }
 
@@ -81,7 +71,7 @@ class CsvSource final : public RowSource {
   void finish(Warnings& warnings) override {
     if (finished_) return;
     finished_ = true;
-    stop();
+    if (workers_) workers_->stop();
     if (reached_end_) check_account();
     for (std::size_t c = 0; c < plan_.channels; ++c)
       if (rows_ > 0 && words_per_channel_[c] == rows_)
@@ -140,9 +130,7 @@ class CsvSource final : public RowSource {
   std::uint64_t bytes_total() const override { return chunks_.size(); }
 
   std::string sha256() override {
-    stop();
-    for (auto& [sequence, raw] : unhashed_) chunks_.hash(raw);
-    unhashed_.clear();
+    if (workers_) workers_->finish_hash();
     return chunks_.finish_hash();
   }
 
@@ -232,7 +220,7 @@ class CsvSource final : public RowSource {
   }
 
   bool take(ParsedChunk& chunk) {
-    return workers_.empty() ? take_inline(chunk) : take_from_workers(chunk);
+    return workers_ ? workers_->next(chunk, current_offset_) : take_inline(chunk);
   }
 
   bool take_inline(ParsedChunk& chunk) {
@@ -246,138 +234,6 @@ class CsvSource final : public RowSource {
     raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
     current_offset_ = raw_.offset;
     return true;
-  }
-
-  struct Done {
-    ParsedChunk chunk;
-    std::uint64_t offset = 0;
-    bool end = false;
-    std::exception_ptr failure;
-  };
-
-  bool take_from_workers(ParsedChunk& chunk) {
-    std::unique_lock lock(mutex_);
-    if (ended_) return false;
-    spare_chunks_.push_back(std::move(chunk));
-    done_changed_.wait(lock, [&] { return done_.count(delivered_) > 0; });
-    auto node = done_.extract(delivered_);
-    ++delivered_;
-    room_changed_.notify_one();
-    Done& item = node.mapped();
-    if (item.end || item.failure) ended_ = true;
-    if (item.failure) std::rethrow_exception(item.failure);
-    if (item.end) return false;
-    chunk = std::move(item.chunk);
-    current_offset_ = item.offset;
-    return true;
-  }
-
-  void work() {
-    for (;;) {
-      RawChunk raw;
-      Done item;
-      std::uint64_t sequence = 0;
-      {
-        std::unique_lock lock(mutex_);
-        // Neither the parsed chunks nor those that wait for their hash may pile up.
-        room_changed_.wait(lock, [&] {
-          const bool room = read_ < delivered_ + room_ && read_ < hashed_ + 2 * room_;
-          // A chunk can be hashed between the steps of its parsing only when its turn has come, and what
-          // others have parsed by then costs its hash on top.
-          const bool turn = !interleave_ || parsing_ == 0;
-          return stop_ || exhausted_ || (!reading_ && room && turn);
-        });
-        if (stop_ || exhausted_) return;
-        reading_ = true;  // one reader at a time, in file order
-        sequence = read_++;
-        ++parsing_;
-        if (!spare_raws_.empty()) {
-          raw = std::move(spare_raws_.back());
-          spare_raws_.pop_back();
-        }
-        if (!spare_chunks_.empty()) {
-          item.chunk = std::move(spare_chunks_.back());
-          spare_chunks_.pop_back();
-        }
-      }
-      try {
-        item.end = !chunks_.next(raw);
-      } catch (...) {
-        item.failure = std::current_exception();
-      }
-      item.offset = raw.offset;
-      bool hashing = false;  // between the steps of the parsing
-      {
-        const std::lock_guard lock(mutex_);
-        reading_ = false;
-        exhausted_ = exhausted_ || item.end || item.failure;
-        hashing = chunks_.interleaves_hash() && !hashing_ && hashed_ == sequence;
-        hashing_ = hashing_ || hashing;
-        room_changed_.notify_all();
-      }
-      Sha256Blocks* const hash = hashing ? chunks_.begin_hash(raw) : nullptr;
-      if (!item.end && !item.failure) {
-        try {
-          parse_rows(raw.text(), plan_, item.chunk, hash);
-        } catch (...) {
-          item.failure = std::current_exception();
-        }
-      }
-      // Unusual rows are parsed without hashing in between: then all workers parse at once.
-      const bool interleaved_enough =
-          hashing && 2 * (hash->end - hash->next) <= static_cast<std::ptrdiff_t>(raw.size);
-      if (hashing) chunks_.end_hash(raw);
-      {
-        const std::lock_guard lock(mutex_);
-        if (hashing) interleave_ = interleaved_enough;
-        done_.emplace(sequence, std::move(item));
-        if (hashing)
-          note_hashed(std::move(raw));
-        else
-          unhashed_.emplace(sequence, std::move(raw));
-        --parsing_;
-        done_changed_.notify_one();
-        room_changed_.notify_one();
-      }
-      hash_in_order();
-    }
-  }
-
-  // Whoever comes by hashes what is next in line; nobody waits for it.
-  void hash_in_order() {
-    for (;;) {
-      RawChunk raw;
-      {
-        const std::lock_guard lock(mutex_);
-        if (hashing_ || unhashed_.empty() || unhashed_.begin()->first != hashed_) return;
-        hashing_ = true;
-        raw = std::move(unhashed_.begin()->second);
-        unhashed_.erase(unhashed_.begin());
-      }
-      chunks_.hash(raw);
-      const std::lock_guard lock(mutex_);
-      note_hashed(std::move(raw));
-    }
-  }
-
-  // Under the lock.
-  void note_hashed(RawChunk raw) {
-    raw.hash_from = raw.hash_to = raw.nuls_after = 0;
-    spare_raws_.push_back(std::move(raw));
-    ++hashed_;
-    hashing_ = false;
-    room_changed_.notify_one();
-  }
-
-  void stop() {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-      room_changed_.notify_all();
-    }
-    for (std::thread& worker : workers_) worker.join();
-    workers_.clear();
-    ended_ = true;
   }
 
   ReadOptions options_;
@@ -395,19 +251,8 @@ class CsvSource final : public RowSource {
   Account total_;
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
                 inexact_ = 0;
-  bool cr_noted_ = false, finished_ = false, ended_ = false, reached_end_ = false;
-
-  std::vector<std::thread> workers_;
-  std::mutex mutex_;
-  std::condition_variable room_changed_, done_changed_;
-  std::map<std::uint64_t, Done> done_;
-  std::map<std::uint64_t, RawChunk> unhashed_;
-  std::vector<RawChunk> spare_raws_;
-  std::vector<ParsedChunk> spare_chunks_;
-  std::uint64_t read_ = 0, delivered_ = 0, hashed_ = 0;
-  std::size_t room_ = 2;
-  int parsing_ = 0;  // workers between their read and their rows
-  bool stop_ = false, exhausted_ = false, reading_ = false, hashing_ = false, interleave_ = false;
+  bool cr_noted_ = false, finished_ = false, reached_end_ = false;
+  std::unique_ptr<ChunkWorkers> workers_;  // ends before what it reads
 };
 
 std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& options) {

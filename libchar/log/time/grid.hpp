@@ -14,6 +14,7 @@
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
+#include "libchar/log/time/time_repairs.hpp"
 
 namespace libchar {
 
@@ -51,7 +52,13 @@ class TimeGrid {
   void without_stamps(Pending& front);
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);
+  void place_late_row(const Pending& front,
+                      std::size_t row,
+                      std::int64_t step,
+                      std::int64_t& stamp);
+  void pass_gap(const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap);
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
+  void unwrap(const Pending& front, std::size_t row, const Rollover& rollover, std::int64_t& stamp);
   std::int64_t lag(const Pending& front,
                    std::size_t row,
                    std::int64_t stamp,

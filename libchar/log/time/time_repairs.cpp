@@ -1,10 +1,13 @@
 // What becomes of a row whose stamp is not one regular step behind the last: doubled, late, ahead,
 // backward, behind a rollover, or the first of another rate.
 
+#include "libchar/log/time/time_repairs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -20,6 +23,46 @@ constexpr double kWildSteps = 10000;  // steps ahead of its followers that make 
 constexpr int kRateRun = 8;           // equal odd steps in a row that make a change of rate
 
 }  // namespace
+
+GridStretch gap_in_window(
+    std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns) {
+  GridStretch inside{1, gap};
+  if (before_ns < static_cast<double>(from_ns))
+    inside.first = std::max<std::int64_t>(
+        1,
+        static_cast<std::int64_t>(std::ceil((static_cast<double>(from_ns) - before_ns) / dt_ns)));
+  if (to_ns != INT64_MAX)
+    inside.last = std::min<std::int64_t>(
+        gap,
+        static_cast<std::int64_t>(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
+  return inside;
+}
+
+std::int64_t counter_unit_ns(std::string_view unit) {
+  return unit == "us" ? 1000 : unit == "ms" ? 1000000 : 1;
+}
+
+std::optional<Rollover> find_rollover(std::int64_t before_ns,
+                                      std::int64_t stamp_ns,
+                                      std::int64_t unit_ns,
+                                      double dt_ns) {
+  for (const int bits : {16, 32}) {
+    const double range = std::ldexp(static_cast<double>(unit_ns), bits);
+    if (range > 4e18 || stamp_ns < 0 || before_ns < 0 || static_cast<double>(before_ns) >= range)
+      continue;
+    const double step = static_cast<double>(stamp_ns - before_ns) + range;
+    if (step > 0 && step < 0.5 * range && step < 1000 * dt_ns)
+      return Rollover{bits, static_cast<std::int64_t>(range)};
+  }
+  return std::nullopt;
+}
+
+std::int64_t common_lag(std::vector<double> lags) {
+  const double own = lags.front();
+  const std::size_t quarter = lags.size() / 4;
+  std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(quarter), lags.end());
+  return static_cast<std::int64_t>(std::llround(std::min(own, lags[quarter])));
+}
 
 std::string TimeGrid::place(const Pending& front, std::size_t row) const {
   return source_.place(front.block, row, front.rows_before);
@@ -37,6 +80,7 @@ void TimeGrid::fail(const Pending& front,
                "",
                std::move(hint)});
 }
+
 // A row whose stamp is not one regular step behind the last one.
 TimeGrid::Verdict TimeGrid::decide(const Pending& front,
                                    std::size_t row,
@@ -64,21 +108,36 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
   if (step < 0) return backward(front, row, stamp);
   watch_rate(front, row, static_cast<double>(step) / dt_);
   const std::int64_t gap = lag(front, row, stamp, ahead);
-  if (gap <= 0) {
-    // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
-    if (static_cast<double>(step) > kWildSteps * dt_)
-      fail(front,
-           row,
-           "E0316",
-           fmt::format("wild time stamp: {} s ahead of the rows around it",
-                       shortest(static_cast<double>(step) * 1e-9)),
-           "remove the row, or read with `time_column` none and `rate_hz` HZ");
-    warnings_.add("late_stamp",
-                  "stamps far ahead of the rows behind them: the rows are placed on the grid",
-                  place(front, row));
-    stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
-    return Verdict::keep;
-  }
+  if (gap > 0)
+    pass_gap(front, row, step, gap);
+  else
+    place_late_row(front, row, step, stamp);
+  return Verdict::keep;
+}
+
+// Late, but the rows behind it are not: its stamp is wrong, the row has its place.
+void TimeGrid::place_late_row(const Pending& front,
+                              std::size_t row,
+                              std::int64_t step,
+                              std::int64_t& stamp) {
+  if (static_cast<double>(step) > kWildSteps * dt_)
+    fail(front,
+         row,
+         "E0316",
+         fmt::format("wild time stamp: {} s ahead of the rows around it",
+                     shortest(static_cast<double>(step) * 1e-9)),
+         "remove the row, or read with `time_column` none and `rate_hz` HZ");
+  warnings_.add("late_stamp",
+                "stamps far ahead of the rows behind them: the rows are placed on the grid",
+                place(front, row));
+  stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
+}
+
+// Grid points before the window's start are passed over.
+void TimeGrid::pass_gap(const Pending& front,
+                        std::size_t row,
+                        std::int64_t step,
+                        std::int64_t gap) {
   if (static_cast<double>(gap) > kLargestGap)
     fail(front,
          row,
@@ -91,59 +150,26 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
          "the stamps");
   ++gaps_;
   warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
-  // Grid points before the window's start are passed over.
-  std::int64_t first = 1;
-  const double before = static_cast<double>(last_ - first_stamp_);
-  if (before < static_cast<double>(from_ns_))
-    first = std::max<std::int64_t>(
-        1, static_cast<std::int64_t>(std::ceil((static_cast<double>(from_ns_) - before) / dt_)));
-  std::int64_t end = gap;
-  if (to_ns_ != INT64_MAX)
-    end = std::min<std::int64_t>(
-        gap,
-        static_cast<std::int64_t>(std::ceil((static_cast<double>(to_ns_) - before) / dt_)) - 1);
-  if (end >= first) {
+  const GridStretch inside =
+      gap_in_window(gap, static_cast<double>(last_ - first_stamp_), dt_, from_ns_, to_ns_);
+  if (inside.count() > 0) {
     if (!start_ns_)
-      start_ns_ = last_ + static_cast<std::int64_t>(std::llround(static_cast<double>(first) * dt_));
-    missing_ += static_cast<std::uint64_t>(end - first + 1);
-    emit_missing(static_cast<std::uint64_t>(end - first + 1));
+      start_ns_ =
+          last_ + static_cast<std::int64_t>(std::llround(static_cast<double>(inside.first) * dt_));
+    missing_ += inside.count();
+    emit_missing(inside.count());
   }
   index_ += gap;
-  return Verdict::keep;
 }
 
 // Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
 // the row.
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  const std::int64_t unit = std::max<std::int64_t>(1,
-                                                   source_.info().time.unit == "ns"   ? 1
-                                                   : source_.info().time.unit == "us" ? 1000
-                                                   : source_.info().time.unit == "ms" ? 1000000
-                                                                                      : 0);
-  const std::int64_t raw = stamp - wrap_, before = last_ - wrap_;
-  for (const int bits : {16, 32}) {
-    const double range = std::ldexp(static_cast<double>(unit), bits);
-    if (range > 4e18 || source_.info().time.unit == "s" || raw < 0 || before < 0 ||
-        static_cast<double>(before) >= range)
-      continue;
-    const double step = static_cast<double>(raw - before) + range;
-    if (step > 0 && step < 0.5 * range && step < 1000 * dt_) {
-      wrap_ += static_cast<std::int64_t>(range);
-      stamp += static_cast<std::int64_t>(range);
-      warnings_.add("clock_rollover",
-                    fmt::format("the {}-bit clock ran over: unwrapped", bits),
-                    place(front, row));
-      const std::int64_t late =
-          stamp - last_ <= limit_
-              ? 0
-              : static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_) / dt_)) -
-                    1;
-      if (late > 0) {
-        ++gaps_;
-        missing_ += static_cast<std::uint64_t>(late);
-        index_ += late;
-        emit_missing(static_cast<std::uint64_t>(late));
-      }
+  const std::string& unit = source_.info().time.unit;
+  if (unit != "s") {
+    if (const auto rollover =
+            find_rollover(last_ - wrap_, stamp - wrap_, counter_unit_ns(unit), dt_)) {
+      unwrap(front, row, *rollover, stamp);
       return Verdict::keep;
     }
   }
@@ -165,8 +191,26 @@ TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std:
   return Verdict::drop;
 }
 
+void TimeGrid::unwrap(const Pending& front,
+                      std::size_t row,
+                      const Rollover& rollover,
+                      std::int64_t& stamp) {
+  wrap_ += rollover.range_ns;
+  stamp += rollover.range_ns;
+  warnings_.add("clock_rollover",
+                fmt::format("the {}-bit clock ran over: unwrapped", rollover.bits),
+                place(front, row));
+  if (stamp - last_ <= limit_) return;
+  const std::int64_t late =
+      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_) / dt_)) - 1;
+  if (late <= 0) return;
+  ++gaps_;
+  missing_ += static_cast<std::uint64_t>(late);
+  index_ += late;
+  emit_missing(static_cast<std::uint64_t>(late));
+}
+
 // Missing grid points before this row: how much later than expected it and the rows behind it are.
-// A single late row whose followers are on time is no gap.
 std::int64_t TimeGrid::lag(const Pending& front,
                            std::size_t row,
                            std::int64_t stamp,
@@ -174,8 +218,7 @@ std::int64_t TimeGrid::lag(const Pending& front,
   const auto late = [&](std::int64_t t, std::size_t j) {
     return static_cast<double>(t - last_) / dt_ - static_cast<double>(j + 1);
   };
-  const double own = late(stamp, 0);
-  std::vector<double> lags{own};
+  std::vector<double> lags{late(stamp, 0)};
   std::size_t item = 0, i = row;
   const Pending* at = &front;
   for (std::size_t j = 1; j < std::min(ahead, kRowsAhead); ++j) {
@@ -190,9 +233,7 @@ std::int64_t TimeGrid::lag(const Pending& front,
       continue;
     lags.push_back(late(t, j));
   }
-  std::nth_element(
-      lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 4), lags.end());
-  return static_cast<std::int64_t>(std::llround(std::min(own, lags[lags.size() / 4])));
+  return common_lag(std::move(lags));
 }
 
 // The same odd step many times in a row is another sampling rate, not gaps.
