@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
+#include "libchar/characterize/verification.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
@@ -38,6 +40,22 @@ TEST_CASE("characterization view: a bin without degrees of freedom has no interv
   REQUIRE(view.channels[0].spectrum_ci95[2]);
   CHECK(view.channels[0].spectrum_ci95[2]->low < result.channels[0].spectrum.value[2]);
   CHECK(view.channels[0].spectrum_ci95[2]->low < view.channels[0].spectrum_ci68[2]->low);
+}
+
+TEST_CASE("characterization view: the spectrum of a verification has its intervals too") {
+  Characterization result = test::synthetic_imu();
+  CHECK(characterization_view(result).channels[0].verification_ci95.empty());
+  ChannelVerification verification;
+  verification.spectrum = result.channels[1].spectrum;
+  verification.sentences = {"A simulation of the model agrees."};
+  result.channels[0].verification = std::make_shared<ChannelVerification>(verification);
+  const CharacterizationView view = characterization_view(result);
+  const auto& intervals = view.channels[0].verification_ci95;
+  REQUIRE(intervals.size() == verification.spectrum.value.size());
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    REQUIRE(intervals[i].has_value() == view.channels[1].spectrum_ci95[i].has_value());
+    if (intervals[i]) REQUIRE(intervals[i]->low == view.channels[1].spectrum_ci95[i]->low);
+  }
 }
 
 TEST_CASE("characterization view: units in their usual spelling, and no numbers without a fit") {
