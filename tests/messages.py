@@ -13,7 +13,10 @@ NO_FLAGS = {
     "name": "key of a document",
     "none": "word of a scene",
     "options": "part of a fusion algorithm, in a message of the compiler",
+    "recording": "key of a scene",
     "recursive": "value of an option",
+    "repeat": "key of a signal in a scene",
+    "simulate": "key of a scene",
     "unit": "key of a sensor model",
     "version": "key of a document",
 }
