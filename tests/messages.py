@@ -15,8 +15,8 @@ NO_FLAGS = {
     "options": "part of a fusion algorithm, in a message of the compiler",
     "recording": "key of a scene",
     "recursive": "value of an option",
-    "repeat": "key of a signal",
-    "simulate": "verb, in docs",
+    "repeat": "key of a signal in a scene",
+    "simulate": "key of a scene",
     "unit": "key of a sensor model",
     "version": "key of a document",
 }

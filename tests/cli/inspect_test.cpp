@@ -20,6 +20,22 @@ TEST_CASE("inspect says in one line what was understood, and marks guesses") {
       Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
 }
 
+TEST_CASE("people read flags, documents name the options of the library") {
+  const std::string log = test::fixture("npy/structured.npy").string();
+  const auto text = test::run({"inspect", log, "--rate", "100"});
+  CHECK_THAT(text.out,
+             Contains("guessed: time unit: ns") && Contains("(--time-unit says otherwise)"));
+  CHECK_THAT(text.out, Contains("(--time-column none ignores the stamps)"));
+  const auto json = test::run({"inspect", log, "--rate", "100", "--json"});
+  CHECK_THAT(json.out, Contains("(`time_unit` says otherwise)"));
+  CHECK_THAT(json.out, Contains("(`time_column` none ignores the stamps)"));
+  const auto warned = test::run({"allan", log, "--rate", "100"});
+  CHECK_THAT(warned.err, Contains("warning") && Contains("(--time-column none ignores"));
+  const auto refused = test::run({"inspect", log, "--names", "a"});
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Contains("--names") && !Contains("`"));
+}
+
 TEST_CASE("inspect --json keeps its promise to scripts") {
   const std::string log = test::fixture("npy/half.npy").string();
   const auto ran = test::run({"inspect", "--json", log, "--rate", "1.5kHz"});

@@ -1,0 +1,43 @@
+#include "libchar/report/inspection_text.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+// With one blank where a table has several.
+std::string squeezed(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (c != ' ' || out.empty() || out.back() != ' ') out += c;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("an inspection in text: how it was read, guesses, repairs, a line a channel") {
+  Inspection inspection;
+  inspection.info.file = "log.csv";
+  inspection.info.format = "csv";
+  inspection.info.dialect = {"delimiter ;", "decimal comma"};
+  inspection.info.guesses = {"time unit: us"};
+  inspection.info.warnings.add("gap", "gaps in the stamps", "line 12");
+  inspection.info.channels = {{"gyro", "deg/s", false}, {"still", "", false}};
+  inspection.quality.resize(2);
+  inspection.quality[0].samples = inspection.quality[1].samples = 100;
+  inspection.quality[0].minimum = -1;
+  inspection.quality[0].maximum = 1;
+  inspection.quality[0].standard_deviation = 0.5;
+  inspection.quality[0].missing = 3;
+  inspection.quality[1].suggestions = {"is it connected?"};
+  const std::string text = inspection_text(inspection);
+  CHECK_THAT(text, Contains("  read as csv: delimiter ;; decimal comma\n"));
+  CHECK_THAT(text, Contains("  guessed: time unit: us\n"));
+  CHECK_THAT(text,
+             Contains("  warning: ") && Contains("gaps in the stamps") && Contains("line 12"));
+  CHECK_THAT(squeezed(text), Contains("gyro deg/s 3 "));
+  CHECK_THAT(squeezed(text), Contains("still - 0 0 constant "));
+  CHECK_THAT(text, Contains("  still: is it connected?\n"));
+}
