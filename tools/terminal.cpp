@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "flag_names.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
@@ -67,6 +68,10 @@ void print(std::string_view text) {
   }
 }
 
+void print_text(const std::string& text) {
+  print(with_flags(text));
+}
+
 void say(std::string_view line) {
   write_all(STDERR_FILENO, std::string(line) + "\n");
 }
@@ -109,13 +114,14 @@ void Terminal::clear() {
 void Terminal::warn(const libchar::Warnings& warnings, std::string_view file) {
   if (quiet_) return;
   clear();
-  for (const libchar::Warning& warning : warnings.list()) say(libchar::one_line(warning, file));
+  for (const libchar::Warning& warning : warnings.list())
+    say(with_flags(libchar::one_line(warning, file)));
 }
 
-void Terminal::note(std::string_view line) {
+void Terminal::note(const std::string& line) {
   if (quiet_) return;
   clear();
-  say(line);
+  say(with_flags(line));
 }
 
 }  // namespace sensorchar

@@ -26,6 +26,9 @@ int stop_signal();
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
+/// The same for a text that people read: options of the library are named by their flags.
+void print_text(const std::string& text);
+
 /// One message on stderr, a newline added. Lines coming from files must have gone through
 /// libchar::printable already.
 void say(std::string_view line);
@@ -45,10 +48,10 @@ class Terminal : public libchar::Progress {
   void update(double fraction, std::string_view what) override;
   /// Removes the progress line, so that other text can stand there.
   void clear();
-  /// Says every warning on one line each (nothing when quiet).
+  /// Says every warning on one line each, with flags in place of the library's options (nothing when quiet).
   void warn(const libchar::Warnings& warnings, std::string_view file);
-  /// A note on stderr (nothing when quiet).
-  void note(std::string_view line);
+  /// A note on stderr, with flags as well (nothing when quiet).
+  void note(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;

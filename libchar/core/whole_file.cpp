@@ -67,7 +67,7 @@ WholeFile::WholeFile(std::string path, bool overwrite)
                  path_,
                  "exists already and is left as it is",
                  "",
-                 "choose another name or pass --force"});
+                 "choose another name or pass `overwrite`"});
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {

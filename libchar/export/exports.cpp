@@ -40,7 +40,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
            both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
            group.all.empty() ? "no models" : channels_of(group)),
        "",
-       "give all files of the device; where name and unit do not say what a channel is: --axis "
+       "give all files of the device; where name and unit do not say what a channel is: `axis` "
        "NAME=gx"});
 }
 
@@ -49,12 +49,12 @@ void check_options(const ExportOptions& options) {
     if (!(value > 0))
       throw Error({ErrorKind::usage, "E0591", name, "expected a number > 0", shortest(value), ""});
   };
-  positive("--inflate", options.inflate);
-  positive("--filter-step", options.filter_step_s);
-  if (options.correlation_s) positive("--correlation-time", *options.correlation_s);
-  if (options.floor_tau_s) positive("--floor-tau", *options.floor_tau_s);
-  if (options.bias_tau_s) positive("--airsim-tau", *options.bias_tau_s);
-  if (options.gravity) positive("--gravity", *options.gravity);
+  positive("`inflate`", options.inflate);
+  positive("`filter_step_s`", options.filter_step_s);
+  if (options.correlation_s) positive("`correlation_s`", *options.correlation_s);
+  if (options.floor_tau_s) positive("`floor_tau_s`", *options.floor_tau_s);
+  if (options.bias_tau_s) positive("`bias_tau_s`", *options.bias_tau_s);
+  if (options.gravity) positive("`gravity`", *options.gravity);
 }
 
 void note_left_out(const ExportTarget& target, const SensorGroup& group, Export& out) {
@@ -127,10 +127,10 @@ const ExportTarget& find_export_target(std::string_view name) {
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,
                "E0592",
-               "--to",
+               "`target`",
                fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
                std::string(name),
-               near ? fmt::format("did you mean {}?", *near) : "sensorchar model --list"});
+               near ? fmt::format("did you mean {}?", *near) : "`export_targets` lists them"});
 }
 
 Export export_models(const ExportTarget& target,

@@ -74,7 +74,7 @@ struct ExportTakes {
 };
 
 struct ExportTarget {
-  std::string_view name;        ///< for --to
+  std::string_view name;        ///< the word for it in options: "kalibr"
   std::string_view title;       ///< who reads it
   std::string_view convention;  ///< one line: units, discrete or continuous, formulas
   std::string_view file;        ///< name that the consumer's users give it

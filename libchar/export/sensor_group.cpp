@@ -47,7 +47,7 @@ Place place_named(const std::string& name) {
   if (found == names.end())
     throw Error({ErrorKind::usage,
                  "E0581",
-                 "--axis",
+                 "`axis`",
                  fmt::format("no such place; places are {}", fmt::join(names, ", ")),
                  name,
                  "g, a and m alone stand for all three axes"});
@@ -68,7 +68,7 @@ void check_overrides(const std::vector<SensorModel>& models, const AxisOverrides
     const auto near = nearest(channel, channels);
     throw Error({ErrorKind::usage,
                  "E0582",
-                 "--axis",
+                 "`axis`",
                  "no model of this channel was given",
                  channel,
                  near ? fmt::format("did you mean {}?", *near)
@@ -116,7 +116,7 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
                "",
                first.channel == second.channel
                    ? "leave one of the two files out"
-                   : fmt::format("leave one out, or say which it is: --axis {}={}{}",
+                   : fmt::format("leave one out, or say which it is: `axis` {}={}{}",
                                  printable(second.channel, 40),
                                  kind.letter,
                                  axis < 3 ? kAxes[(axis + 1) % 3] : 'x')});
@@ -160,7 +160,7 @@ SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOver
              fmt::format(
                  "is one of {} {} models and names no axis", members[k].size(), kKinds[k].name),
              "",
-             fmt::format("say which axis it is: --axis {}={}x",
+             fmt::format("say which axis it is: `axis` {}={}x",
                          printable(model->channel, 40),
                          kKinds[k].letter)});
       put(*triads[k], kKinds[k], axis, {model, factor_to_si(*model, kKinds[k])});
@@ -180,9 +180,9 @@ void require_axes(const SensorTriad& triad, std::optional<std::size_t> only) {
   }
   if (missing.empty()) return;
   std::string hint =
-      fmt::format("give its file, or take one axis alone: --axes {}", kAxes[present[0]]);
+      fmt::format("give its file, or take one axis alone: `axes` {}", kAxes[present[0]]);
   if (present.size() == 1)
-    hint += fmt::format(", or let it stand for all three: --axis {}={}",
+    hint += fmt::format(", or let it stand for all three: `axis` {}={}",
                         printable(triad.axis[present[0]]->model->channel, 40),
                         triad.kind[0]);
   throw Error({ErrorKind::input,

@@ -182,7 +182,7 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
                  path,
                  fmt::format("a table of curves of more than {} bytes", kMaxBytes),
                  "",
-                 "is this a log? then leave --curve out"});
+                 "is this a log? then leave `curve` out"});
   const Columns columns = columns_of(table->header.cells, is_allan);
   if (!columns.x || !(columns.root || columns.power)) return std::nullopt;
   Reader reader(path, columns, *table, is_allan);
@@ -194,7 +194,7 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
                  path,
                  is_allan ? "the table holds no Allan curve" : "the table holds no spectrum",
                  "",
-                 is_allan ? "--curve psd?" : "--curve allan?"});
+                 is_allan ? "`curve` psd?" : "`curve` allan?"});
   return CurveTable{std::move(curves), table->bytes, table->sha256};
 }
 

@@ -95,7 +95,7 @@ const Entry& algorithm(std::string_view name) {
                "",
                "no fusion algorithm has this name",
                std::string(name),
-               near ? "did you mean " + *near + "?" : "sensorchar replay --list names them"});
+               near ? "did you mean " + *near + "?" : "`algorithms` names them"});
 }
 
 }  // namespace libchar::fusion

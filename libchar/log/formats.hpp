@@ -17,7 +17,11 @@ struct LogFormat {
   std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it
   std::string_view names, units, rate, start;  ///< does a file hold them? "yes", "no", or where
   std::vector<std::string_view>
-      written_suffixes;     ///< written as this format unless told otherwise; none = never written
+      written_suffixes;      ///< written as this format unless told otherwise; none = never written
+  bool writes_names = true;  ///< a file that is written says names and units of its channels
+  bool writes_rate = false;  ///< … and its sampling rate
+  bool writes_stamps =
+      false;  ///< … and has a column of stamps, unless `WriteOptions::time_column` is off
   bool from_pipes = false;  ///< can be read from standard input and named pipes
 };
 

@@ -74,7 +74,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
                path,
                "neither text nor an array file, and no sidecar describes it",
                "",
-               fmt::format("--format {}, or write FILE.json (docs: raw binary)",
+               fmt::format("`format` {}, or write FILE.json (docs: raw binary)",
                            fmt::join(words.begin() + 1, words.end(), "|"))});
 }
 
@@ -97,9 +97,9 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
                  "one for each channel that is read, in that order"});
   };
   if (!options.names.empty() && options.names.size() != channels.size())
-    refuse("--names", options.names.size());
+    refuse("`names`", options.names.size());
   if (options.units.size() > 1 && options.units.size() != channels.size())
-    refuse("--units", options.units.size());
+    refuse("`units`", options.units.size());
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (!options.names.empty()) channels[c].name = options.names[c];
     if (!options.units.empty()) channels[c].unit = options.units[options.units.size() == 1 ? 0 : c];
@@ -165,7 +165,7 @@ LogInfo read_log(const std::string& path,
     throw Error({ErrorKind::usage,
                  "E0319",
                  info.file,
-                 "the window of --from and --to holds no sample",
+                 "the window of `from_s` and `to_s` holds no sample",
                  "",
                  "inspect says how long the log is"});
   TimeBase time = info.time;

@@ -24,7 +24,7 @@ struct Channel {
 
 /// The time axis: sample k of the grid stands at t0 + k / rate.
 struct TimeBase {
-  double rate_hz = 0;  ///< 0 when unknown (no stamps and no --rate)
+  double rate_hz = 0;  ///< 0 when unknown (no stamps and no `rate_hz`)
   bool from_stamps =
       false;  ///< rate found by robust slope of the stamps; else given by the user or the file
   std::string column;         ///< name of the time column, "" when there is none

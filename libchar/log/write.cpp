@@ -52,15 +52,19 @@ const Format& format_to_write_of(const std::string& path, const WriteOptions& op
 
 }  // namespace
 
-std::string format_to_write(const std::string& path, const WriteOptions& options) {
-  return std::string(format_to_write_of(path, options).about.name);
+LogFormat format_to_write(const std::string& path, const WriteOptions& options) {
+  return format_to_write_of(path, options).about;
+}
+
+bool writes_stamps(const std::string& path, const WriteOptions& options) {
+  return format_to_write(path, options).writes_stamps && options.time_column;
 }
 
 std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const LogInfo& info,
                                            const WriteOptions& options) {
-  check_word("dtype", options.dtype, {"f64", "f32"});
-  check_word("order", options.order, {"interleaved", "planar"});
+  check_word("`dtype`", options.dtype, {"f64", "f32"});
+  check_word("`order`", options.order, {"interleaved", "planar"});
   if (info.channels.empty())
     throw Error({ErrorKind::usage, "E0508", path, "there is no channel to write", "", ""});
   return format_to_write_of(path, options).write(path, info, options);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/log/formats.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {
@@ -48,7 +49,10 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const LogInfo& info,
                                            const WriteOptions& options = {});
 
-/// The name of the format that `path` and `options` ask for.
-std::string format_to_write(const std::string& path, const WriteOptions& options);
+/// The format that `path` and `options` ask for.
+LogFormat format_to_write(const std::string& path, const WriteOptions& options);
+
+/// The log will have a column of stamps: its rate has to be known before the first row.
+bool writes_stamps(const std::string& path, const WriteOptions& options);
 
 }  // namespace libchar

@@ -176,7 +176,7 @@ const Fields<SensorModel>& model_fields() {
                                    {.unit = "Hz",
                                     .range = kNotNegative,
                                     .meaning = "sampling rate",
-                                    .otherwise = "`simulate --rate`",
+                                    .otherwise = "said by who simulates",
                                     .written = Written::always}),
       constant<SensorModel>(
           "sampling",

@@ -97,7 +97,7 @@ void refuse_unlike(const Comparison& comparison) {
                comparison.a.file + " and " + comparison.b.file,
                what,
                "",
-               "--unlike compares them all the same"});
+               "`compare_replays` compares them all the same"});
 }
 
 std::string comparison_verdict(const Comparison& c) {

@@ -11,7 +11,7 @@ namespace libchar {
 namespace {
 
 [[noreturn]] void refuse(std::string_view text, const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::usage, "E0922", "--fail-if", what, std::string(text), hint});
+  throw Error({ErrorKind::usage, "E0922", "`check`", what, std::string(text), hint});
 }
 
 struct Metric {
@@ -34,7 +34,7 @@ const Metric& metric_of(std::string_view name, std::string_view text) {
   const auto near = nearest(name, names);
   refuse(text,
          "expected rmse, regret, ns_per_sample or peak_bytes in front of the plus sign",
-         near ? fmt::format("did you mean {}?", *near) : "--fail-if rmse+5%");
+         near ? fmt::format("did you mean {}?", *near) : "such as rmse+5%");
 }
 
 double value_of(const AlgorithmSummary* one, const Metric& metric) {
@@ -80,7 +80,7 @@ std::string failure(const ComparedAlgorithm& row,
 ComparisonCheck parse_comparison_check(std::string_view text) {
   ComparisonCheck out;
   out.text = text;
-  const std::string_view example = "--fail-if rmse+5%, --fail-if minque:regret+0.5%";
+  const std::string_view example = "such as rmse+5%, or minque:regret+0.5%";
   const std::size_t plus = text.rfind('+');
   if (plus == std::string_view::npos || text.empty() || text.back() != '%')
     refuse(text, "expected METRIC+NUMBER%", std::string(example));
@@ -123,7 +123,7 @@ std::vector<std::string> failures(const Comparison& comparison, const Comparison
   if (checked == 0)
     throw Error({ErrorKind::check,
                  "E0923",
-                 "--fail-if",
+                 "`check`",
                  fmt::format("A has no {} that B could be held against", metric.name),
                  check.text,
                  ""});

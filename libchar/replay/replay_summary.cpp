@@ -126,7 +126,7 @@ void check_report(const Document& document, const std::string& file) {
                      : file,
                  "compare reads reports of a replay (format replay-report), this is another one",
                  format->value.text,
-                 "report.json of sensorchar replay SCENE -o DIR"});
+                 "the report.json of a replay is one"});
   check_format(document, file, "replay-report", 1);
 }
 

@@ -7,6 +7,7 @@
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
@@ -80,6 +81,43 @@ Json comparison_json(const Comparison& c) {
                                  {"ns_per_sample_change", json_number(row.ns_change)},
                                  {"peak_bytes_change", json_number(row.bytes_change)}});
   return out;
+}
+
+std::string comparison_text(const Comparison& c) {
+  std::string out =
+      fmt::format("A: {}: {}\nB: {}: {}\n",
+                  printable(c.a.file),
+                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
+                  printable(c.b.file),
+                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
+  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
+  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
+  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
+  std::vector<std::vector<std::string>> rows = {{"algorithm",
+                                                 score + " A",
+                                                 score + " B",
+                                                 "change",
+                                                 "ns/sample A",
+                                                 "B",
+                                                 "change",
+                                                 "memory A",
+                                                 "B",
+                                                 "error of B"}};
+  for (const ComparedAlgorithm& row : c.algorithms) {
+    const std::string where = side_of(row);
+    if (where == "skipped in both") continue;
+    rows.push_back({printable(row.label),
+                    significant_or_dash(value(row.a, &AlgorithmSummary::rmse), 5),
+                    significant_or_dash(value(row.b, &AlgorithmSummary::rmse), 5),
+                    change_text(row.rmse_change),
+                    significant_or_dash(value(row.a, &AlgorithmSummary::ns_per_sample), 3),
+                    significant_or_dash(value(row.b, &AlgorithmSummary::ns_per_sample), 3),
+                    change_text(row.ns_change),
+                    bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
+                    bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
+                    where.empty() ? std::string(name_of(row.difference)) : where});
+  }
+  return out + "\n" + text_table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {

@@ -1,5 +1,5 @@
 #pragma once
-// A comparison for scripts and for pages.
+// A comparison for scripts, for pages and for a terminal.
 
 #include <string>
 
@@ -11,6 +11,9 @@ namespace libchar {
 
 /// The keys behind the head of {"format":"replay-comparison","version":1,…} (docs/replay.md).
 Json comparison_json(const Comparison& comparison);
+
+/// A table of the algorithms that ran, with what is unlike above it and the verdict below.
+std::string comparison_text(const Comparison& comparison);
 
 /// One page of Markdown.
 std::string comparison_markdown(const Comparison& comparison);

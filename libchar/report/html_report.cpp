@@ -179,10 +179,6 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
       json_in_script(without_times));
 }
 
-std::string html_report(const Characterization& result, const Json& without_times) {
-  return html_report(characterization_view(result), without_times);
-}
-
 std::string html_report(const Characterization& result) {
   const CharacterizationView view = characterization_view(result);
   return html_report(view, json_without_times(view));

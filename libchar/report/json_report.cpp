@@ -112,14 +112,14 @@ Json json_without_times(const CharacterizationView& view) {
   return out;
 }
 
-Json json_without_times(const Characterization& result) {
-  return json_without_times(characterization_view(result));
+Json json_report(const CharacterizationView& view) {
+  Json out = json_without_times(view);
+  add_times(out, *view.result);
+  return out;
 }
 
 Json json_report(const Characterization& result) {
-  Json out = json_without_times(result);
-  add_times(out, result);
-  return out;
+  return json_report(characterization_view(result));
 }
 
 void add_times(Json& document, const Characterization& result) {

@@ -9,14 +9,13 @@ namespace libchar {
 
 /// One self-contained page: no network, opens from disk. The same bytes for the same characterization.
 std::string html_report(const Characterization& result);
-/// The same where its document is there already.
-std::string html_report(const Characterization& result, const Json& without_times);
+/// The same where its view and its document are there already.
 std::string html_report(const CharacterizationView& view, const Json& without_times);
 
 /// {"format":"characterization","version":1, …, "fit": {"format":"noise-fit",…}} (docs/json.md).
 Json json_report(const Characterization& result);
+Json json_report(const CharacterizationView& view);
 /// The document without "measured": all that a page shows, and the same bytes for the same characterization.
-Json json_without_times(const Characterization& result);
 Json json_without_times(const CharacterizationView& view);
 void add_times(Json& document, const Characterization& result);
 

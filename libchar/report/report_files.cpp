@@ -9,14 +9,15 @@
 
 namespace libchar {
 
-std::vector<OutputFile> report_files(const Characterization& result,
+std::vector<OutputFile> report_files(const CharacterizationView& view,
                                      const std::filesystem::path& folder) {
-  Json document = json_without_times(result);
+  const Characterization& result = *view.result;
+  Json document = json_without_times(view);
   std::vector<OutputFile> outputs = {
-      {(folder / "report.html").string(), html_report(result, document)}};
+      {(folder / "report.html").string(), html_report(view, document)}};
   add_times(document, result);
   outputs.push_back({(folder / "report.json").string(), dump_json(document)});
-  outputs.push_back({(folder / "curves.csv").string(), csv_curves(result)});
+  outputs.push_back({(folder / "curves.csv").string(), csv_curves(view)});
   std::set<std::string> taken;
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;

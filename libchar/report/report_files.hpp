@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <vector>
 
-#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 #include "libchar/core/output_files.hpp"
 
 namespace libchar {
 
 /// report.html, report.json, curves.csv and a sensor model CHANNEL.sensor.yaml for each channel that
 /// was fitted, with their paths in `folder`: what `write_outputs` takes.
-std::vector<OutputFile> report_files(const Characterization& result,
+std::vector<OutputFile> report_files(const CharacterizationView& view,
                                      const std::filesystem::path& folder);
 
 }  // namespace libchar

@@ -178,6 +178,14 @@ Scene parse_scene(std::string_view text, const std::string& path, const SceneRea
   return SceneReader(document, path, options).read();
 }
 
+bool is_scene_file(const std::string& path) {
+  const std::string text = read_document_text(path);
+  const Document document =
+      path.ends_with(".json") ? parse_json_document(text, path) : parse_yaml_document(text, path);
+  const DocumentEntry* format = document.find("format");
+  return format != nullptr && format->value.text == "scene";
+}
+
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options) {
   return parse_scene(read_document_text(path), path, options);
 }

@@ -17,6 +17,9 @@ struct SceneReadOptions {
 /// key.
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
 
+/// Does this file say `format: scene`? Else it is something else that simulates, such as a model.
+bool is_scene_file(const std::string& path);
+
 /// The same from text that stands for a file at `path`.
 Scene parse_scene(std::string_view text,
                   const std::string& path,

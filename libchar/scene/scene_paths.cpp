@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kOutside = "move the file beside the scene, or allow it with --allow-outside";
+const std::string kOutside = "move the file beside the scene, or allow it with `allow_outside`";
 
 // One name of a file in a scene, and where it stood, for refusals.
 struct Named {

@@ -20,17 +20,15 @@ std::vector<double> weights_of(const SceneReference& reference,
 // What a log of this format does not say of itself.
 ReadOptions reading_of(const ArraySimulation& simulation, const SimulatedRecording& recording) {
   ReadOptions reading;
-  const std::string format = format_to_write(recording.file, recording.writing);
-  if (format == "npy") {
-    reading.rate_hz = simulation.rate_hz;
+  const LogFormat format = format_to_write(recording.file, recording.writing);
+  const bool stamps = writes_stamps(recording.file, recording.writing);
+  if (!format.writes_rate && !stamps) reading.rate_hz = simulation.rate_hz;
+  if (format.writes_stamps && !stamps) reading.time_column = "none";
+  if (!format.writes_names)
     for (const Channel& channel : log_info(simulation, recording).channels) {
       reading.names.push_back(channel.name);
       reading.units.push_back(channel.unit.empty() ? "1" : channel.unit);
     }
-  } else if (format == "csv" && !recording.writing.time_column) {
-    reading.rate_hz = simulation.rate_hz;
-    reading.time_column = "none";
-  }
   return reading;
 }
 

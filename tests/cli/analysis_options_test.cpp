@@ -44,7 +44,7 @@ TEST_CASE("a channel's name that a spreadsheet would run is guarded in allan as 
   CHECK_THAT(test::run({"psd", log, "--rate", "10"}).out, Contains("frequency_hz,'=1+1["));
 }
 
-TEST_CASE("--segment takes samples, a time or N/4, in psd and in characterize") {
+TEST_CASE("the option segment takes samples, a time or N/4, in psd and in characterize") {
   const test::TemporaryFolder folder;
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const auto psd = [&](const std::string& segment) {

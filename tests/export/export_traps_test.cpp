@@ -222,7 +222,7 @@ TEST_CASE("trap: hostile channel names stay inside comments") {
 TEST_CASE("a topic is no place for YAML") {
   ExportOptions options;
   options.topic = "/imu0\nevil: 1";
-  CHECK_THROWS_WITH(exported("kalibr", test::euroc_imu(), options), Contains("--topic"));
+  CHECK_THROWS_WITH(exported("kalibr", test::euroc_imu(), options), Contains("`topic`"));
   options.topic = "/camera/imu_1";
   CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"]
             .as<std::string>() == "/camera/imu_1");

@@ -258,7 +258,7 @@ TEST_CASE("inflation: on request only, before squaring, and said") {
   CHECK(number_after(exported("ros", test::euroc_imu(), options).text,
                      "linear_acceleration_covariance") == Approx(8e-2));
   options.inflate = 0;
-  CHECK(has(refusal("kalibr", test::euroc_imu(), options), "--inflate"));
+  CHECK(has(refusal("kalibr", test::euroc_imu(), options), "`inflate`"));
 }
 
 TEST_CASE(
@@ -303,7 +303,7 @@ TEST_CASE("groups: missing, double and nameless axes are refused with the remedy
   auto without = models;
   without.erase(without.begin() + 4);  // gyr_z
   CHECK(has(refusal("kalibr", without), "the gyroscope has no model for z"));
-  CHECK(has(refusal("kalibr", without), "--axes x"));
+  CHECK(has(refusal("kalibr", without), "`axes` x"));
   ExportOptions x;
   x.axes = AxisChoice::x;
   CHECK(refusal("kalibr", without, x).empty());
@@ -314,12 +314,12 @@ TEST_CASE("groups: missing, double and nameless axes are refused with the remedy
   twice.push_back(test::model("gx", "rad/s", {known(1), known(1), known(1)}));
   CHECK(
       has(refusal("kalibr", twice), "two models claim the x axis of the gyroscope: gyr_x and gx"));
-  CHECK(has(refusal("kalibr", twice), "--axis gx=gy"));
+  CHECK(has(refusal("kalibr", twice), "`axis` gx=gy"));
 
   auto nameless = models;
   nameless[0].channel = "column 3";
   CHECK(has(refusal("kalibr", nameless), "names no axis"));
-  CHECK(has(refusal("kalibr", nameless), "--axis column 3=gx"));
+  CHECK(has(refusal("kalibr", nameless), "`axis` column 3=gx"));
   ExportOptions named;
   named.axis = {{"column 3", "gx"}};
   CHECK(refusal("kalibr", nameless, named).empty());

@@ -174,7 +174,7 @@ TEST_CASE("channels are selected by name, in file order, and nothing else is par
 TEST_CASE("the first line that cannot be is named with line, column and byte") {
   CHECK(failure("t,x\n0,1\n1,1e400\n")
             .find("log.csv:3:3 (byte 10): error E0312: number out of range; got \"1e400\"; hint: "
-                  "--overflow nan") == 0);
+                  "`overflow_as_missing`") == 0);
   CHECK(failure("").find("log.csv:1:1 (byte 0): error E0322: the file is empty") == 0);
   CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
   CHECK(failure("\x1F\x8B\x08").find("gzip") != std::string::npos);
@@ -345,7 +345,7 @@ TEST_CASE("a delimiter that does not fit is answered with the one that does") {
   options.delimiter = ";";
   CHECK_THAT(failure("t,x,y\n1,2,3\n2,3,4\n", options),
              Catch::StartsWith("log.csv:2:1 ") &&
-                 Catch::Contains("looks separated by commas (3 columns): leave --delimiter out"));
+                 Catch::Contains("looks separated by commas (3 columns): leave `delimiter` out"));
   // One column of decimal commas is what was asked for.
   CHECK(read_text("x\n1,5\n2,25\n", options).samples[0] == std::vector<double>{1.5, 2.25});
   options.delimiter = ",";
@@ -362,7 +362,7 @@ TEST_CASE("binary content is called binary, whatever its first lines look like")
     const std::string said = failure(bytes);
     INFO(i << " " << said);
     CHECK_THAT(said, Catch::Contains("binary"));
-    CHECK_THAT(said, !Catch::Contains("--skip-rows"));
+    CHECK_THAT(said, !Catch::Contains("skip_rows"));
   }
   // Doubles, as an array dumped into a file.
   std::string doubles;
@@ -382,10 +382,9 @@ TEST_CASE("names that are given go by what is read") {
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
              Catch::Contains("3 given, and 1 channel is read: gz"));
   options.channels = {"a"};
-  CHECK_THAT(
-      failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
-      Catch::Contains(
-          "-c chooses by the names in the log, gx, gy, gz, and --names then name what was chosen"));
+  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
+             Catch::Contains("`channels` chooses by the names in the log, gx, gy, gz, and `names` "
+                             "then name what was chosen"));
 }
 
 TEST_CASE("web pages and JSON documents are called by their names") {

@@ -67,6 +67,15 @@ TEST_CASE("words and suffixes for options come from the table") {
   CHECK(written_format_words() == format_words());
   CHECK(readable_files() == ".csv, .npy, raw with sidecar");
   CHECK(written_suffixes() == ".csv, .npy, .f64, .f32, .bin, .raw");
-  CHECK(format_to_write("LOG.CSV", {}) == "csv");
+  CHECK(format_to_write("LOG.CSV", {}).name == "csv");
   CHECK_THROWS_WITH(format_to_write("log.tsv", {}), Catch::Contains("end the name in one of .csv"));
+}
+
+TEST_CASE("a log has stamps where its format holds them and nobody leaves them out") {
+  WriteOptions without;
+  without.time_column = false;
+  CHECK(writes_stamps("log.csv", {}));
+  CHECK_FALSE(writes_stamps("log.csv", without));
+  CHECK_FALSE(writes_stamps("log.npy", {}));
+  CHECK_FALSE(writes_stamps("log.f64", {}));
 }

@@ -191,7 +191,7 @@ TEST_CASE("windows without stamps go by the given rate") {
   REQUIRE(r.info.samples == 10);
   CHECK(r.samples[0][0] == 250);
   options.rate_hz.reset();
-  CHECK(failure(text, options).find("--rate HZ") != std::string::npos);
+  CHECK(failure(text, options).find("`rate_hz` HZ") != std::string::npos);
 }
 
 TEST_CASE("stamps sketched together are stamps sketched one by one") {

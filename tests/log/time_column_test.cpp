@@ -203,7 +203,7 @@ TEST_CASE("an array without names is all channels; a first column that rises eve
     return test::read_rows("npy", test::fixture("npy/c_order.npy"), options).info.guesses;
   };
   CHECK(guesses({}) == std::vector<std::string>{"first column: rises evenly, kept as a channel "
-                                                "(--time-column c0 takes it as time)"});
+                                                "(`time_column` c0 takes it as time)"});
   ReadOptions options;
   options.rate_hz = 100;  // who knows the rate looks for no stamps
   CHECK(guesses(options).empty());

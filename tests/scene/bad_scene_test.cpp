@@ -123,8 +123,8 @@ struct Named {
 const std::map<std::string, Named>& manifest_cases() {
   static const std::map<std::string, Named> cases = {
       {"000_control", {"data/none.csv", "E0732", "there is no file FOLDER/data/none.csv"}},
-      {"001_traversal", {"../../../../etc/passwd", "E0731", "--allow-outside"}},
-      {"002_absolute", {"/etc/passwd", "E0731", "--allow-outside"}},
+      {"001_traversal", {"../../../../etc/passwd", "E0731", "`allow_outside`"}},
+      {"002_absolute", {"/etc/passwd", "E0731", "`allow_outside`"}},
       {"003_dotdot_inside", {"data/../data/none.csv", "E0732", "FOLDER/data/../data/none.csv"}},
       {"004_symlink_out", {"link_to_etc", "E0731", "to /etc/passwd"}},
       {"005_dir", {".", "E0733", "is a folder"}},
@@ -132,8 +132,8 @@ const std::map<std::string, Named>& manifest_cases() {
       {"007_nul", {"a\\0b", "E0730", "zero byte"}},
       {"008_long", {std::string(5000, 'a'), "E0730", "5000 bytes"}},
       {"009_fifo", {"fifo", "E0733", "no regular file"}},
-      {"010_dev_zero", {"/dev/zero", "E0731", "--allow-outside"}},
-      {"011_proc", {"/proc/self/mem", "E0731", "--allow-outside"}},
+      {"010_dev_zero", {"/dev/zero", "E0731", "`allow_outside`"}},
+      {"011_proc", {"/proc/self/mem", "E0731", "`allow_outside`"}},
       {"012_url", {"http://x/y.csv", "E0732", "network"}},
       {"013_tilde", {"~/x.csv", "E0732", "~ is not expanded"}},
       {"014_glob", {"*.csv", "E0732", "patterns are not expanded"}},

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
@@ -60,15 +61,16 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
     }
     session.terminal.clear();
     report_warnings(session, result.log);
+    const CharacterizationView view = characterization_view(result);
     const fs::path folder = folder_for(verb, log, taken);
-    const std::vector<OutputFile> outputs = report_files(result, folder);
+    const std::vector<OutputFile> outputs = report_files(view, folder);
     write_outputs(outputs, folder, {log}, verb.force);
     for (const ChannelResult& c : result.channels) any_fit = any_fit || c.fit;
     if (verb.json) {
-      documents.push_back(json_report(result));
+      documents.push_back(json_report(view));
       continue;
     }
-    print(characterization_text(result));
+    print_text(characterization_text(result));
     std::string written = "\nwrote";
     for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
     print(written + "\n");

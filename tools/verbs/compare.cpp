@@ -28,54 +28,6 @@ struct CompareVerb {
   bool unlike = false, json = false, markdown = false;
 };
 
-std::string number(const AlgorithmSummary* one, double AlgorithmSummary::*member, int digits) {
-  const double value = one != nullptr && one->ran ? one->*member : std::nan("");
-  return std::isfinite(value) ? significant(value, digits) : "–";
-}
-
-std::string bytes(const AlgorithmSummary* one) {
-  return one != nullptr && one->ran && std::isfinite(one->peak_bytes)
-             ? bytes_text(static_cast<std::uint64_t>(one->peak_bytes))
-             : "–";
-}
-
-std::string comparison_table(const Comparison& c) {
-  std::string out =
-      fmt::format("A: {}: {}\nB: {}: {}\n",
-                  printable(c.a.file),
-                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  printable(c.b.file),
-                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
-  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
-  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
-  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
-  std::vector<std::vector<std::string>> rows = {{"algorithm",
-                                                 score + " A",
-                                                 score + " B",
-                                                 "change",
-                                                 "ns/sample A",
-                                                 "B",
-                                                 "change",
-                                                 "memory A",
-                                                 "B",
-                                                 "error of B"}};
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    rows.push_back({printable(row.label),
-                    number(row.a, &AlgorithmSummary::rmse, 5),
-                    number(row.b, &AlgorithmSummary::rmse, 5),
-                    change_text(row.rmse_change),
-                    number(row.a, &AlgorithmSummary::ns_per_sample, 3),
-                    number(row.b, &AlgorithmSummary::ns_per_sample, 3),
-                    change_text(row.ns_change),
-                    bytes(row.a),
-                    bytes(row.b),
-                    where.empty() ? std::string(name_of(row.difference)) : where});
-  }
-  return out + "\n" + text_table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
-}
-
 Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
   std::vector<LogInfo> files(2);
   const std::string* paths[] = {&c.a.file, &c.b.file};
@@ -105,7 +57,7 @@ void run_compare(Session& session, const CompareVerb& verb) {
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
   print(verb.json       ? dump_json(document(session, comparison, failed))
         : verb.markdown ? comparison_markdown(comparison)
-                        : comparison_table(comparison));
+                        : comparison_text(comparison));
   if (failed.empty()) return;
   std::string what = failed[0];
   for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];

@@ -15,6 +15,7 @@
 #include "libchar/log/write.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
+#include "writing_options.hpp"
 
 namespace sensorchar {
 namespace {
@@ -22,9 +23,8 @@ namespace {
 struct ConvertVerb {
   std::string log, output;
   libchar::ReadOptions reading;
-  libchar::WriteOptions writing;
-  std::string endian = "little";
-  bool no_time_column = false, json = false;
+  WritingOptions writing;
+  bool json = false;
 };
 
 // Writes what it is given; `known` is what an earlier reading found, which is better than what the
@@ -34,8 +34,8 @@ class Writing final : public libchar::BlockSink {
   Writing(const ConvertVerb& verb, const libchar::LogInfo* known) : verb_(verb), known_(known) {}
 
   void begin(const libchar::LogInfo& so_far) override {
-    writer_ =
-        libchar::open_log_writer(verb_.output, known_ != nullptr ? *known_ : so_far, verb_.writing);
+    writer_ = libchar::open_log_writer(
+        verb_.output, known_ != nullptr ? *known_ : so_far, write_options(verb_.writing));
   }
   void block(const libchar::SampleBlock& samples) override {
     columns_.clear();
@@ -64,13 +64,12 @@ void write_whole(Writing& sink, const libchar::Recording& recording) {
   sink.block(all);
 }
 
-// CSV wants the rate before the first row, and the rate is best known after the last: such a log is
-// read twice (or, from a pipe, kept in memory).
+// Stamps want the rate before the first row, and the rate is best known after the last: such a log
+// is read twice (or, from a pipe, kept in memory).
 libchar::LogInfo transfer(Session& session,
                           const ConvertVerb& verb,
                           std::unique_ptr<Writing>& sink) {
-  const bool stamps =
-      libchar::format_to_write(verb.output, verb.writing) == "csv" && verb.writing.time_column;
+  const bool stamps = libchar::writes_stamps(verb.output, write_options(verb.writing));
   if (stamps && libchar::read_once(verb.log)) {
     const libchar::Recording recording =
         libchar::read_recording(verb.log, verb.reading, session.terminal);
@@ -96,9 +95,7 @@ void check_paths(const ConvertVerb& verb) {
   }
 }
 
-void run_convert(Session& session, ConvertVerb& verb) {
-  verb.writing.big_endian = verb.endian == "big";
-  verb.writing.time_column = !verb.no_time_column;
+void run_convert(Session& session, const ConvertVerb& verb) {
   check_paths(verb);
   std::unique_ptr<Writing> sink;
   const libchar::LogInfo info = transfer(session, verb, sink);
@@ -146,25 +143,8 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
                 "file to write; its suffix says the format (" + libchar::written_suffixes() + ")")
       .required()
       .value_name("FILE");
-  options.add_choice("--as",
-                     verb->writing.format,
-                     libchar::written_format_words(),
-                     "format to write (default: auto, by the suffix)");
-  options.add_choice("--dtype",
-                     verb->writing.dtype,
-                     {"f64", "f32"},
-                     "npy, raw: type of the numbers (default: f64)");
-  options.add_choice("--order",
-                     verb->writing.order,
-                     {"interleaved", "planar"},
-                     "npy, raw: row by row or channel by channel (default: interleaved)");
-  options.add_choice("--endian",
-                     verb->endian,
-                     {"little", "big"},
-                     "npy, raw: order of the bytes (default: little)");
-  options.add_flag(
-      "--no-time-column", verb->no_time_column, "csv: leave out the first column t[s] or t[ns]");
-  options.add_flag("--force", verb->writing.overwrite, "overwrite an existing file");
+  add_writing_options(options, verb->writing, "t[s] or t[ns]");
+  options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->reading);
   return [&session, verb] { run_convert(session, *verb); };

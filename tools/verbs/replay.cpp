@@ -148,10 +148,7 @@ struct MadeFolder {
   bool old;
 };
 
-void run_replay(Session& session, const ReplayVerb& verb) {
-  if (verb.list) return print(algorithms_text());
-  if (verb.scene.empty()) refuse_replay("SCENE", "which scene?", "", "--list names the algorithms");
-  const Scene scene = read_scene(verb);
+ReplayOptions options_of(const ReplayVerb& verb, const Scene& scene) {
   ReplayOptions options;
   options.algorithms = chosen(verb, scene);
   if (!verb.learning.empty()) options.learning = window_from_words(verb.learning, "--learning");
@@ -161,15 +158,37 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
   options.seed = verb.seed;
-  ReplayWorkspace workspace;
-  workspace.heap = heap_meter();
-  if (verb.explain) {
-    const auto plan = explain_replay(scene, options, session.terminal);
-    session.terminal.clear();
-    session.terminal.warn(scene.warnings, verb.scene);
-    for (const std::string& sentence : plan) print(printable(sentence) + "\n");
-    return;
+  return options;
+}
+
+void print_plan(Session& session,
+                const ReplayVerb& verb,
+                const Scene& scene,
+                const ReplayOptions& options) {
+  const auto plan = explain_replay(scene, options, session.terminal);
+  session.terminal.clear();
+  session.terminal.warn(scene.warnings, verb.scene);
+  for (const std::string& sentence : plan) print_text(printable(sentence) + "\n");
+}
+
+// What is refused is refused before anything runs: an output that is an input, or that stands already.
+void check_replay_outputs(const ReplayVerb& verb,
+                          const std::vector<std::string>& inputs,
+                          const std::vector<std::string>& reports,
+                          const std::string& estimates) {
+  if (!estimates.empty()) {
+    format_to_write(estimates, {});
+    check_outputs({estimates}, verb.folder, inputs, verb.force);
   }
+  check_outputs(reports, verb.folder, inputs, verb.force);
+}
+
+void run_replay(Session& session, const ReplayVerb& verb) {
+  if (verb.list) return print(algorithms_text());
+  if (verb.scene.empty()) refuse_replay("SCENE", "which scene?", "", "--list names the algorithms");
+  const Scene scene = read_scene(verb);
+  const ReplayOptions options = options_of(verb, scene);
+  if (verb.explain) return print_plan(session, verb, scene, options);
   if (verb.folder.empty())
     refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
   std::vector<std::string> inputs = scene.files;
@@ -179,15 +198,13 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   std::vector<std::string> files;
   for (const char* name : {"report.html", "report.json", "report.md"})
     files.push_back((folder / name).string());
+  const std::string tracks =
+      verb.estimates.empty() ? "" : (folder / ("estimates." + verb.estimates)).string();
+  check_replay_outputs(verb, inputs, files, tracks);
+  ReplayWorkspace workspace;
+  workspace.heap = heap_meter();
   std::optional<EstimatesWriter> estimates;
-  if (!verb.estimates.empty()) {
-    const std::string path = (folder / ("estimates." + verb.estimates)).string();
-    format_to_write(path, {});
-    check_outputs({path}, folder, inputs, verb.force);
-    estimates.emplace(path, verb.force);
-    workspace.estimates = &*estimates;
-  }
-  check_outputs(files, folder, inputs, verb.force);
+  if (!tracks.empty()) workspace.estimates = &estimates.emplace(tracks, verb.force);
   ReplayResult result = replay(scene, options, session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
@@ -204,7 +221,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
       for (const std::string& file : estimates->finish()) files.push_back(file);
   });
   if (verb.json) return print(dump_json(document));
-  print(replay_text(view));
+  print_text(replay_text(view));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
   print(written + "\n");

@@ -242,7 +242,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   if (rate_hz <= 0) {
     result.problems.push_back(
         "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
-        "--rate)");
+        "`rate_hz`)");
     return result;
   }
   if (options_->data == SampleKind::phase)

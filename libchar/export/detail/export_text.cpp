@@ -173,7 +173,7 @@ std::string topic_scalar(const std::string& topic) {
   if (!fine)
     throw Error({ErrorKind::usage,
                  "E0589",
-                 "--topic",
+                 "`topic`",
                  "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
                  topic,
                  "such as /imu0"});

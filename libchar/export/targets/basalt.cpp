@@ -72,7 +72,7 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
       "merge the five keys into value0 of your calibration; the key sensorchar is ignored there");
   if (!options.older)
     out.notes.emplace_back(
-        "releases whose calibrations hold one number in place of three: --older");
+        "releases whose calibrations hold one number in place of three: `older`");
   return out;
 }
 

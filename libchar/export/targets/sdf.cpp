@@ -132,7 +132,7 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
                  "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and "
                  "barometers, and none of these was given",
                  "",
-                 "where name and unit do not say what a channel is: --axis NAME=gx"});
+                 "where name and unit do not say what a channel is: `axis` NAME=gx"});
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
   out.text += commented(head_lines(group,
                                    options,

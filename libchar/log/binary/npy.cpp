@@ -157,6 +157,7 @@ Format npy_format() {
   row.about.rate = "by a time field";
   row.about.start = "by a time field";
   row.about.written_suffixes = {".npy"};
+  row.about.writes_names = false;
   row.sniff = sniff_npy;
   row.open = open_npy;
   row.write = write_npy;

@@ -112,6 +112,7 @@ Format raw_format() {
   row.about.rate = "yes";
   row.about.start = "yes";
   row.about.written_suffixes = {".f64", ".f32", ".bin", ".raw"};
+  row.about.writes_rate = true;
   row.sniff = sniff_raw;
   row.open = open_raw;
   row.write = write_raw;

@@ -264,7 +264,7 @@ class BinaryRows final : public RowSource {
                  fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i)),
                  "a time stamp does not fit 64-bit nanoseconds",
                  shortest(got),
-                 "is the time unit right? --time-unit"});
+                 "is the time unit right? `time_unit` says it"});
   }
 
   void read_stamps(RowBlock& block, Warnings& warnings) {

@@ -34,7 +34,7 @@ void refuse_binary(std::string_view head, const std::string& file) {
                    controls,
                    std::min<std::size_t>(head.size(), 4096)),
        "",
-       "--format raw with a sidecar reads raw binary (docs: raw binary)"});
+       "`format` raw with a sidecar reads raw binary (docs: raw binary)"});
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ void refuse_other_content(std::string_view head, const std::string& file) {
   if (head.empty())
     throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty", "", ""});
   if (begins("\x93NUMPY"))
-    what = "content is a NumPy array (NPY), not CSV", hint = "read it with --format npy";
+    what = "content is a NumPy array (NPY), not CSV", hint = "read it with `format` npy";
   else if (begins("\x1F\x8B"))
     what = "content is compressed (gzip), not CSV", hint = "unpack it first: gunzip";
   else if (begins("PK\x03\x04"))

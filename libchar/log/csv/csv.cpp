@@ -80,7 +80,7 @@ class CsvSource final : public RowSource {
                      info_.file,
                      "column " + info_.channels[c].name + " has no finite value",
                      "",
-                     "--channel reads only the columns named there"});
+                     "`channels` reads only the columns named there"});
     warnings.merge(std::exchange(pending_, {}));
     add(warnings, "blank_line", "blank lines skipped", blank_);
     add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
@@ -281,6 +281,7 @@ Format csv_format() {
   row.about.rate = "by stamps";
   row.about.start = "yes";
   row.about.written_suffixes = {".csv"};
+  row.about.writes_stamps = true;
   row.about.from_pipes = true;
   row.sniff = csv::sniff;
   row.open = csv::open;

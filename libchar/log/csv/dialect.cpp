@@ -94,7 +94,7 @@ struct Study {
          fmt::format("with the delimiter {} the line is one field and not a number",
                      delimiter_name(dialect.delimiter)),
          std::string(odd->text),
-         fmt::format("the file looks separated by {} ({} columns): leave --delimiter out",
+         fmt::format("the file looks separated by {} ({} columns): leave `delimiter` out",
                      looks.delimiter == ','    ? "commas"
                      : looks.delimiter == ';'  ? "semicolons"
                      : looks.delimiter == '\t' ? "tabs"
@@ -172,7 +172,7 @@ struct Study {
                        sample[i].number - 1,
                        columns_),
            "",
-           fmt::format("--skip-rows {} leaves them out", sample[i].number - 1));
+           fmt::format("`skip_rows` {} leaves them out", sample[i].number - 1));
     }
   }
 
@@ -303,7 +303,7 @@ struct Study {
                        static_cast<unsigned char>(field.text[bad]),
                        line.offset + column),
            field.text,
-           "--encoding latin1 reads names written in ISO 8859-1");
+           "`encoding` latin1 reads names written in ISO 8859-1");
     if (field.text.size() > kMaxName)
       fail(line, field.offset + indent, "E0305", "channel name longer than 1024 bytes", field.text);
     return field.text;
@@ -335,7 +335,7 @@ struct Study {
          fmt::format("{}:{}:{}", info.file, dialect.first_data_line, rows[0][column].offset + 1),
          "calendar dates and clock times are not read as stamps, a number was expected",
          rows[0][column].text,
-         "--time-column none --rate HZ with --channel leaves the column out, or convert "
+         "`time_column` none and `rate_hz` HZ with `channels` leave the column out, or convert "
          "it to seconds"});
   }
 

@@ -67,7 +67,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
                                other->second->line,
                                other->second->position),
                    column.name,
-                   "rename one, or read with --header no --skip-rows 1 to use positions"});
+                   "rename one, or read with `header` no and `skip_rows` 1 to use positions"});
   }
 }
 

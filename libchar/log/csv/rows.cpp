@@ -240,7 +240,7 @@ class RowParser {
       fail("E0308",
            "NUL bytes between the rows",
            "",
-           "a damaged file: copy it again, or read the part before with --to",
+           "a damaged file: copy it again, or read the part before with `to_s`",
            nul);
       return after;
     }
@@ -263,7 +263,7 @@ class RowParser {
         fail("E0309",
              "the header line again, a row of numbers was expected (concatenated logs?)",
              std::string(line),
-             "--repeated-header skip counts it and goes on",
+             "`skip_repeated_header` counts it and goes on",
              0);
         return after;
       }
@@ -388,7 +388,7 @@ class RowParser {
          std::string(line),
          fields == 2 * count && dialect_.delimiter == ','
              ? "are these decimal commas? write the file with another delimiter, such as ;"
-             : fmt::format("--delimiter, if '{}' does not separate the fields", dialect_.delimiter),
+             : fmt::format("`delimiter`, if '{}' does not separate the fields", dialect_.delimiter),
          i);
     return false;
   }
@@ -396,7 +396,7 @@ class RowParser {
   std::string few_hint(std::string_view line) const {
     for (const char other : {';', '\t', ','})
       if (other != dialect_.delimiter && line.find(other) != std::string_view::npos)
-        return "--delimiter, if the guess is wrong; --skip-rows, if the table starts later";
+        return "`delimiter`, if the guess is wrong; `skip_rows`, if the table starts later";
     return "";
   }
 
@@ -422,7 +422,7 @@ class RowParser {
         fail("E0313",
              "missing time stamp",
              std::string(text),
-             "--time-column none --rate HZ ignores the stamps",
+             "`time_column` none and `rate_hz` HZ ignore the stamps",
              span.start);
         break;
       case StampFault::malformed: {
@@ -437,9 +437,9 @@ class RowParser {
       }
       case StampFault::out_of_range:
         fail("E0314",
-             "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong --time-unit?)",
+             "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong `time_unit`?)",
              std::string(text),
-             "--time-unit s|ms|us|ns",
+             "`time_unit` s|ms|us|ns",
              span.start);
         break;
     }
@@ -464,7 +464,7 @@ class RowParser {
           fail("E0312",
                "number out of range",
                std::string(text),
-               "--overflow nan counts it as missing",
+               "`overflow_as_missing` counts it as missing",
                span.start);
           return false;
         }
@@ -490,12 +490,12 @@ class RowParser {
 
   std::string bad_hint(std::string_view text) const {
     if (dialect_.decimal == '.' && read_cell(text, ',').kind == Cell::value)
-      return "--decimal comma, if ',' is the decimal mark";
+      return "`decimal` comma, if ',' is the decimal mark";
     if (dialect_.decimal == ',' && read_cell(text, '.').kind == Cell::value)
-      return "--decimal point, if '.' is the decimal mark";
+      return "`decimal` point, if '.' is the decimal mark";
     const bool word =
         !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
-    return word ? "--channel reads only the columns named there; --skip-rows, if the table starts "
+    return word ? "`channels` reads only the columns named there; `skip_rows`, if the table starts "
                   "later"
                 : "";
   }

@@ -41,7 +41,7 @@ std::size_t column_of(const TableColumns& table,
                  file,
                  "this is the time column, not a channel",
                  wanted,
-                 "--time-column none reads it as a channel"});
+                 "`time_column` none reads it as a channel"});
   std::vector<std::string> names;
   for (const std::size_t i : all_but_time(table)) names.push_back(table.names[i]);
   throw Error({ErrorKind::usage,
@@ -72,7 +72,8 @@ std::string channel_hint(const std::string& wanted,
       fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
       shown < names.size() ? ", …" : "");
   if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
-    return "-c chooses by the names in the log, " + all + ", and --names then name what was chosen";
+    return "`channels` chooses by the names in the log, " + all +
+           ", and `names` then name what was chosen";
   const auto near = nearest(wanted, names);
   return near ? fmt::format("did you mean {}?", *near) : "it has " + all;
 }
@@ -87,7 +88,7 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
                  file,
                  "there is a time column and nothing else",
                  "",
-                 "--time-column none reads it as a channel"});
+                 "`time_column` none reads it as a channel"});
   if (options.channels.empty()) return chosen;
   chosen.clear();
   for (const std::string& name : options.channels)

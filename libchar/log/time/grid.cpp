@@ -56,11 +56,15 @@ TimeGrid::TimeGrid(const RowSource& source,
                        ""});
         return static_cast<std::int64_t>(std::llround(*s * 1e9));
       };
-  from_ns_ = instant(options.from_s, 0, "--from");
-  to_ns_ = instant(options.to_s, INT64_MAX, "--to");
+  from_ns_ = instant(options.from_s, 0, "`from_s`");
+  to_ns_ = instant(options.to_s, INT64_MAX, "`to_s`");
   if (to_ns_ <= from_ns_)
-    throw Error(
-        {ErrorKind::usage, "", "", "the window is empty: --to does not lie after --from", "", ""});
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "the window is empty: `to_s` does not lie after `from_s`",
+                 "",
+                 ""});
 }
 
 bool TimeGrid::push(RowBlock& block) {
@@ -147,7 +151,7 @@ void TimeGrid::learn() {
          row,
          "E0315",
          equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
-         "--time-column none --rate HZ ignores the stamps");
+         "`time_column` none and `rate_hz` HZ ignore the stamps");
   }
   if (coarse_)
     warnings_.add("coarse_stamps",
@@ -235,12 +239,13 @@ void TimeGrid::without_stamps(Pending& front) {
   std::size_t from = 0, to = front.block.rows;
   if (options_.from_s || options_.to_s) {
     if (!(rate > 0))
-      throw Error({ErrorKind::usage,
-                   "",
-                   source_.info().file,
-                   "--from and --to need a time base, and the log has neither stamps nor a rate",
-                   "",
-                   "--rate HZ gives it"});
+      throw Error(
+          {ErrorKind::usage,
+           "",
+           source_.info().file,
+           "`from_s` and `to_s` need a time base, and the log has neither stamps nor a rate",
+           "",
+           "`rate_hz` HZ gives it"});
     const auto grid = [&](std::int64_t ns) {
       return std::ceil(static_cast<double>(ns) * 1e-9 * rate - 1e-6);
     };
@@ -341,7 +346,7 @@ void TimeGrid::finish(LogInfo& info) {
     warnings_.add(
         "rate_ignored",
         fmt::format("the stamps give {:.6g} Hz; the rate of {:.6g} Hz that was given is not "
-                    "used (--time-column none ignores the stamps)",
+                    "used (`time_column` none ignores the stamps)",
                     1e9 / interval,
                     *options_.rate_hz));
 }

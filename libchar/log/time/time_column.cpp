@@ -166,12 +166,12 @@ std::optional<std::size_t> column_that_rises(const TableFront& table,
                        values.back() - values.front() == static_cast<double>(values.size() - 1);
   if (counter || !table.text) {
     info.guesses.push_back(
-        fmt::format("first column: {}, kept as a channel (--time-column c0 takes it as time)",
+        fmt::format("first column: {}, kept as a channel (`time_column` c0 takes it as time)",
                     counter ? "counts the rows by ones" : "rises evenly"));
     return std::nullopt;
   }
   info.guesses.emplace_back(
-      "time column: the first, because it rises evenly (--time-column none keeps it as a channel)");
+      "time column: the first, because it rises evenly (`time_column` none keeps it as a channel)");
   return 0;
 }
 
@@ -212,7 +212,7 @@ std::int64_t find_time_unit(const TableFront& table,
     unit = guess_unit(table.first_values(column));
     info.time.unit_guessed = true;
     info.guesses.push_back(fmt::format(
-        "time unit: {}, from the size and step of the stamps (--time-unit says otherwise)",
+        "time unit: {}, from the size and step of the stamps (`time_unit` says otherwise)",
         unit_name(unit)));
   }
   info.time.unit = unit_name(unit);

@@ -96,7 +96,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
          row,
          "E0316",
          "wild time stamp: the distance to the row before does not fit 64-bit nanoseconds",
-         "remove the row, or --time-column none --rate HZ");
+         "remove the row, or read with `time_column` none and `rate_hz` HZ");
   if (step == 0) {
     if (stamp < raw_last_) return backward(front, row, stamp);
     if (coarse_) return Verdict::keep;
@@ -126,7 +126,7 @@ void TimeGrid::place_late_row(const Pending& front,
          "E0316",
          fmt::format("wild time stamp: {} s ahead of the rows around it",
                      shortest(static_cast<double>(step) * 1e-9)),
-         "remove the row, or --time-column none --rate HZ");
+         "remove the row, or read with `time_column` none and `rate_hz` HZ");
   warnings_.add("late_stamp",
                 "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
@@ -145,7 +145,8 @@ void TimeGrid::pass_gap(const Pending& front,
          fmt::format("wild time stamp: {} s after the row before ({} missing samples)",
                      shortest(static_cast<double>(step) * 1e-9),
                      gap),
-         "remove the row, --from and --to choose a stretch, --time-column none --rate HZ ignores "
+         "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` "
+         "HZ ignore "
          "the stamps");
   ++gaps_;
   warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
@@ -174,15 +175,16 @@ TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std:
   }
   if (dropped_in_a_row_ == 0) first_dropped_ = source_.where(front.block, row, front.rows_before);
   if (++dropped_in_a_row_ >= kBackward)
-    throw Error({ErrorKind::input,
-                 "E0317",
-                 first_dropped_,
-                 fmt::format("the time steps back here and {} rows do not catch up (concatenated "
-                             "logs, or a wild stamp before?)",
-                             kBackward),
-                 "",
-                 "split the file there, --to ends before it, --time-column none --rate HZ ignores "
-                 "the stamps"});
+    throw Error(
+        {ErrorKind::input,
+         "E0317",
+         first_dropped_,
+         fmt::format("the time steps back here and {} rows do not catch up (concatenated "
+                     "logs, or a wild stamp before?)",
+                     kBackward),
+         "",
+         "split the file there, `to_s` ends before it, `time_column` none and `rate_hz` HZ ignore "
+         "the stamps"});
   warnings_.add("backward_timestamp",
                 "rows whose stamp lies before that of the row before: dropped",
                 place(front, row));

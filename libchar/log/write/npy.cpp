@@ -63,7 +63,7 @@ class NpyWriter final : public LogWriter {
     std::vector<std::string> all = losses_;
     if (rate_ > 0)
       all.push_back(
-          fmt::format("the sampling rate: read it back with --rate {}Hz", shortest(rate_)));
+          fmt::format("the sampling rate: read it back with `rate_hz` {}", shortest(rate_)));
     if (values_->rounded() > 0)
       all.push_back(fmt::format("{} values were rounded to 32 bits", values_->rounded()));
     return all;

@@ -270,7 +270,7 @@ ReplayPlan make_plan(const Scene& scene,
          "no algorithm can run on this scene: " +
              (plan.algorithms.empty() ? std::string("none was asked for") : plan.algorithms[0].why),
          "",
-         "--explain says what each of them needs"});
+         "`explain_replay` says what each of them needs"});
   const std::int64_t run = plan.run_to - plan.run_from;
   plan.block =
       options.block > 0

@@ -9,7 +9,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
-#include "libchar/scene/scene_signal.hpp"
+#include "libchar/scene/detail/scene_signal.hpp"
 
 namespace libchar {
 namespace {

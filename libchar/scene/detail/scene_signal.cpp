@@ -1,6 +1,6 @@
 // A signal in a scene file or behind --truth: {kind: sine, amplitude: 2, frequency_hz: 0.1}.
 
-#include "libchar/scene/scene_signal.hpp"
+#include "libchar/scene/detail/scene_signal.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,75 @@
+#include "libchar/report/inspection_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
+
+namespace libchar {
+namespace {
+
+// Enough digits to see a thousandth of the noise beside a large offset.
+std::string beside_noise(double value, double noise) {
+  const double ratio = noise > 0 ? std::abs(value) / noise : 1;
+  return significant(
+      value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
+}
+
+std::vector<std::string> channel_row(const Channel& channel, const ChannelQuality& q) {
+  const double noise = q.standard_deviation;
+  const bool constant = q.samples > 1 && q.minimum == q.maximum;
+  return {printable(channel.name, 40),
+          channel.unit.empty() ? "-" : printable(channel.unit, 20),
+          std::to_string(q.missing),
+          beside_noise(q.mean, noise),
+          constant        ? "constant"
+          : q.samples < 2 ? "-"
+                          : significant(noise, 4),
+          beside_noise(q.minimum, noise),
+          beside_noise(q.maximum, noise),
+          q.resolution ? significant(*q.resolution, 4) : "-",
+          std::to_string(q.saturated),
+          q.samples < 3 || constant ? "-" : significant(q.difference_kurtosis, 3)};
+}
+
+std::string channel_table(const Inspection& inspection) {
+  std::vector<std::vector<std::string>> rows = {{"channel",
+                                                 "unit",
+                                                 "missing",
+                                                 "mean",
+                                                 "sd",
+                                                 "min",
+                                                 "max",
+                                                 "LSB",
+                                                 "saturated",
+                                                 "kurtosis of differences"}};
+  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
+    rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
+  return text_table(rows);
+}
+
+}  // namespace
+
+std::string inspection_text(const Inspection& inspection) {
+  const LogInfo& info = inspection.info;
+  std::string text = summary_line(info) + "\n";
+  std::string dialect = info.format;
+  for (const std::string& fact : info.dialect)
+    dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
+  text += "  read as " + dialect + "\n";
+  for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
+  const std::string front = printable(info.file) + ": warning: ";
+  for (const Warning& warning : info.warnings.list())
+    text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
+  text += channel_table(inspection);
+  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
+    for (const std::string& suggestion : inspection.quality[c].suggestions)
+      text +=
+          fmt::format("  {}: {}\n", printable(info.channels[c].name, 40), printable(suggestion));
+  return text;
+}
+
+}  // namespace libchar

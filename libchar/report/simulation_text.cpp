@@ -1,0 +1,53 @@
+#include "libchar/report/simulation_text.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/text.hpp"
+#include "libchar/scene/simulated_scene.hpp"
+
+namespace libchar {
+
+std::string simulation_text(const SimulationSummary& summary) {
+  const ArraySimulation& s = *summary.simulation;
+  std::string text = fmt::format("{}: {} samples of {} channel{} at {} Hz, {} s, seed {}\n",
+                                 printable(summary.files.at(0)),
+                                 s.samples,
+                                 summary.channels,
+                                 summary.channels == 1 ? "" : "s",
+                                 significant(s.rate_hz, 6),
+                                 significant(static_cast<double>(s.samples) / s.rate_hz, 6),
+                                 s.seed);
+  for (std::size_t i = 0; i < s.sensors.size(); ++i) {
+    const SensorModel& m = s.sensors[i].model;
+    if (m.scale_factor.spread > 0 || m.bias.spread > 0)
+      text += fmt::format("  {}: drew scale factor {}, bias {} {}\n",
+                          printable(s.sensors[i].name),
+                          significant(summary.draws[i].scale_factor, 6),
+                          significant(summary.draws[i].bias, 6),
+                          printable(m.unit));
+  }
+  for (std::size_t i = 1; i < summary.files.size(); ++i)
+    text += fmt::format("wrote {}\n", printable(summary.files[i]));
+  return text;
+}
+
+Json simulation_json(const SimulationSummary& summary) {
+  const ArraySimulation& s = *summary.simulation;
+  Json out = {{"samples", s.samples},
+              {"rate_hz", s.rate_hz},
+              {"seed", s.seed},
+              {"output", Json::array()},
+              {"sensors", Json::array()},
+              {"truth", s.truth_names}};
+  for (const std::string& file : summary.files) out["output"].push_back(printable(file));
+  for (std::size_t i = 0; i < s.sensors.size(); ++i)
+    out["sensors"].push_back({{"name", printable(s.sensors[i].name)},
+                              {"unit", printable(output_unit(s.sensors[i].model))},
+                              {"scale_factor", summary.draws[i].scale_factor},
+                              {"bias", summary.draws[i].bias}});
+  return out;
+}
+
+}  // namespace libchar

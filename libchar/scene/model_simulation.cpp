@@ -1,0 +1,57 @@
+#include "libchar/scene/model_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/model/model_reader.hpp"
+
+namespace libchar {
+namespace {
+
+std::string name_of_sensor(const SensorModel& model, const std::string& path) {
+  if (!model.channel.empty()) return model.channel;
+  const std::string stem = std::filesystem::path(path).filename().string();
+  return stem.substr(0, stem.find('.'));
+}
+
+// Devices of one model are numbered; equal names of several files get their number too.
+void add_devices(ArraySimulation& simulation,
+                 const SensorModel& model,
+                 const std::string& name,
+                 std::uint64_t devices) {
+  std::set<std::string> taken;
+  for (const SimulatedSensor& sensor : simulation.sensors) taken.insert(sensor.name);
+  for (std::uint64_t i = 1; i <= devices; ++i) {
+    std::string own = devices == 1 ? name : name + std::to_string(i);
+    for (int again = 2; !taken.insert(own).second; ++again) own = fmt::format("{}_{}", name, again);
+    simulation.sensors.push_back({own, model, {1}});
+  }
+}
+
+}  // namespace
+
+ArraySimulation simulation_of_models(const std::vector<std::string>& model_files,
+                                     const ModelSimulationOptions& options) {
+  ArraySimulation simulation;
+  for (const std::string& path : model_files) {
+    const SensorModel model = read_model_file(path);
+    if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
+    if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
+      throw Error({ErrorKind::usage,
+                   "E0721",
+                   path,
+                   fmt::format("is a model at {} Hz and the one before at {} Hz",
+                               model.rate_hz,
+                               simulation.rate_hz),
+                   "",
+                   "give one `rate_hz` for all"});
+    add_devices(simulation, model, name_of_sensor(model, path), options.devices);
+  }
+  if (options.rate_hz) simulation.rate_hz = *options.rate_hz;
+  return simulation;
+}
+
+}  // namespace libchar

@@ -1,0 +1,43 @@
+#include "libchar/scene/recorded_signal.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/read.hpp"
+
+namespace libchar {
+
+void read_recorded_signal(SignalSpec& signal,
+                          const std::string& place,
+                          const ArraySimulation& simulation,
+                          Warnings& warnings) {
+  if (signal.kind != "recording") return;
+  const auto refuse = [&](const std::string& what, const std::string& hint) {
+    throw Error({ErrorKind::usage, "E0721", place, what, signal.file, hint});
+  };
+  ReadOptions reading;
+  reading.hash = false;
+  if (!signal.channel.empty()) reading.channels = {signal.channel};
+  Recording log = read_recording(signal.file, reading);
+  if (log.samples.size() != 1)
+    refuse(fmt::format("the recording holds {} channels", log.samples.size()),
+           "name one: channel=NAME");
+  const double rate = log.info.time.rate_hz;
+  if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
+    refuse(fmt::format("the recording has {} Hz, and the simulation runs at {} Hz",
+                       significant(rate, 6),
+                       significant(simulation.rate_hz, 6)),
+           fmt::format("`rate_hz` {}", significant(rate, 6)));
+  signal.samples = std::move(log.samples[0]);
+  if (signal.samples.empty()) refuse("the recording holds no sample", "");
+  if (signal.samples.size() < simulation.samples)
+    warnings.add("recorded_signal_short",
+                 "a recorded signal ends before the simulation; its last sample is held",
+                 place);
+}
+
+}  // namespace libchar

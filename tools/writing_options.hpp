@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+
+#include "command_line.hpp"
+#include "libchar/log/write.hpp"
+
+namespace sensorchar {
+
+/// What the flags of writing a log say; `write_options` makes options of it.
+struct WritingOptions {
+  libchar::WriteOptions options;
+  std::string endian = "little";
+  bool no_time_column = false;
+};
+
+/// Adds every flag that says how a log is to be written (--as, --dtype, --order, --endian,
+/// --no-time-column). `stamps` is what the time column is called ("t[s]"). `writing` must live until
+/// the verb has run.
+void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::string& stamps);
+
+libchar::WriteOptions write_options(const WritingOptions& writing);
+
+}  // namespace sensorchar
