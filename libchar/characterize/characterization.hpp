@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/fields.hpp"
+#include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/log/quality.hpp"

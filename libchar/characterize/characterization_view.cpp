@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/verification.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
 namespace {
@@ -88,22 +90,13 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   out.draws_spectrum = stands_on_log_axes(channel.spectrum);
   out.spectrum_ci68 = spectrum_intervals(channel.spectrum, factors.in68);
   out.spectrum_ci95 = spectrum_intervals(channel.spectrum, factors.in95);
+  if (channel.verification)
+    out.verification_ci95 = spectrum_intervals(channel.verification->spectrum, factors.in95);
   if (channel.fit) add_fit(out, channel, rate_hz);
   return out;
 }
 
 }  // namespace
-
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        IntervalFactors& factors) {
-  std::vector<std::optional<Interval>> out(spectrum.frequency_hz.size());
-  for (std::size_t i = 0; i < std::min(out.size(), spectrum.dof.size()); ++i) {
-    if (!(spectrum.dof[i] > 0)) continue;
-    const auto [low, high] = factors.interval(spectrum, i);
-    out[i] = Interval{low, high};
-  }
-  return out;
-}
 
 CharacterizationView characterization_view(const Characterization& result) {
   CharacterizationView out;

@@ -9,8 +9,8 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/core/interval.hpp"
 #include "libchar/export/consumers.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
 
@@ -39,6 +39,7 @@ struct ChannelView {
   std::vector<ReadOff> read_off;                          ///< points of the Allan curve
   std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
+  std::vector<std::optional<Interval>> verification_ci95;  ///< of the simulation's spectrum
   std::vector<OtherOpinion> other_opinions;
   std::vector<ConsumerNumber> consumers;             ///< which number goes where
   bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
@@ -51,10 +52,6 @@ struct CharacterizationView {
   double duration_s = 0;  ///< of the recording; 0: not known
   std::vector<ChannelView> channels;
 };
-
-/// Chi-square interval of each bin of a spectrum; none where its degrees of freedom are not known.
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        IntervalFactors& factors);
 
 CharacterizationView characterization_view(const Characterization& result);
 CharacterizationView characterization_view(Characterization&&) = delete;

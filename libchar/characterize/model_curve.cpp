@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
 
 namespace libchar {
@@ -40,7 +41,7 @@ std::optional<double> model_deviation(const NoiseFit& fit,
                                       DeviationType type,
                                       double m,
                                       double dt_s) {
-  if (type != DeviationType::oadev && type != DeviationType::adev) return std::nullopt;
+  if (!deviation_row(type).is_allan()) return std::nullopt;
   double variance = 0;
   if (fit.bandwidth_hz) {
     Mixture rest = fit.theta;
@@ -77,9 +78,7 @@ std::optional<double> model_spectrum(const NoiseFit& fit,
 
 std::vector<Asymptote> allan_asymptotes(const NoiseFit& fit, const AllanCurve& curve) {
   std::vector<Asymptote> lines;
-  if (curve.points.empty() ||
-      (curve.type != DeviationType::oadev && curve.type != DeviationType::adev))
-    return lines;
+  if (curve.points.empty() || !deviation_row(curve.type).is_allan()) return lines;
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (!(fit.theta[t] > 0)) continue;
     Asymptote line{static_cast<Term>(t),
@@ -134,24 +133,6 @@ std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curv
   }
   if (k2 > 0) points.push_back({Term::walk, 3, std::sqrt(k2), "K at τ = 3 s"});
   return points;
-}
-
-std::string_view key_of(Sides sides) {
-  return sides == Sides::one ? "one" : "two";
-}
-
-std::string_view key_of(Scaling scaling) {
-  switch (scaling) {
-    case Scaling::psd:
-      return "psd";
-    case Scaling::ps:
-      return "ps";
-    case Scaling::lsd:
-      return "lsd";
-    case Scaling::ls:
-      return "ls";
-  }
-  return "psd";
 }
 
 std::string spectrum_unit(Scaling scaling, const std::string& unit) {

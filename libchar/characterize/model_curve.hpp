@@ -59,7 +59,5 @@ const AllanPoint* allan_minimum(const AllanCurve& curve);
 
 /// "deg/s", "(deg/s)²/Hz", "(deg/s)/√Hz": unit of the values of a spectrum.
 std::string spectrum_unit(Scaling scaling, const std::string& unit);
-std::string_view key_of(Sides sides);
-std::string_view key_of(Scaling scaling);
 
 }  // namespace libchar

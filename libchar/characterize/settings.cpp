@@ -1,43 +1,18 @@
 #include "libchar/characterize/settings.hpp"
 
+#include "libchar/allan/deviation_types.hpp"
 #include "libchar/log/reading_fields.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr Word kKinds[] = {{"rate", static_cast<int>(SampleKind::rate)},
-                           {"phase", static_cast<int>(SampleKind::phase)},
-                           {"frequency", static_cast<int>(SampleKind::frequency)}};
-constexpr Word kGrids[] = {{"octave", static_cast<int>(TauGrid::octave)},
-                           {"decade", static_cast<int>(TauGrid::decade)},
-                           {"dense", static_cast<int>(TauGrid::dense)},
-                           {"list", static_cast<int>(TauGrid::list)}};
-constexpr Word kSides[] = {{"one", static_cast<int>(Sides::one)},
-                           {"two", static_cast<int>(Sides::two)}};
-constexpr Word kScalings[] = {{"psd", static_cast<int>(Scaling::psd)},
-                              {"ps", static_cast<int>(Scaling::ps)},
-                              {"lsd", static_cast<int>(Scaling::lsd)},
-                              {"ls", static_cast<int>(Scaling::ls)}};
-constexpr Word kDetrends[] = {{"none", static_cast<int>(Detrend::none)},
-                              {"constant", static_cast<int>(Detrend::constant)},
-                              {"linear", static_cast<int>(Detrend::linear)}};
-
-// The words of an enumeration by its own name_of.
-template <class E>
-std::vector<Word> named(E last) {
-  std::vector<Word> words;
-  for (int i = 0; i <= static_cast<int>(last); ++i)
-    words.push_back({name_of(static_cast<E>(i)), i});
-  return words;
-}
-
 const std::vector<Word>& deviations() {
-  static const std::vector<Word> words = named(DeviationType::totdev);
-  return words;
-}
-
-const std::vector<Word>& windows() {
-  static const std::vector<Word> words = named(Window::hann_nonzero);
+  static const std::vector<Word> words = [] {
+    std::vector<Word> all;
+    for (const DeviationRow& row : deviation_rows())
+      all.push_back({row.word, static_cast<int>(row.type)});
+    return all;
+  }();
   return words;
 }
 
@@ -46,7 +21,7 @@ using Options = CharacterizeOptions;
 const Fields<Options>& allan_settings() {
   static const Fields<Options> rows = {
       field<&Options::allan, &AllanOptions::type>("type", {.words = deviations()}),
-      field<&Options::allan, &AllanOptions::grid>("taus", {.words = kGrids}),
+      field<&Options::allan, &AllanOptions::grid>("taus"),
       field<&Options::allan, &AllanOptions::taus_s>("taus_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_min_s>("tau_min_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_max_s>("tau_max_s", {.unit = "s"}),
@@ -57,12 +32,12 @@ const Fields<Options>& allan_settings() {
 
 const Fields<WelchOptions>& spectrum_settings() {
   static const Fields<WelchOptions> rows = {
-      field<&WelchOptions::sides>("sides", {.words = kSides}),
-      field<&WelchOptions::scaling>("scaling", {.words = kScalings}),
+      field<&WelchOptions::sides>("sides"),
+      field<&WelchOptions::scaling>("scaling"),
       field<&WelchOptions::segment>("segment", {.unit = "samples"}),
       field<&WelchOptions::overlap>("overlap"),
-      field<&WelchOptions::window>("window", {.words = windows()}),
-      field<&WelchOptions::detrend>("detrend", {.words = kDetrends}),
+      field<&WelchOptions::window>("window"),
+      field<&WelchOptions::detrend>("detrend"),
   };
   return rows;
 }
@@ -112,7 +87,7 @@ const Fields<ReadOptions>& reading_settings() {
 const Fields<CharacterizeOptions>& characterize_fields() {
   static const Fields<Options> rows = [] {
     Fields<Options> all = {
-        field<&Options::data>("data", {.words = kKinds}),
+        field<&Options::data>("data"),
         field<&Options::nominal_frequency>("nominal_frequency_hz", {.unit = "Hz"}),
         field<&Options::memory_bytes>("memory_bytes", {.unit = "bytes"}),
         level<Options>("allan", always(allan_settings())),

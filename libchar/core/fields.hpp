@@ -9,6 +9,8 @@
 //   read_fields(kRows, MapReader(document, file, "", keys_of(kRows)), sidecar);
 //   write(json_of(entries_of(kRows, sidecar)));
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -20,7 +22,8 @@
 #include <variant>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/entry.hpp"
+#include "libchar/core/enum_table.hpp"
 #include "libchar/core/schema.hpp"
 
 namespace libchar {
@@ -35,50 +38,19 @@ struct Word {
 /// The word of `value`, "" when there is none.
 std::string_view word_of(std::span<const Word> words, int value);
 
-// ---- what is written ----
-
-using Value = std::variant<std::monostate,  // null
-                           bool,
-                           double,
-                           std::uint64_t,
-                           std::int64_t,
-                           std::string,
-                           std::vector<double>,
-                           std::vector<std::string>>;
-
-/// One key of a document with its value, or with the keys below it.
-struct Entry {
-  enum class Form {
-    value,
-    block,  ///< the keys of `below`, a line each
-    flow,   ///< the keys of `below` in one line of YAML
-    list,   ///< `below` are elements: entries without a key, in blocks or in flow
-  };
-  std::string key;
-  Value value = {};          ///< a list in Form::block has a line for each element
-  std::string comment = "";  ///< YAML only
-  bool bare = false;         ///< a text that YAML writes without quotes: a word of ours
-  bool in_json = true;       ///< YAML says a null where JSON leaves the key out
-  bool gap = false;          ///< YAML has an empty line in front
-  Form form = Form::value;
-  std::vector<Entry> below = {};
-};
-
-/// A key with keys below it.
-Entry part_entry(std::string key, std::vector<Entry> below, Entry::Form form = Entry::Form::block);
-
-/// The number, or null when it is not finite.
-Value finite_or_null(double value);
-
-/// Doubles in shortest form; a number that is not finite is for the caller to keep out (dump_json refuses it).
-Json json_of(const std::vector<Entry>& entries);
-
-/// Numbers read back to the same double in YAML 1.1 and 1.2 readers; what is not finite is null.
-std::string yaml_of(const std::vector<Entry>& entries,
-                    const std::string& indent = "",
-                    bool comments = true);
-
-// ---- rows ----
+/// The words of an enum that has a table of them (core/enum_table.hpp), in its order.
+template <EnumWithTable Enum>
+std::span<const Word> words_in_fields() {
+  static constexpr auto words = [] {
+    std::array<Word, enum_table<Enum>.size()> out;
+    std::transform(
+        enum_table<Enum>.begin(), enum_table<Enum>.end(), out.begin(), [](const auto& row) {
+          return Word{row.word, static_cast<int>(row.value)};
+        });
+    return out;
+  }();
+  return words;
+}
 
 /// A member that a file writes as one of a few words.
 struct WordSlot {
@@ -107,12 +79,13 @@ enum class Written {
 };
 
 struct FieldText {
-  std::string_view unit = "";        ///< in docs
-  NumberRange range = kAnyNumber;    ///< of a number
-  std::span<const Word> words = {};  ///< all that a text or an enumeration may be
-  std::string_view comment = "";     ///< in YAML; "{NAME}" stands for a substitution
-  std::string_view meaning = "";     ///< in docs; the comment when empty
-  std::string_view otherwise = "";   ///< in docs: what an absent key means
+  std::string_view unit = "";      ///< in docs
+  NumberRange range = kAnyNumber;  ///< of a number
+  std::span<const Word> words =
+      {};  ///< all that a text or an enumeration may be; of an enum with a table: those
+  std::string_view comment = "";    ///< in YAML; "{NAME}" stands for a substitution
+  std::string_view meaning = "";    ///< in docs; the comment when empty
+  std::string_view otherwise = "";  ///< in docs: what an absent key means
   Written written = Written::when_set;
   bool required = false;
   bool quoted = false;  ///< a word that YAML 1.1 would not take for a text: yes, no
@@ -180,6 +153,17 @@ Slot slot_at(void* object) {
   return slot_of(((static_cast<T*>(object)->*First).*....*Rest));
 }
 
+template <auto First, auto... Rest>
+using MemberAt = std::remove_cvref_t<decltype((
+    (std::declval<typename MemberOf<decltype(First)>::Class&>().*First).*....*Rest))>;
+
+template <class Member>
+FieldText with_enum_words(FieldText text) {
+  if constexpr (EnumWithTable<Member>)
+    if (text.words.empty()) text.words = words_in_fields<Member>();
+  return text;
+}
+
 std::string_view kind_of(const Slot& slot);
 
 void read(std::span<const Field> rows, const MapReader& at, void* object);
@@ -198,7 +182,7 @@ auto field(std::string_view key, const FieldText& text = {}) {
   T object{};
   return Row<T>{{key,
                  &fields_detail::slot_at<First, Rest...>,
-                 text,
+                 fields_detail::with_enum_words<fields_detail::MemberAt<First, Rest...>>(text),
                  fields_detail::kind_of(fields_detail::slot_at<First, Rest...>(&object))}};
 }
 
@@ -225,7 +209,6 @@ Row<T> constant(std::string_view key, Value value, const FieldText& text = {}) {
 
 /// "tool": {name, version} of the program that wrote the file.
 void read_tool(const MapReader& at, std::string_view key);
-Entry tool_entry(std::string_view key = "tool");
 template <class T>
 Row<T> tool_row() {
   Field row{"tool", nullptr, {.meaning = "the program that wrote the file"}, "`name`, `version`"};

@@ -232,73 +232,103 @@ void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) 
   }
 }
 
-void report(const DigitisedCurve& curve,
-            const CurveProblem& problem,
-            const CurveDecision& decision,
-            const TermSet& offered,
-            const Judge& judge,
-            double threshold,
-            NoiseFit& fit) {
+/// The solution with what its scatter makes of it.
+struct CurveJudgement {
+  const CurveProblem& problem;
+  const CurveDecision& decision;
+  const Judge& judge;
+  TermSet positive{};
+  double free_points = 1;
+  double mean_square = 0;  ///< of the whitened residuals, as they are
+  double scale = 1;        ///< the variance of the whitened residuals that the intervals rest on
+  double quantile = 0;     ///< of a two-sided 95 % interval, in standard deviations
+  TermMatrix covariance = TermMatrix::Zero();
+};
+
+CurveJudgement judged(const CurveProblem& problem,
+                      const CurveDecision& decision,
+                      const Judge& judge) {
+  CurveJudgement out{problem, decision, judge};
   const CurveSolution& best = decision.best;
-  const TermSet positive = only_positive(best.theta);
-  const double free_points =
-      std::max(1.0, judge.independent - static_cast<double>(count_of(positive)));
-  double scale = 1;  // variance of the whitened residuals
-  if (judge.scatter == Scatter::estimated) {
-    scale = best.sum_of_squares / free_points;
-  } else {
-    scale = std::max(1.0, best.sum_of_squares / free_points);
-  }
-  const double quantile = judge.scatter == Scatter::estimated
-                              ? boost::math::quantile(boost::math::students_t(free_points), 0.975)
-                              : 1.959963984540054;
-  const TermMatrix covariance =
-      inverse_of(curve_information(problem, best.theta, positive), positive) * scale;
+  out.positive = only_positive(best.theta);
+  out.free_points = std::max(1.0, judge.independent - static_cast<double>(count_of(out.positive)));
+  out.mean_square = best.sum_of_squares / out.free_points;
+  const bool estimated = judge.scatter == Scatter::estimated;
+  out.scale = estimated ? out.mean_square : std::max(1.0, out.mean_square);
+  out.quantile = estimated ? boost::math::quantile(boost::math::students_t(out.free_points), 0.975)
+                           : 1.959963984540054;
+  out.covariance =
+      inverse_of(curve_information(problem, best.theta, out.positive), out.positive) * out.scale;
+  return out;
+}
+
+void report_positive_term(const CurveJudgement& found,
+                          std::size_t i,
+                          double threshold,
+                          NoiseFit& fit) {
+  const Judge& judge = found.judge;
+  const Mixture& theta = found.decision.best.theta;
+  Coefficient& term = fit.term[i];
+  const auto c = static_cast<Eigen::Index>(i);
+  // Points that go together are fewer than they look: a term that needs all of them is not
+  // established.
+  const bool established = found.decision.ratio[i] * judge.independent / judge.points > threshold;
+  term.status = established ? Status::detected : Status::undetermined;
+  term.value = std::sqrt(theta[i]);
+  term.relative_sd = std::sqrt(found.covariance(c, c)) / (2 * theta[i]);
+  const double spread = std::exp(found.quantile * term.relative_sd);
+  term.ci95 = {*term.value / spread, *term.value * spread};
+  for (std::size_t j = 0; j < kTerms; ++j)
+    if (found.positive[j])
+      fit.covariance[i][j] =
+          found.covariance(c, static_cast<Eigen::Index>(j)) / (theta[i] * theta[j]);
+}
+
+void report_terms(const CurveJudgement& found,
+                  const TermSet& offered,
+                  double threshold,
+                  NoiseFit& fit) {
+  const CurveSolution& best = found.decision.best;
   fit.theta = best.theta;
   fit.converged = best.converged;
   fit.iterations = best.iterations;
   for (std::size_t i = 0; i < kTerms; ++i) {
-    Coefficient& term = fit.term[i];
     if (!offered[i]) continue;
-    term.likelihood_ratio = decision.ratio[i];
-    if (!positive[i]) {
+    Coefficient& term = fit.term[i];
+    term.likelihood_ratio = found.decision.ratio[i];
+    if (found.positive[i]) {
+      report_positive_term(found, i, threshold, fit);
+    } else {
       term.status = Status::not_detected;
-      term.upper95 = upper_limit(problem, decision, i, judge);
-      continue;
-    }
-    const auto c = static_cast<Eigen::Index>(i);
-    // Points that go together are fewer than they look: a term that needs all of them is not
-    // established.
-    const bool established = decision.ratio[i] * judge.independent / judge.points > threshold;
-    term.status = established ? Status::detected : Status::undetermined;
-    term.value = std::sqrt(best.theta[i]);
-    term.relative_sd = std::sqrt(covariance(c, c)) / (2 * best.theta[i]);
-    const double spread = std::exp(quantile * term.relative_sd);
-    term.ci95 = {*term.value / spread, *term.value * spread};
-    for (std::size_t j = 0; j < kTerms; ++j) {
-      if (positive[j])
-        fit.covariance[i][j] =
-            covariance(c, static_cast<Eigen::Index>(j)) / (best.theta[i] * best.theta[j]);
+      term.upper95 = upper_limit(found.problem, found.decision, i, found.judge);
     }
   }
-  fit.goodness.chi2 = judge.scatter == Scatter::estimated ? free_points : best.sum_of_squares;
-  fit.goodness.dof = free_points;
-  fit.goodness.p =
-      judge.scatter == Scatter::estimated ? 1 : chi_square_tail(best.sum_of_squares, free_points);
-  say_what_intervals_mean(judge, std::sqrt(best.sum_of_squares / free_points) / 2, fit);
-  if (judge.scatter != Scatter::estimated && fit.goodness.p < 1e-3) {
+}
+
+void report_goodness(const CurveJudgement& found, NoiseFit& fit) {
+  const bool estimated = found.judge.scatter == Scatter::estimated;
+  const double sum = found.decision.best.sum_of_squares;
+  fit.goodness.chi2 = estimated ? found.free_points : sum;
+  fit.goodness.dof = found.free_points;
+  fit.goodness.p = estimated ? 1 : chi_square_tail(sum, found.free_points);
+  say_what_intervals_mean(found.judge, std::sqrt(found.mean_square) / 2, fit);
+  if (!estimated && fit.goodness.p < 1e-3) {
     fit.sentences.push_back(
         fmt::format("The points scatter {:.2g} times more about the model than their uncertainty "
                     "says; the intervals are widened by that.",
-                    std::sqrt(scale)));
+                    std::sqrt(found.scale)));
   }
-  const Eigen::ArrayXd z = curve_residuals(problem, best.theta) /
-                           std::sqrt(std::max(scale, std::numeric_limits<double>::min()));
+}
+
+void report_residuals(const DigitisedCurve& curve, const CurveJudgement& found, NoiseFit& fit) {
+  const CurveProblem& problem = found.problem;
+  const Mixture& theta = found.decision.best.theta;
+  const Eigen::ArrayXd z = curve_residuals(problem, theta) /
+                           std::sqrt(std::max(found.scale, std::numeric_limits<double>::min()));
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     double model = 0;
     for (std::size_t i = 0; i < kTerms; ++i)
-      model +=
-          best.theta[i] > 0 ? best.theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
+      model += theta[i] > 0 ? theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
     const double measured = problem.value[j];
     const bool allan = curve.is_allan;
     fit.residuals.push_back({curve.x[static_cast<std::size_t>(j)],
@@ -352,7 +382,10 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
       "non-negative least squares on the logarithm of {} points, {}",
       curve.x.size(),
       curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
-  report(curve, problem, decision, offered, judge, options.threshold, fit);
+  const CurveJudgement found = judged(problem, decision, judge);
+  report_terms(found, offered, options.threshold, fit);
+  report_goodness(found, fit);
+  report_residuals(curve, found, fit);
   return fit;
 }
 

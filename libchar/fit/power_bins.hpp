@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/shared_blocks.hpp"
 
 namespace libchar {
 
@@ -24,18 +25,19 @@ struct PowerBin {
 /// samples are transformed one by one (k >= 1) and their means as one more series (docs/theory/fit.md). A record of at most
 /// `block` samples gets one exact DCT. Missing samples: short ones are closed up (concatenated), at a long gap a new record
 /// starts and likelihoods add.
-class PowerBinner {
+class PowerBinner final : public BlockTaker {
  public:
+  /// Blocks that somebody else may transform: long enough for their sixteen coefficients left to the series of means to be few,
+  /// short enough for many of them in a record.
+  static bool suits(std::uint64_t block);
+
   explicit PowerBinner(std::uint64_t block = std::uint64_t{1} << 16U);
   ~PowerBinner();
   PowerBinner(PowerBinner&&) noexcept;
   PowerBinner& operator=(PowerBinner&&) noexcept;
-  void push(std::span<const double> samples);
-  /// A whole block, without missing samples, whose squared coefficients somebody else sums up: true. False, and nothing taken, when
-  /// another block is under way: then push it.
-  bool take_block(std::span<const double> samples);
-  /// The sums of c_k^2 over those blocks, k = 0 … block-1, before `finish`.
-  void set_taken_power(std::vector<double> power);
+  void push(std::span<const double> samples) override;
+  bool take_block(std::span<const double> samples) override;
+  void take_power(std::vector<double> power) override;
   std::vector<PowerBin> finish(double rate_hz) const;
   /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out; counts them.
   std::vector<PowerBin> finish_clipped(double rate_hz, std::uint64_t& clipped) const;

@@ -155,9 +155,8 @@ const Fields<SensorModel>& recording_fields() {
   return rows;
 }
 
-}  // namespace
-
-const Fields<SensorModel>& model_fields() {
+// What the file is, and what its samples are.
+const Fields<SensorModel>& head_fields() {
   static const Fields<SensorModel> rows = {
       constant<SensorModel>("format", std::string("sensor-model"), {.meaning = "sensor-model"}),
       constant<SensorModel>("version", std::uint64_t{1}, {.meaning = "1"}),
@@ -190,7 +189,13 @@ const Fields<SensorModel>& model_fields() {
            .comment = "a data sheet's noise density is one-sided: sqrt(2) times white_noise",
            .meaning = "side of every value per √Hz",
            .otherwise = "needed where a value is per √Hz"}),
-      empty_line<SensorModel>(),
+  };
+  return rows;
+}
+
+// The noise, and how a simulation makes it.
+const Fields<SensorModel>& noise_fields() {
+  static const Fields<SensorModel> rows = {
       term_row(Term::white, "Q; each term has these keys"),
       term_row(Term::flicker, "B"),
       term_row(Term::walk, "K"),
@@ -223,7 +228,13 @@ const Fields<SensorModel>& model_fields() {
                                            .range = kPositive,
                                            .comment = "flicker is made at this step and held",
                                            .otherwise = "every sample"}),
-      empty_line<SensorModel>(),
+  };
+  return rows;
+}
+
+// The way of the signal, block by block.
+const Fields<SensorModel>& signal_path_fields() {
+  static const Fields<SensorModel> rows = {
       part<&SensorModel::scale_factor>(
           "scale_factor",
           scale_factor_fields(),
@@ -277,7 +288,13 @@ const Fields<SensorModel>& model_fields() {
           {.comment = "of the recording, in {U}; holds the true input at rest as well as the bias",
            .meaning = "of the recording; simulations do not read it",
            .written = Written::always}),
-      empty_line<SensorModel>(),
+  };
+  return rows;
+}
+
+// Where the numbers come from.
+const Fields<SensorModel>& origin_fields() {
+  static const Fields<SensorModel> rows = {
       field<&SensorModel::obtained>("obtained",
                                     {.meaning = "where the numbers come from",
                                      .otherwise = "written by hand",
@@ -294,6 +311,20 @@ const Fields<SensorModel>& model_fields() {
       custom<SensorModel, read_remarks, write_remarks>(
           "remarks", "list of texts", {.meaning = "conversions, findings of the fit"}),
   };
+  return rows;
+}
+
+}  // namespace
+
+const Fields<SensorModel>& model_fields() {
+  static const Fields<SensorModel> rows = [] {
+    Fields<SensorModel> all = head_fields();
+    for (const auto* part : {&noise_fields(), &signal_path_fields(), &origin_fields()}) {
+      all.rows.push_back(empty_line<SensorModel>().field);
+      all.rows.insert(all.rows.end(), part->rows.begin(), part->rows.end());
+    }
+    return all;
+  }();
   return rows;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/fields.hpp"
+#include "libchar/core/entry.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"

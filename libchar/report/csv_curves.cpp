@@ -50,7 +50,7 @@ void add_spectrum(std::string& out, const ChannelView& view, const std::string& 
   const Spectrum& s = c.spectrum;
   const auto low = [](const std::optional<Interval>& i) { return i ? cell(i->low) : ""; };
   const auto high = [](const std::optional<Interval>& i) { return i ? cell(i->high) : ""; };
-  const std::string curve = fmt::format("{}_{}_sided", key_of(s.scaling), key_of(s.sides));
+  const std::string curve = fmt::format("{}_{}_sided", name_of(s.scaling), name_of(s.sides));
   const std::string unit = csv_cell(spectrum_unit(s.scaling, c.channel.unit));
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const double dof = i < s.dof.size() ? s.dof[i] : 0;

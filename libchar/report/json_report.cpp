@@ -85,8 +85,8 @@ Json json_without_times(const CharacterizationView& view) {
        fit = noise_fit_document(Json::array()), quality = Json::object();
   const bool any = !result.channels.empty();
   allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
-  spectrum["sides"] = key_of(any ? result.channels[0].spectrum.sides : Sides::one);
-  spectrum["scaling"] = key_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
+  spectrum["sides"] = name_of(any ? result.channels[0].spectrum.sides : Sides::one);
+  spectrum["scaling"] = name_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
   for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
   for (const ChannelView& v : view.channels) {
     const ChannelResult& c = *v.result;
@@ -105,9 +105,9 @@ Json json_without_times(const CharacterizationView& view) {
         return c.verification != nullptr;
       })) {
     out["verification"] = {{"channels", Json::array()}};
-    for (const ChannelResult& c : result.channels)
-      out["verification"]["channels"].push_back(c.verification ? verification_json(c)
-                                                               : Json(nullptr));
+    for (const ChannelView& v : view.channels)
+      out["verification"]["channels"].push_back(v.result->verification ? verification_json(v)
+                                                                       : Json(nullptr));
   }
   return out;
 }

@@ -86,13 +86,6 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 
 Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
-                           const ModelCurve* model) {
-  IntervalFactors in95(0.95);
-  return spectrum_channel_json(channel, spectrum, model, spectrum_intervals(spectrum, in95));
-}
-
-Json spectrum_channel_json(const Channel& channel,
-                           const Spectrum& spectrum,
                            const ModelCurve* model,
                            const std::vector<std::optional<Interval>>& ci95) {
   Json out = named(channel);

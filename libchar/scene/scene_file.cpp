@@ -17,7 +17,7 @@ namespace {
 class SceneReader {
  public:
   SceneReader(const Document& document, const std::string& path, const SceneReadOptions& options)
-      : top_(document, path, "", scene_keys()), folder_{path, options.allow_outside} {}
+      : top_(document, path, "", keys_of(scene_fields())), folder_{path, options.allow_outside} {}
 
   Scene read() {
     scene_.file = folder_.scene;

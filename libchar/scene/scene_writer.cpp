@@ -132,7 +132,7 @@ Entry sensors_entry(const Scene& scene) {
 Entry reference_entry(const SceneReference& r, const std::string& scene) {
   if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag) return {"reference", r.channels};
   Entries below = {{"channels", r.channels}};
-  if (r.mean) below.push_back({"mean", true});
+  append(below, entries_of(reference_fields(), r));
   if (r.recording) below.push_back(recording_entry(*r.recording, r.reading, scene));
   if (r.estimate_lag)
     below.push_back(word_entry("lag_s", "estimate"));

@@ -180,31 +180,39 @@ class Circular final : public SignalSource {
   double phase_;
 };
 
-using Keys = std::vector<std::string>;
-const std::vector<std::pair<std::string, Keys>>& table() {
-  static const std::vector<std::pair<std::string, Keys>> kinds = {
-      {"zero", {}},
-      {"constant", {"value"}},
-      {"sine", {"amplitude", "frequency_hz", "phase_rad"}},
-      {"chirp", {"amplitude", "from_hz", "to_hz", "phase_rad"}},
-      {"noise", {"standard_deviation", "bandwidth_hz"}},
-      {"uniform", {"amplitude", "renew_s", "repeat"}},
-      {"random_walk", {"step"}},
-      {"ramp", {"slope"}},
-      {"points", {"points"}},
-      {"recording", {"file", "channel"}},
-      {"derivative", {"of"}},
-      {"sine_of", {"of", "amplitude"}},
-      {"cosine_of", {"of", "amplitude"}}};
-  return kinds;
-}
-
 }  // namespace
+
+const std::vector<SignalKind>& signal_kind_rows() {
+  static const std::vector<SignalKind> rows = {
+      {"zero", {}, "0"},
+      {"constant", {"value"}, "the value"},
+      {"sine", {"amplitude", "frequency_hz", "phase_rad"}, "A sin(2πft + φ)"},
+      {"chirp",
+       {"amplitude", "from_hz", "to_hz", "phase_rad"},
+       "frequency linear in time over the whole length"},
+      {"noise",
+       {"standard_deviation", "bandwidth_hz"},
+       "white noise behind a first-order low-pass (0: none), of this standard deviation"},
+      {"uniform",
+       {"amplitude", "renew_s", "repeat"},
+       "uniform in ± A, renewed this often and held; kept at a renewal with probability `repeat`"},
+      {"random_walk", {"step"}, "U/√s"},
+      {"ramp", {"slope"}, "U/s"},
+      {"points", {"points"}, "`[[t, value], …]`, linear in between, constant outside"},
+      {"recording",
+       {"file", "channel"},
+       "a channel of a log at the rate of the simulation; its last sample is held"},
+      {"derivative", {"of"}, "of a signal that stands before this one, by name or position from 0"},
+      {"sine_of", {"of", "amplitude"}, "A sin x of such a signal in rad"},
+      {"cosine_of", {"of", "amplitude"}, "A cos x of such a signal in rad"},
+  };
+  return rows;
+}
 
 const std::vector<std::string>& signal_kinds() {
   static const std::vector<std::string> kinds = [] {
     std::vector<std::string> names;
-    for (const auto& row : table()) names.push_back(row.first);
+    for (const SignalKind& row : signal_kind_rows()) names.push_back(row.word);
     return names;
   }();
   return kinds;
@@ -212,8 +220,8 @@ const std::vector<std::string>& signal_kinds() {
 
 const std::vector<std::string>& signal_keys(const std::string& kind) {
   static const std::vector<std::string> none;
-  for (const auto& row : table())
-    if (row.first == kind) return row.second;
+  for (const SignalKind& row : signal_kind_rows())
+    if (row.word == kind) return row.keys;
   return none;
 }
 

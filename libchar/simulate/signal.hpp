@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,8 +37,16 @@ struct SignalSpec {
   std::vector<double> samples;  ///< recording: at the rate of the simulation, held at its end
 };
 
-/// "zero", "constant", "sine", "chirp", "noise", "uniform", "random_walk", "ramp", "points",
-/// "recording", "derivative", "sine_of", "cosine_of".
+struct SignalKind {
+  std::string word;               ///< "sine"
+  std::vector<std::string> keys;  ///< that it reads, beside `kind` and `offset`
+  std::string_view meaning;       ///< in docs: the formula
+};
+
+/// The kinds of signals, a row each.
+const std::vector<SignalKind>& signal_kind_rows();
+
+/// Their words.
 const std::vector<std::string>& signal_kinds();
 
 /// Keys that a kind reads, beside `kind` and `offset`.

@@ -3,6 +3,7 @@
 
 #include "libchar/spectrum/spectrum_interval.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,6 +36,23 @@ std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
                                             std::size_t i,
                                             double confidence) {
   return IntervalFactors(confidence).interval(spectrum, i);
+}
+
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        IntervalFactors& factors) {
+  std::vector<std::optional<Interval>> out(spectrum.frequency_hz.size());
+  for (std::size_t i = 0; i < std::min(out.size(), spectrum.dof.size()); ++i) {
+    if (!(spectrum.dof[i] > 0)) continue;
+    const auto [low, high] = factors.interval(spectrum, i);
+    out[i] = Interval{low, high};
+  }
+  return out;
+}
+
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        double confidence) {
+  IntervalFactors factors(confidence);
+  return spectrum_intervals(spectrum, factors);
 }
 
 }  // namespace libchar

@@ -2,9 +2,12 @@
 // How well a bin of a spectrum is known.
 
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
+#include "libchar/core/interval.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -31,5 +34,11 @@ class IntervalFactors {
 std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
                                             std::size_t i,
                                             double confidence);
+
+/// The same for every bin; none where its degrees of freedom are not known.
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        IntervalFactors& factors);
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
+                                                        double confidence);
 
 }  // namespace libchar

@@ -51,11 +51,13 @@ struct WelchStream::State {
     segment.resize(layout.segment);
   }
   void take(const double* x);
-  HalfSegments::Half half_at(const double* x, HalfListener* listener) const;
-  void take_pair(const double* x, HalfListener* listener);
+  HalfSegments::Half half_at(const double* x, SharedBlocks* blocks) const;
+  void take_pair(const double* x, SharedBlocks* blocks);
   void push_by_segments(std::span<const double> pushed);
-  void push_by_halves(std::span<const double> pushed, HalfListener* listener);
+  void push_by_halves(std::span<const double> pushed, SharedBlocks* blocks);
+  void take_last_half(SharedBlocks& blocks);
   void add_rest(Average& whole) const;
+  void check_shared(const SharedBlocks& blocks) const;
 };
 
 void WelchStream::State::take(const double* x) {
@@ -66,16 +68,16 @@ void WelchStream::State::take(const double* x) {
   in_group = 0;
 }
 
-HalfSegments::Half WelchStream::State::half_at(const double* x, HalfListener* listener) const {
+HalfSegments::Half WelchStream::State::half_at(const double* x, SharedBlocks* blocks) const {
   HalfSegments::Half half = halves->half_at(x);
-  half.block = listener != nullptr && listener->half({x, layout.hop}, std::isfinite(half.mean));
+  half.block = blocks != nullptr && blocks->offer({x, layout.hop}, std::isfinite(half.mean));
   return half;
 }
 
 // The first pair ends one segment, every other two; groups are of an even number of segments, so
 // that they end with the first of the two.
-void WelchStream::State::take_pair(const double* x, HalfListener* listener) {
-  const HalfSegments::Half a = half_at(x, listener), b = half_at(x + layout.hop, listener);
+void WelchStream::State::take_pair(const double* x, SharedBlocks* blocks) {
+  const HalfSegments::Half a = half_at(x, blocks), b = half_at(x + layout.hop, blocks);
   const bool closes = in_group + 1 == layout.group;
   const auto used = halves->push(a, b, sums.get(), closes ? next_sums.get() : sums.get());
   if (!std::exchange(first_pair, false)) {
@@ -112,11 +114,11 @@ void WelchStream::State::push_by_segments(std::span<const double> pushed) {
   }
 }
 
-void WelchStream::State::push_by_halves(std::span<const double> pushed, HalfListener* listener) {
+void WelchStream::State::push_by_halves(std::span<const double> pushed, SharedBlocks* blocks) {
   const std::size_t pair = 2 * layout.hop;
   while (!pushed.empty()) {
     if (filled == 0 && pushed.size() >= pair) {  // where it lies
-      take_pair(pushed.data(), listener);
+      take_pair(pushed.data(), blocks);
       pushed = pushed.subspan(pair);
       continue;
     }
@@ -125,9 +127,32 @@ void WelchStream::State::push_by_halves(std::span<const double> pushed, HalfList
     filled += more;
     pushed = pushed.subspan(more);
     if (filled < pair) return;
-    take_pair(segment.data(), listener);
+    take_pair(segment.data(), blocks);
     filled = 0;
   }
+}
+
+// Without a partner: the segment that it ends is in the sums, and nothing after it.
+void WelchStream::State::take_last_half(SharedBlocks& blocks) {
+  const std::size_t hop = layout.hop;
+  const auto used = halves->push(half_at(segment.data(), &blocks), {}, sums.get(), nullptr);
+  if (!std::exchange(first_pair, false)) {
+    average.note_segment(used.first);
+    ++in_group;
+  }
+  filled -= hop;
+  std::memmove(segment.data(), segment.data() + hop, filled * sizeof(double));
+}
+
+void WelchStream::State::check_shared(const SharedBlocks& blocks) const {
+  if (halves && blocks.length() == layout.hop) return;
+  throw Error(
+      {ErrorKind::usage,
+       "",
+       "",
+       fmt::format("a spectrum with segments of {} samples cannot share blocks", layout.segment),
+       std::to_string(blocks.length()),
+       halves ? fmt::format("share blocks of {} samples", layout.hop) : ""});
 }
 
 // The group under way, and the segment of a half that still waits for its partner. Nothing here
@@ -164,36 +189,26 @@ WelchStream::~WelchStream() = default;
 WelchStream::WelchStream(WelchStream&&) noexcept = default;
 WelchStream& WelchStream::operator=(WelchStream&&) noexcept = default;
 
-void WelchStream::push(std::span<const double> samples, HalfListener* listener) {
+void WelchStream::push(std::span<const double> samples) {
   state_->samples += samples.size();
-  state_->halves ? state_->push_by_halves(samples, listener) : state_->push_by_segments(samples);
+  state_->halves ? state_->push_by_halves(samples, nullptr) : state_->push_by_segments(samples);
 }
 
-std::uint64_t WelchStream::half() const {
+std::uint64_t WelchStream::shared_length() const {
   return state_->halves ? state_->layout.hop : 0;
 }
 
-void WelchStream::end(HalfListener* listener) {
-  State& s = *state_;
-  const std::size_t hop = s.layout.hop;
-  if (!s.halves || s.filled < hop) return;
-  const auto used =
-      s.halves->push(s.half_at(s.segment.data(), listener), {}, s.sums.get(), nullptr);
-  if (!std::exchange(s.first_pair, false)) {
-    s.average.note_segment(used.first);
-    ++s.in_group;
-  }
-  s.filled -= hop;
-  std::memmove(s.segment.data(), s.segment.data() + hop, s.filled * sizeof(double));
+void WelchStream::push(std::span<const double> samples, SharedBlocks& blocks) {
+  state_->check_shared(blocks);
+  state_->samples += samples.size();
+  state_->push_by_halves(samples, &blocks);
 }
 
-std::vector<double> WelchStream::block_power() const {
-  return state_->halves ? state_->halves->block_power() : std::vector<double>();
-}
-
-std::span<const double> WelchStream::rest() const {
-  return state_->halves ? std::span<const double>(state_->segment).first(state_->filled)
-                        : std::span<const double>();
+void WelchStream::end(SharedBlocks& blocks) {
+  state_->check_shared(blocks);
+  if (state_->filled >= state_->layout.hop) state_->take_last_half(blocks);
+  blocks.close(std::span<const double>(state_->segment).first(state_->filled),
+               state_->halves->block_power());
 }
 
 Spectrum WelchStream::finish(double rate_hz) const {

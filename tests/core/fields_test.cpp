@@ -15,6 +15,16 @@ namespace {
 enum class Colour { red, green };
 constexpr Word kColours[] = {{"red", 0}, {"green", 1, "the usual one"}};
 
+enum class Socket { e14, e27 };
+
+}  // namespace
+
+template <>
+inline constexpr auto libchar::enum_table<Socket> = enum_words<Socket>({{Socket::e27, "E27"},
+                                                                        {Socket::e14, "E14"}});
+
+namespace {
+
 struct Lamp {
   double power_w = 5;
   Colour colour = Colour::red;
@@ -27,6 +37,7 @@ struct Room {
   std::optional<double> height_m;
   std::vector<double> widths_m;
   Lamp lamp;
+  Socket socket = Socket::e27;
   bool open = false;
 };
 
@@ -48,6 +59,7 @@ const Fields<Room>& room_fields() {
       field<&Room::widths_m>("widths_m"),
       part<&Room::lamp>("lamp", lamp_fields(), {.form = Entry::Form::flow}),
       field<&Room::lamp, &Lamp::colour>("light", {.words = kColours}),
+      field<&Room::socket>("socket"),
       field<&Room::open>("open"),
   };
   return rows;
@@ -112,6 +124,17 @@ TEST_CASE("fields: refusals name line, column and the nearest key or word") {
             .starts_with("f.json:2:11: error E0544: light: expected one of red, green"));
   CHECK(refusal("name: a\nheight_m: 0\n").starts_with("f.yaml:2:11: error E0543"));
   CHECK(refusal("name: a\nopen: 1\n").starts_with("f.yaml:2:7: error E0541"));
+}
+
+TEST_CASE("fields: the words of an enum with a table need no second list") {
+  Room room = read("name: a\nsocket: E14\n");
+  CHECK(room.socket == Socket::e14);
+  CHECK(yaml_of(entries_of(selected(room_fields(), {"socket"}, Written::always), room)) ==
+        "socket: E14\n");
+  CHECK(refusal("name: a\nsocket: E17\n")
+            .starts_with("f.yaml:2:9: error E0544: socket: expected one of E27, E14"));
+  CHECK(markdown_table(selected(room_fields(), {"socket"}, Written::always))
+            .ends_with("| `socket` | E27, E14 |  |\n"));
 }
 
 TEST_CASE("fields: the table of a page has a row a key") {

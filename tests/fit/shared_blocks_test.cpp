@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -21,26 +22,23 @@ std::vector<double> walk(std::size_t n) {
   return x;
 }
 
-// Gives whole blocks to somebody who transforms them, as a spectrum by halves does.
+// Transforms the blocks that the binner takes, as a spectrum by halves does.
 std::vector<PowerBin> by_blocks(const std::vector<double>& x, std::size_t& taken) {
   PowerBinner binner(kBlock);
+  SharedBlocks blocks(kBlock, binner);
   Dct dct(kBlock);
   std::vector<double> power(kBlock, 0.0);
-  taken = 0;
-  for (std::size_t at = 0; at < x.size(); at += kBlock) {
-    const std::span<const double> piece =
-        std::span(x).subspan(at, std::min<std::size_t>(kBlock, x.size() - at));
-    bool whole = piece.size() == kBlock;
-    for (const double v : piece) whole = whole && !std::isnan(v);
-    if (whole && binner.take_block(piece)) {
-      ++taken;
-      const auto c = dct.transform(piece);
-      for (std::size_t k = 0; k < kBlock; ++k) power[k] += c[k] * c[k];
-    } else {
-      binner.push(piece);
-    }
+  std::span<const double> rest = x;
+  for (taken = 0; rest.size() >= kBlock; rest = rest.subspan(kBlock)) {
+    const auto piece = rest.first(kBlock);
+    const bool whole =
+        std::none_of(piece.begin(), piece.end(), [](double v) { return std::isnan(v); });
+    if (!blocks.offer(piece, whole)) continue;
+    ++taken;
+    const auto c = dct.transform(piece);
+    for (std::size_t k = 0; k < kBlock; ++k) power[k] += c[k] * c[k];
   }
-  binner.set_taken_power(power);
+  blocks.close(rest, power);
   return binner.finish(200);
 }
 

@@ -22,7 +22,12 @@ void check_table(const std::string& file, const std::string& name, const Fields<
 TEST_CASE("the tables of keys in docs are those of the readers") {
   check_table("models.md", "sensor model", model_fields());
   check_table("formats.md", "sidecar", sidecar_fields());
+  check_table("scenes.md", "scene", scene_fields());
   check_table("scenes.md", "sensor", sensor_fields());
+  check_table("scenes.md", "reference", reference_fields());
+  test::check_docs_table("scenes.md", "keys", "signal kinds", signal_kinds_table());
+  check_table("scenes.md", "tilt", tilt_fields());
+  check_table("scenes.md", "fault", fault_fields());
   check_table("scenes.md", "simulation", simulation_fields());
   check_table("scenes.md", "recording", scene_reading_fields());
 }

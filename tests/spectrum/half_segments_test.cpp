@@ -1,11 +1,14 @@
 #include "libchar/spectrum/detail/half_segments.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 
+#include "libchar/core/error.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
@@ -84,16 +87,39 @@ std::vector<bool> push_all(HalfSegments& halves,
   return used;
 }
 
-// Remembers what it heard, and asks for every second half.
-struct Listener final : HalfListener {
-  std::vector<std::vector<double>> heard;
-  std::vector<bool> whole;
-  bool half(std::span<const double> samples, bool is_whole) override {
-    heard.emplace_back(samples.begin(), samples.end());
-    whole.push_back(is_whole);
-    return heard.size() % 2 == 1;
+// Remembers what it was given, and takes every second block that is offered.
+struct Taker final : BlockTaker {
+  std::vector<double> given;
+  std::vector<std::vector<double>> taken;
+  std::size_t offered = 0;
+  std::optional<std::vector<double>> power;
+  bool take_block(std::span<const double> samples) override {
+    if (offered++ % 2 == 1) return false;
+    given.insert(given.end(), samples.begin(), samples.end());
+    taken.emplace_back(samples.begin(), samples.end());
+    return true;
   }
+  void push(std::span<const double> samples) override {
+    given.insert(given.end(), samples.begin(), samples.end());
+  }
+  void take_power(std::vector<double> sums) override { power = std::move(sums); }
 };
+
+std::size_t whole_blocks(const std::vector<double>& x, std::size_t length) {
+  std::size_t count = 0;
+  for (auto at = x.begin(); x.end() - at >= static_cast<std::ptrdiff_t>(length);
+       at += static_cast<std::ptrdiff_t>(length))
+    count += std::none_of(
+        at, at + static_cast<std::ptrdiff_t>(length), [](double v) { return std::isnan(v); });
+  return count;
+}
+
+// Bit for bit, but a missing sample is a missing sample.
+bool same_samples(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double one, double other) {
+    return one == other || (std::isnan(one) && std::isnan(other));
+  });
+}
 
 }  // namespace
 
@@ -235,10 +261,11 @@ TEST_CASE(
       REQUIRE(welch(x, 50, single).value == whole.value);
       for (const std::size_t block : {1U, 999U, 4096U, 50021U}) {
         WelchStream stream(segments_of(n));
-        REQUIRE(stream.half() == n / 2);
-        Listener listener;
+        REQUIRE(stream.shared_length() == n / 2);
+        Taker taker;
+        SharedBlocks blocks(n / 2, taker);
         for (std::size_t i = 0; i < x.size(); i += block)
-          stream.push({x.data() + i, std::min(block, x.size() - i)}, &listener);
+          stream.push({x.data() + i, std::min(block, x.size() - i)}, blocks);
         const Spectrum s = stream.finish(50);
         CAPTURE(n, block, dirty);
         REQUIRE(s.value == whole.value);
@@ -246,29 +273,19 @@ TEST_CASE(
         REQUIRE(s.segments == whole.segments);
         REQUIRE(s.dropped == whole.dropped);
         REQUIRE(s.notes == whole.notes);
-        // Every sample was heard of once, or is left.
-        REQUIRE(listener.heard.size() == x.size() / n * 2);
-        stream.end(&listener);
-        REQUIRE(listener.heard.size() == x.size() / (n / 2));
+        // Every sample was given once and in order, and what is whole was offered as a block.
+        REQUIRE(taker.given.size() == x.size() / n * n);
+        REQUIRE_FALSE(taker.power);
+        stream.end(blocks);
+        REQUIRE(same_samples(taker.given, x));
+        REQUIRE(taker.offered == whole_blocks(x, n / 2));
         REQUIRE(stream.finish(50).value == whole.value);
-        std::size_t heard = 0;
-        for (std::size_t i = 0; i < listener.heard.size(); ++i) {
-          for (const double v : listener.heard[i]) {
-            const double own = x[heard++];
-            REQUIRE((v == own || (std::isnan(v) && std::isnan(own))));
-          }
-          const bool finite = std::none_of(listener.heard[i].begin(),
-                                           listener.heard[i].end(),
-                                           [](double v) { return std::isnan(v); });
-          REQUIRE(listener.whole[i] == finite);
-        }
-        REQUIRE(heard + stream.rest().size() == x.size());
-        // Blocks were summed where they were asked for, and whole.
+        // The squares of the blocks that were taken were summed, and no others.
         Dct dct(n / 2);
-        std::vector<double> wanted(n / 2, 0.0), got = stream.block_power();
-        for (std::size_t i = 0; i < listener.heard.size(); i += 2) {
-          if (!listener.whole[i]) continue;
-          const auto c = dct.transform(listener.heard[i]);
+        REQUIRE(taker.power);
+        std::vector<double> wanted(n / 2, 0.0), got = *taker.power;
+        for (const std::vector<double>& samples : taker.taken) {
+          const auto c = dct.transform(samples);
           for (std::size_t k = 1; k < c.size(); ++k) wanted[k] += c[k] * c[k];
         }
         got[0] = 0;
@@ -278,15 +295,19 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a stream that goes by segments has no halves to hear of") {
-  const auto x = noise(5000, 0, 0);
-  WelchStream stream(segments_of(1000));
-  Listener listener;
-  stream.push(x, &listener);
-  CHECK(stream.half() == 0);
-  CHECK(listener.heard.empty());
-  CHECK(stream.rest().empty());
-  CHECK(stream.block_power().empty());
+TEST_CASE("a stream shares blocks of its own length only, and none when it goes by segments") {
+  const auto x = noise(9000, 0, 0);
+  Taker taker;
+  SharedBlocks blocks(500, taker);
+  WelchStream by_segments(segments_of(1000)), by_halves(segments_of(8000));
+  CHECK(by_segments.shared_length() == 0);
+  CHECK(by_halves.shared_length() == 4000);
+  for (WelchStream* stream : {&by_segments, &by_halves}) {
+    CHECK_THROWS_AS(stream->push(x, blocks), Error);
+    CHECK_THROWS_AS(stream->end(blocks), Error);
+  }
+  CHECK(taker.given.empty());
+  CHECK_FALSE(taker.power);
 }
 
 TEST_CASE("halves and whole segments agree on spectrum, degrees of freedom and bandwidth") {

@@ -19,6 +19,7 @@
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
 #include "libchar/spectrum/welch.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 #include "libchar/spectrum/window.hpp"
@@ -177,7 +178,8 @@ std::string lines_csv(const Result& result) {
 }
 
 Json channel_json(const PsdVerb& verb, const ChannelSpectrum& c) {
-  Json out = spectrum_channel_json(c.channel, c.spectrum, nullptr);
+  Json out =
+      spectrum_channel_json(c.channel, c.spectrum, nullptr, spectrum_intervals(c.spectrum, 0.95));
   if (verb.lines) {
     out["lines"] = Json::array();
     for (const SpectralLine& line : c.lines)

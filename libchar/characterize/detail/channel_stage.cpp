@@ -31,23 +31,6 @@ WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
   return options;
 }
 
-// Half segments that may serve as blocks of the fit: long enough for their sixteen coefficients left to the series of means to be
-// few, short enough for many of them in a record.
-bool serves_as_block(std::uint64_t half) {
-  return half >= 4096 && half <= (std::uint64_t{1} << 16U);
-}
-
-// Whole halves go to the fit with the transform that the spectrum makes of them.
-struct HalvesToBins final : HalfListener {
-  explicit HalvesToBins(PowerBinner& into) : bins(into) {}
-  bool half(std::span<const double> samples, bool whole) override {
-    if (whole && bins.take_block(samples)) return true;
-    bins.push(samples);
-    return false;
-  }
-  PowerBinner& bins;
-};
-
 void add_spectrum(ChannelResult& result, const Spectrum& spectrum) {
   result.lines = find_lines(spectrum);
   result.spectrum = log_binned(spectrum, kPlottedBins);
@@ -103,11 +86,7 @@ void ChannelStage::stream(std::span<const double> samples) {
     return;
   }
   if (options_->wanted.allan) streams_->allan.push(samples);
-  if (streams_->shared_blocks) {
-    HalvesToBins listener(streams_->bins);
-    streams_->spectrum->push(samples, &listener);
-    return;
-  }
+  if (streams_->blocks) return streams_->spectrum->push(samples, *streams_->blocks);
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
   if (wants_fit()) streams_->bins.push(samples);
 }
@@ -130,13 +109,15 @@ void ChannelStage::stop_keeping() {
                  "",
                  "raise `memory_bytes`"});
   keeping_ = false;
-  streams_.emplace();
+  streams_ = std::make_unique<ChannelStreams>();
   const std::uint64_t segment = options_->spectrum.segment;
   streams_->spectrum.emplace(
       with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
-  const std::uint64_t half = streams_->spectrum->half();
-  streams_->shared_blocks = options_->wanted.spectrum && wants_fit() && serves_as_block(half);
-  if (streams_->shared_blocks) streams_->bins = PowerBinner(half);
+  const std::uint64_t shared = streams_->spectrum->shared_length();
+  if (options_->wanted.spectrum && wants_fit() && PowerBinner::suits(shared)) {
+    streams_->bins = PowerBinner(shared);
+    streams_->blocks.emplace(shared, streams_->bins);
+  }
   const std::vector<double> kept = std::move(kept_);
   kept_ = {};
   samples_ = 0;
@@ -151,7 +132,7 @@ bool ChannelStage::needs_second_pass() const {
 
 void ChannelStage::begin_second_pass() {
   streams_->bins = PowerBinner(kStreamedBlock);
-  streams_->shared_blocks = false;
+  streams_->blocks.reset();
   streams_->cleaner.emplace();
 }
 
@@ -185,10 +166,6 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
   const ChannelQuality quality = quality_.finish();
   PowerBinner& bins = streams_->bins;
   if (streams_->cleaner) bins.push(streams_->cleaner->finish());
-  if (streams_->shared_blocks) {
-    bins.push(streams_->spectrum->rest());
-    bins.set_taken_power(streams_->spectrum->block_power());
-  }
   NoiseFit fit = fit_binned(bins,
                             rate_hz,
                             quality.samples,
@@ -217,10 +194,7 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
   if (wants_fit())
     attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
-  if (streams_->shared_blocks) {
-    HalvesToBins listener(streams_->bins);
-    streams_->spectrum->end(&listener);
-  }
+  if (streams_->blocks) streams_->spectrum->end(*streams_->blocks);
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] { add_spectrum(result, streams_->spectrum->finish(rate_hz)); });
   if (wants_fit())

@@ -1,6 +1,7 @@
 #pragma once
 // One channel on its way through: keeps its samples while they fit, streams them through fixed-size stages when they do not.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,10 +19,11 @@ inline constexpr std::uint64_t kStreamedBlock = std::uint64_t{1} << 13U;
 struct ChannelStreams {
   AllanPyramid allan;
   std::optional<WelchStream> spectrum;
-  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway. Where the
-  // spectrum goes by halves the blocks are these halves, and their transforms come from there.
+  // Short blocks: their transforms stay in the cache, and what is slower than a block is in the series of means anyway.
   PowerBinner bins{kStreamedBlock};
-  bool shared_blocks = false;
+  // Where the spectrum goes by halves they are the blocks of `bins` too, and it transforms them for both: then every sample gets
+  // to `bins` from `spectrum`. Points to `bins`.
+  std::optional<SharedBlocks> blocks;
   std::optional<SpikeCleaner> cleaner;  // in the second pass
 };
 
@@ -70,8 +72,8 @@ class ChannelStage {
   QualityMeter quality_;
   bool keeping_ = true;
   std::vector<double> kept_;
-  std::optional<ChannelStreams> streams_;
-  std::vector<double> differenced_;  // scratch of as_rate
+  std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
+  std::vector<double> differenced_;          // scratch of as_rate
   std::optional<double> previous_phase_;
   std::uint64_t samples_ = 0;
 };

@@ -11,16 +11,19 @@
 namespace libchar {
 namespace {
 
+// Comments beside the words of the enum.
 constexpr Word kStatuses[] = {
-    {"detected", static_cast<int>(Status::detected)},
-    {"not_detected",
+    {name_of(Status::detected), static_cast<int>(Status::detected)},
+    {name_of(Status::not_detected),
      static_cast<int>(Status::not_detected),
      "no value: only an upper limit is known"},
-    {"undetermined",
+    {name_of(Status::undetermined),
      static_cast<int>(Status::undetermined),
      "undetermined: the record cannot tell it from another term, or contradicts it"},
-    {"given", static_cast<int>(Status::given), "stated, not fitted"},
-    {"not_fitted", static_cast<int>(Status::not_fitted), "not part of the model that was fitted"},
+    {name_of(Status::given), static_cast<int>(Status::given), "stated, not fitted"},
+    {name_of(Status::not_fitted),
+     static_cast<int>(Status::not_fitted),
+     "not part of the model that was fitted"},
 };
 constexpr Word kIntervals[] = {{"profile", 1, "likelihood"},
                                {"covariance", 0, "of the fit, log-normal"}};

@@ -29,7 +29,7 @@ std::string spectrum_title(const Spectrum& s) {
 }
 
 std::string spectrum_axis(const Spectrum& s) {
-  std::string scaling(key_of(s.scaling));
+  std::string scaling(name_of(s.scaling));
   std::transform(scaling.begin(), scaling.end(), scaling.begin(), [](char c) {
     return static_cast<char>(c - 'a' + 'A');
   });

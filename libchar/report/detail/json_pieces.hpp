@@ -19,8 +19,5 @@ Json spectrum_channel_json(const Channel& channel,
                            const Spectrum& spectrum,
                            const ModelCurve* model,
                            const std::vector<std::optional<Interval>>& ci95);
-Json spectrum_channel_json(const Channel& channel,
-                           const Spectrum& spectrum,
-                           const ModelCurve* model = nullptr);
 
 }  // namespace libchar

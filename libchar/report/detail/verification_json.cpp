@@ -2,12 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/verification.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
 
-Json verification_json(const ChannelResult& channel) {
+Json verification_json(const ChannelView& view) {
+  const ChannelResult& channel = *view.result;
   const ChannelVerification& v = *channel.verification;
   Json out = {{"name", json_text(channel.channel.name)}, {"agrees", v.agrees}};
   out["sentences"] = Json::array();
@@ -29,7 +31,8 @@ Json verification_json(const ChannelResult& channel) {
     out["points"].push_back(
         {{"tau_s", point.tau_s}, {"ratio", point.ratio}, {"p", point.p}, {"agrees", point.agrees}});
   out["allan"] = allan_channel_json(channel.channel, v.allan, nullptr);
-  out["spectrum"] = spectrum_channel_json(channel.channel, v.spectrum, nullptr);
+  out["spectrum"] =
+      spectrum_channel_json(channel.channel, v.spectrum, nullptr, view.verification_ci95);
   return out;
 }
 

@@ -1,21 +1,13 @@
 #include "libchar/scene/detail/scene_fields.hpp"
 
+#include <fmt/format.h>
+
 #include "libchar/log/reading_fields.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
-
-const std::vector<Word>& kind_words() {
-  static const std::vector<Word> words = [] {
-    std::vector<Word> all;
-    for (const EnumWord<FaultKind>& row : enum_table<FaultKind>)
-      all.push_back({row.word, static_cast<int>(row.value)});
-    return all;
-  }();
-  return words;
-}
 
 // Beside the value of a member: read and written by whoever knows the rest of the scene.
 template <class T>
@@ -30,24 +22,52 @@ Row<T> elsewhere(std::string_view key, std::string_view kind, const FieldText& t
 
 }  // namespace
 
-const std::vector<std::string>& scene_keys() {
-  static const std::vector<std::string> keys = {"format",
-                                                "version",
-                                                "name",
-                                                "tool",
-                                                "recording",
-                                                "simulate",
-                                                "sensors",
-                                                "reference",
-                                                "tilt",
-                                                "learning",
-                                                "evaluation",
-                                                "rest",
-                                                "fault_free_s",
-                                                "faults",
-                                                "simulated",
-                                                "algorithms"};
-  return keys;
+const Fields<Scene>& scene_fields() {
+  static const Fields<Scene> rows = {
+      constant<Scene>("format", std::string("scene"), {.meaning = "scene"}),
+      constant<Scene>("version", std::uint64_t{1}, {.meaning = "1"}),
+      field<&Scene::name>("name", {.meaning = "a title for reports", .otherwise = "none"}),
+      tool_row<Scene>(),
+      elsewhere<Scene>("recording",
+                       "path, or a map",
+                       {.meaning = "a log, or a map that says how to read it (below)"}),
+      elsewhere<Scene>("simulate", "map", {.meaning = "instead: how to make one (below)"}),
+      elsewhere<Scene>("sensors", "list", {.meaning = "of 1 to 10000 sensors (below)"}),
+      elsewhere<Scene>("reference",
+                       "text, list or map",
+                       {.meaning = "channel with the truth, a list of them, or a map (below)",
+                        .otherwise = "of a simulation all truth signals"}),
+      elsewhere<Scene>(
+          "tilt",
+          "map",
+          {.meaning = "sensors of a tilt, atan2(x, z); then the reference is the angle (below)"}),
+      elsewhere<Scene>("learning",
+                       "[from, to]",
+                       {.meaning = "in seconds from the first sample; `[from, end]` up to the end",
+                        .otherwise = "none"}),
+      elsewhere<Scene>("evaluation",
+                       "[from, to]",
+                       {.meaning = "what is run and scored",
+                        .otherwise = "from the end of the learning window on"}),
+      elsewhere<Scene>("rest",
+                       "[from, to]",
+                       {.meaning = "the true inputs are zero there: each sensor's mean is "
+                                   "subtracted, and its noise measured"}),
+      elsewhere<Scene>("fault_free_s",
+                       "s",
+                       {.meaning = "so long no sensor fails, from the start of the evaluation",
+                        .otherwise = "up to the first fault that the scene knows"}),
+      elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
+      elsewhere<Scene>("simulated",
+                       "map",
+                       {.meaning = "written by `simulate`: `{seed, oversampling, faults}` that the "
+                                   "recording holds already; nothing of it is injected again"}),
+      elsewhere<Scene>("algorithms",
+                       "list",
+                       {.meaning = "names, or maps `{name: NAME, OPTION: NUMBER…}`",
+                        .otherwise = "all whose needs the scene meets"}),
+  };
+  return rows;
 }
 
 const Fields<SceneSensor>& sensor_fields() {
@@ -83,15 +103,32 @@ const Fields<SceneSensor>& sensor_fields() {
   return rows;
 }
 
+const Fields<SceneReference>& reference_fields() {
+  static const Fields<SceneReference> rows = {
+      elsewhere<SceneReference>("channels",
+                                "text or list",
+                                {.meaning = "one a true input; of a simulation truth signals"}),
+      field<&SceneReference::mean>(
+          "mean",
+          {.meaning = "the mean of the channels is the one true input", .otherwise = "false"}),
+      elsewhere<SceneReference>(
+          "recording",
+          "path, or a map",
+          {.meaning = "a log of its own, as the scene's `recording`", .otherwise = "the scene's"}),
+      elsewhere<SceneReference>(
+          "lag_s",
+          "s, or estimate",
+          {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
+  };
+  return rows;
+}
+
 const Fields<FaultText>& fault_fields() {
   static const Fields<FaultText> rows = {
       field<&FaultText::sensor>(
           "sensor", {.meaning = "its name", .written = Written::always, .required = true}),
-      field<&FaultText::kind>("kind",
-                              {.words = kind_words(),
-                               .meaning = "what goes wrong",
-                               .written = Written::always,
-                               .required = true}),
+      field<&FaultText::kind>(
+          "kind", {.meaning = "what goes wrong", .written = Written::always, .required = true}),
       field<&FaultText::value>("value",
                                {.meaning = "factor, offset, slope, limit or standard deviation"}),
       field<&FaultText::from_s>("from_s",
@@ -182,6 +219,17 @@ const Fields<SignalSpec>& signal_fields() {
                                 {.unit = "U/s", .meaning = "ramp", .written = Written::always}),
   };
   return rows;
+}
+
+std::string signal_kinds_table() {
+  std::string out = "| kind | keys | signal |\n|---|---|---|\n";
+  for (const SignalKind& kind : signal_kind_rows()) {
+    std::string keys;
+    for (const std::string& key : kind.keys)
+      keys += fmt::format("{}`{}`", keys.empty() ? "" : ", ", key);
+    out += fmt::format("| `{}` | {} | {} |\n", kind.word, keys.empty() ? "–" : keys, kind.meaning);
+  }
+  return out;
 }
 
 const Fields<ReadOptions>& scene_reading_fields() {

@@ -10,11 +10,14 @@
 
 namespace libchar {
 
-/// Keys of a whole scene, in order.
-const std::vector<std::string>& scene_keys();
+/// A whole scene: most of its keys are blocks with rows of their own.
+const Fields<Scene>& scene_fields();
 
 /// A sensor; `count` makes several devices of one model.
 const Fields<SceneSensor>& sensor_fields();
+
+/// The block `reference`, when it is a map.
+const Fields<SceneReference>& reference_fields();
 
 /// A fault as a file has it: the sensor by name, the end open.
 struct FaultText {
@@ -31,6 +34,9 @@ const Fields<ArraySimulation>& simulation_fields();
 
 /// The numbers of a signal; a kind has those of signal_keys(kind).
 const Fields<SignalSpec>& signal_fields();
+
+/// "| kind | keys | signal |" in Markdown, a row a kind.
+std::string signal_kinds_table();
 
 /// How the recording of a scene is to be read, beside its file.
 const Fields<ReadOptions>& scene_reading_fields();

@@ -16,10 +16,10 @@ void read_options(const MapReader& at,
                   const SceneFolder& folder,
                   SceneReference& reference,
                   Scene& scene) {
-  for (const char* key : {"mean", "recording", "lag_s"})
-    if (scene.simulate && at.has(key))
+  for (const std::string& key : keys_of(reference_fields()))
+    if (scene.simulate && key != "channels" && at.has(key))
       at.refuse(key, "a simulation knows its truth: name truth signals only");
-  reference.mean = at.flag_or("mean", false);
+  read_fields(reference_fields(), at, reference);
   if (at.has("recording"))
     reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
   if (!at.has("lag_s")) return;
@@ -39,8 +39,7 @@ void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scen
   SceneReference reference;
   const Document& node = top.require("reference");
   std::optional<MapReader> map;
-  if (node.kind == Document::Kind::map)
-    map = top.map("reference", {"channels", "mean", "recording", "lag_s"});
+  if (node.kind == Document::Kind::map) map = top.map("reference", keys_of(reference_fields()));
   const MapReader& at = map ? *map : top;
   const char* key = map ? "channels" : "reference";
   reference.channels = at.texts(key);
