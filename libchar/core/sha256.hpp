@@ -16,7 +16,8 @@ class Sha256 {
   Sha256(Sha256&&) noexcept;
   Sha256& operator=(Sha256&&) noexcept;
   void update(std::string_view bytes);
-  /// Can another loop hash blocks beside its own work (sha256_blocks.hpp)?
+  /// Does it pay for another loop to hash blocks beside its own work (sha256_blocks.hpp)? Only on processors that mix these
+  /// instructions with AVX freely.
   bool can_interleave() const;
   /// The stream's next bytes, for such a loop: it takes as many of the whole blocks as it likes,
   /// and `finish_interleaved` the rest. The bytes must stay where they are until then. Only where

@@ -37,26 +37,54 @@ double cpu() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Seven columns: t[s] and six noisy channels. style: "shortest", "%.9g", "%.6f", "counts".
-std::string make(const std::string& style, std::size_t bytes) {
+// How the numbers of a file are written.
+struct Style {
+  const char* name;
+  const char* number = "{:.9g}";
+  bool counts = false;         // integers
+  bool decimal_comma = false;  // with ; between the fields
+  bool blanks = false;         // in front of every value
+  bool quotes = false;         // around every value
+  int missing = 0;             // one empty cell in so many rows
+  bool plain() const { return !decimal_comma && !quotes && missing == 0 && !blanks; }
+};
+
+constexpr Style kStyles[] = {{"shortest", "{}"},
+                             {"%.9g"},
+                             {"%.6f", "{:.6f}"},
+                             {.name = "counts", .counts = true},
+                             {.name = "comma", .decimal_comma = true},
+                             {.name = "1/1000 gone", .missing = 1000},
+                             {.name = "1/20 gone", .missing = 20},
+                             {.name = "quoted", .quotes = true},
+                             {.name = "blanks", .blanks = true}};
+
+std::string cell(const Style& style, double x) {
+  const std::string number = style.counts ? fmt::format("{}", std::lround(x * 16384))
+                                          : fmt::format(fmt::runtime(style.number), x);
+  return (style.blanks ? " " : "") + (style.quotes ? '"' + number + '"' : number);
+}
+
+// Seven columns: t[s] and six noisy channels.
+std::string make(const Style& style, std::size_t bytes) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0, 0.01);
-  std::string text = "t[s],gx[rad/s],gy[rad/s],gz[rad/s],ax[m/s^2],ay[m/s^2],az[m/s^2]\n";
+  const auto written = [&](std::string line) {
+    if (style.decimal_comma)
+      for (char& c : line) c = c == ',' ? ';' : c == '.' ? ',' : c;
+    return line + '\n';
+  };
+  std::string text = written("t[s],gx[rad/s],gy[rad/s],gz[rad/s],ax[m/s^2],ay[m/s^2],az[m/s^2]");
   text.reserve(bytes + 512);
   for (std::size_t row = 0; text.size() < bytes; ++row) {
-    text += fmt::format("{:.3f}", static_cast<double>(row) * 0.005);
+    std::string line = fmt::format("{:.3f}", static_cast<double>(row) * 0.005);
     for (int c = 0; c < 6; ++c) {
       const double x = noise(random) + (c == 5 ? 9.81 : 0);
-      if (style == "shortest")
-        text += fmt::format(",{}", x);
-      else if (style == "%.9g")
-        text += fmt::format(",{:.9g}", x);
-      else if (style == "%.6f")
-        text += fmt::format(",{:.6f}", x);
-      else
-        text += fmt::format(",{}", std::lround(x * 16384));
+      const bool gone =
+          c == 2 && style.missing > 0 && row % static_cast<std::size_t>(style.missing) == 0;
+      line += gone ? "," : "," + cell(style, x);
     }
-    text += '\n';
+    text += written(line);
   }
   return text;
 }
@@ -96,7 +124,7 @@ double plain_loop(const std::string& text) {
 
 int main(int count, char** arguments) {
   const std::size_t megabytes = count > 1 ? static_cast<std::size_t>(std::atoi(arguments[1])) : 100;
-  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
+  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
              "style",
              "memcpy",
              "from_chars",
@@ -105,7 +133,7 @@ int main(int count, char** arguments) {
              "read_log",
              "no hash",
              "parse/");
-  fmt::print("{:<10} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
+  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
              "",
              "GB/s",
              "MB/s core",
@@ -115,12 +143,13 @@ int main(int count, char** arguments) {
              "MB/s cpu",
              "from_ch.");
   volatile double keep = 0;
-  for (const std::string style : {"shortest", "%.9g", "%.6f", "counts"}) {
+  for (const Style& style : kStyles) {
     const std::string text = make(style, megabytes << 20U);
     const double size = static_cast<double>(text.size());
     std::vector<char> copy(text.size());
     const double copying = best_of(3, [&] { std::memcpy(copy.data(), text.data(), text.size()); });
-    const double plain = best_of(3, [&] { keep = plain_loop(text); });
+    const double plain =
+        style.plain() ? best_of(3, [&] { keep = plain_loop(text); }) : std::nan("");
 
     ReadOptions options;
     if (count > 2) options.block_bytes = static_cast<std::size_t>(std::atoi(arguments[2]));
@@ -163,8 +192,8 @@ int main(int count, char** arguments) {
       read_log(path, options, sink);
     });
     ::close(file);
-    fmt::print("{:<10} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n",
-               style,
+    fmt::print("{:<12} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n",
+               style.name,
                size / copying * 1e-9,
                size / plain * 1e-6,
                size / parsing * 1e-6,

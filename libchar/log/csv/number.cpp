@@ -110,6 +110,72 @@ bool below_one(std::string_view text) {
   return position + exponent < 0;
 }
 
+// A decimal number as it is written: w · 10^q.
+struct Written {
+  Uint128 w = 0;
+  int q = 0;
+  bool any = false;   // a digit was there
+  bool lost = false;  // digits other than 0 behind those of w
+  std::size_t end = 0;
+};
+
+// The digits from i on, with at most one mark among them.
+Written read_mantissa(std::string_view text, std::size_t i, char point) {
+  Written out;
+  bool fraction = false;
+  for (; i < text.size(); ++i) {
+    if (text[i] == point && !fraction) {
+      fraction = true;
+    } else if (is_digit(text[i])) {
+      out.any = true;
+      // 27 digits leave room for the unit; further digits stand far below a nanosecond or far above
+      // 64 bits.
+      if (out.w < static_cast<Uint128>(1000000000000000000) * 1000000000) {
+        out.w = out.w * 10 + static_cast<unsigned>(text[i] - '0');
+        out.q -= fraction;
+      } else {
+        out.q += !fraction;
+        out.lost = out.lost || text[i] != '0';
+      }
+    } else {
+      break;
+    }
+  }
+  out.end = i;
+  return out;
+}
+
+// Adds an exponent at number.end to it; numbers beyond 10^±10000 are out of range.
+StampFault read_exponent(std::string_view text, Written& number) {
+  const std::size_t i = number.end;
+  if (!number.any || i == text.size() || lower(text[i]) != 'e') return StampFault::none;
+  int exponent = 0;
+  const char* from = text.data() + i + 1;
+  const char* const end = text.data() + text.size();
+  if (from != end && *from == '+') ++from;
+  const auto [stop, status] = std::from_chars(from, end, exponent);
+  if (stop == from) return StampFault::malformed;
+  if (status != std::errc() || exponent > 10000 || exponent < -10000)
+    return StampFault::out_of_range;
+  number.q += exponent;
+  number.end = static_cast<std::size_t>(stop - text.data());
+  return StampFault::none;
+}
+
+// w / 10^-q for q < 0, the half rounded to even.
+Uint128 rounded_quotient(Uint128 w, int q, bool lost) {
+  Uint128 divisor = 1;
+  bool sticky = lost;
+  for (; q < -30; ++q) {
+    sticky = sticky || w % 10 != 0;
+    w /= 10;
+  }
+  for (; q < 0; ++q) divisor *= 10;
+  const Uint128 quotient = w / divisor, twice = (w % divisor) * 2;
+  const bool up = twice > divisor || (twice == divisor && (sticky || (quotient & 1U) != 0));
+  return quotient + (up ? 1U : 0U);
+}
+
 }  // namespace
 
 Cell read_cell(std::string_view text, char point) {
@@ -173,65 +239,26 @@ StampFault read_stamp(std::string_view text,
   offset = 0;
   if (means_missing(text)) return StampFault::missing;
   const bool negative = text[0] == '-';
-  std::size_t i = negative || text[0] == '+' ? 1 : 0;
-  Uint128 w = 0;
-  int q = 0;
-  bool any = false, fraction = false, lost = false;
-  for (; i < text.size(); ++i) {
-    if (text[i] == point && !fraction) {
-      fraction = true;
-    } else if (is_digit(text[i])) {
-      any = true;
-      // 27 digits leave room for the unit; further digits stand far below a nanosecond or far above
-      // 64 bits.
-      if (w < static_cast<Uint128>(1000000000000000000) * 1000000000) {
-        w = w * 10 + static_cast<unsigned>(text[i] - '0');
-        q -= fraction;
-      } else {
-        q += !fraction;
-        lost = lost || text[i] != '0';
-      }
-    } else {
-      break;
-    }
+  Written number = read_mantissa(text, negative || text[0] == '+' ? 1 : 0, point);
+  if (const StampFault fault = read_exponent(text, number); fault != StampFault::none) {
+    if (fault != StampFault::out_of_range || number.w != 0) return fault;
+    out = 0;
+    return StampFault::none;
   }
-  if (any && i < text.size() && lower(text[i]) == 'e') {
-    int exponent = 0;
-    const char* from = text.data() + i + 1;
-    const char* const end = text.data() + text.size();
-    if (from != end && *from == '+') ++from;
-    const auto [stop, status] = std::from_chars(from, end, exponent);
-    if (stop == from) return StampFault::malformed;
-    if (status != std::errc() || exponent > 10000 || exponent < -10000)
-      return w == 0 ? (out = 0, StampFault::none) : StampFault::out_of_range;
-    q += exponent;
-    i = static_cast<std::size_t>(stop - text.data());
-  }
-  if (!any || i < text.size()) {
-    offset = any ? i : 0;
+  if (!number.any || number.end < text.size()) {
+    offset = number.any ? number.end : 0;
     return StampFault::malformed;
   }
-  w *= static_cast<std::uint64_t>(unit_ns);
+  Uint128 ns = number.w * static_cast<std::uint64_t>(unit_ns);
   const Uint128 limit = static_cast<Uint128>(1) << 63U;
-  for (; q > 0 && w != 0; --q) {
-    if (w > limit) return StampFault::out_of_range;
-    w *= 10;
+  for (int q = number.q; q > 0 && ns != 0; --q) {
+    if (ns > limit) return StampFault::out_of_range;
+    ns *= 10;
   }
-  if (q < 0) {
-    Uint128 divisor = 1;
-    bool sticky = lost;
-    for (; q < -30; ++q) {
-      sticky = sticky || w % 10 != 0;
-      w /= 10;
-    }
-    for (; q < 0; ++q) divisor *= 10;
-    const Uint128 quotient = w / divisor, twice = (w % divisor) * 2;
-    const bool up = twice > divisor || (twice == divisor && (sticky || (quotient & 1U) != 0));
-    w = quotient + (up ? 1U : 0U);
-  }
-  if (w > limit - (negative ? 0U : 1U)) return StampFault::out_of_range;
-  out =
-      negative ? static_cast<std::int64_t>(-static_cast<Int128>(w)) : static_cast<std::int64_t>(w);
+  if (number.q < 0) ns = rounded_quotient(ns, number.q, number.lost);
+  if (ns > limit - (negative ? 0U : 1U)) return StampFault::out_of_range;
+  out = negative ? static_cast<std::int64_t>(-static_cast<Int128>(ns))
+                 : static_cast<std::int64_t>(ns);
   return StampFault::none;
 }
 

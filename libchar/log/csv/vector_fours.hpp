@@ -27,6 +27,67 @@ LIBCHAR_SHA_INLINE inline __m256i both(const void* low, const void* high) {
   return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
 }
 
+// Where four fields of a column stand.
+struct FourFields {
+  const char* begin[4];  // behind the sign
+  std::uint32_t length[4], sign[4];
+  std::uint32_t foreign = 0;  // not 0 when a field does not end as it should
+  std::int32_t room = 0;      // negative when a field has more than 16 characters
+};
+
+template <bool kLast, class Aside>
+LIBCHAR_SHA_INLINE inline void locate_fours(const Column& column,
+                                            const std::uint32_t* stop,
+                                            FourFields& at,
+                                            Aside&& aside) {
+  const char* const text = column.text;
+  const std::uint32_t separator = static_cast<unsigned char>(kLast ? '\n' : column.delimiter);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::uint32_t* const end = stop + k * column.width;
+    const std::uint32_t from = end[-1] + 1;
+    std::uint32_t to = *end;
+    at.foreign |= static_cast<unsigned char>(text[to]) ^ separator;
+    if (kLast && column.crlf)
+      at.foreign |= static_cast<unsigned char>(text[--to]) ^ std::uint32_t{'\r'};
+    at.sign[k] =
+        ((static_cast<std::uint32_t>(static_cast<unsigned char>(text[from])) ^ std::uint32_t{'-'}) -
+         1U) >>
+        31U;
+    at.begin[k] = text + from + at.sign[k];
+    at.length[k] = to - from - at.sign[k];
+    aside(k);
+    at.room |= 16 - static_cast<std::int32_t>(at.length[k]);
+  }
+}
+
+// Digits of two fields to four numbers of four digits each, and what is no digit.
+struct TwoFields {
+  __m256i fours, strange;
+};
+
+template <class Aside>
+LIBCHAR_SHA_INLINE inline TwoFields digits_of_two(const char* const* begin,
+                                                  const std::uint32_t* length,
+                                                  std::uint32_t* distance,
+                                                  Aside&& aside) {
+  const __m256i raw = both(begin[0], begin[1]);
+  const auto points = static_cast<std::uint32_t>(
+      _mm256_movemask_epi8(_mm256_cmpeq_epi8(raw, _mm256_set1_epi8('.'))));
+  const void* gather[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint32_t safe = length[i] & 31U;
+    const std::uint32_t point = _tzcnt_u32((points >> (16 * i)) | (std::uint32_t{1} << safe));
+    distance[i] = safe - point;
+    gather[i] = kGather.index[point][safe];
+  }
+  aside();
+  const __m256i packed =
+      _mm256_shuffle_epi8(_mm256_sub_epi8(raw, _mm256_set1_epi8('0')), both(gather[0], gather[1]));
+  const __m256i pairs = _mm256_maddubs_epi16(packed, _mm256_set1_epi16(0x010A));  // 10 a + b
+  return {_mm256_madd_epi16(pairs, _mm256_set1_epi32(0x00010064)),                // 100 a + b
+          _mm256_subs_epu8(packed, _mm256_set1_epi8(9))};
+}
+
 /// Four fields of a column at `stop` to four values: they share most instructions, and what is
 /// wrong with one of them shows at the end; then there is nothing stored and the answer is false.
 /// Calls aside(0) to aside(7) on the way, in this order.
@@ -36,54 +97,17 @@ LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
                                            double* values,
                                            std::uint32_t& fractional,
                                            Aside&& aside) {
-  const char* const text = column.text;
-  const std::size_t width = column.width;
-  const std::uint32_t separator = static_cast<unsigned char>(kLast ? '\n' : column.delimiter);
-  const __m256i point_byte = _mm256_set1_epi8('.'), zero_byte = _mm256_set1_epi8('0'),
-                nine = _mm256_set1_epi8(9);
-  const char* begin[4];
-  std::uint32_t length[4], sign[4], foreign = 0;
-  std::int32_t room = 0;  // negative when a field has more than 16 characters
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::uint32_t* const end = stop + k * width;
-    const std::uint32_t from = end[-1] + 1;
-    std::uint32_t to = *end;
-    foreign |= static_cast<unsigned char>(text[to]) ^ separator;
-    if (kLast && column.crlf)
-      foreign |= static_cast<unsigned char>(text[--to]) ^ std::uint32_t{'\r'};
-    sign[k] =
-        ((static_cast<std::uint32_t>(static_cast<unsigned char>(text[from])) ^ std::uint32_t{'-'}) -
-         1U) >>
-        31U;
-    begin[k] = text + from + sign[k];
-    length[k] = to - from - sign[k];
-    aside(k);
-    room |= 16 - static_cast<std::int32_t>(length[k]);
-  }
+  FourFields at;
+  locate_fours<kLast>(column, stop, at, aside);
   std::uint32_t distance[4];
-  __m256i fours[2], strange[2];
-  for (std::size_t h = 0; h < 2; ++h) {
-    const __m256i raw = both(begin[2 * h], begin[2 * h + 1]);
-    const auto points =
-        static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(raw, point_byte)));
-    const void* gather[2];
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::uint32_t safe = length[2 * h + i] & 31U;
-      const std::uint32_t point = _tzcnt_u32((points >> (16 * i)) | (std::uint32_t{1} << safe));
-      distance[2 * h + i] = safe - point;
-      gather[i] = kGather.index[point][safe];
-    }
-    aside(4 + h);
-    const __m256i packed =
-        _mm256_shuffle_epi8(_mm256_sub_epi8(raw, zero_byte), both(gather[0], gather[1]));
-    strange[h] = _mm256_subs_epu8(packed, nine);
-    const __m256i pairs = _mm256_maddubs_epi16(packed, _mm256_set1_epi16(0x010A));  // 10 a + b
-    fours[h] = _mm256_madd_epi16(pairs, _mm256_set1_epi32(0x00010064));             // 100 a + b
-  }
-  const __m256i anything = _mm256_or_si256(strange[0], strange[1]);
+  const TwoFields low_two =
+      digits_of_two(at.begin, at.length, distance, [&]() LIBCHAR_SHA_INLINE { aside(4); });
+  const TwoFields high_two = digits_of_two(
+      at.begin + 2, at.length + 2, distance + 2, [&]() LIBCHAR_SHA_INLINE { aside(5); });
+  const __m256i anything = _mm256_or_si256(low_two.strange, high_two.strange);
   // 32-bit numbers below 10^8: high and low of fields 0 and 2, then of 1 and 3; put in order.
-  const __m256i eights =
-      _mm256_madd_epi16(_mm256_packus_epi32(fours[0], fours[1]), _mm256_set1_epi32(0x00012710));
+  const __m256i eights = _mm256_madd_epi16(_mm256_packus_epi32(low_two.fours, high_two.fours),
+                                           _mm256_set1_epi32(0x00012710));
   aside(6);
   const __m256i ordered =
       _mm256_permutevar8x32_epi32(eights, _mm256_setr_epi32(0, 4, 2, 6, 1, 5, 3, 7));
@@ -93,12 +117,13 @@ LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
   const __m256d whole = _mm256_add_pd(_mm256_mul_pd(high, _mm256_set1_pd(1e8)), low);
   aside(7);
   const auto divisor = [&](std::size_t k) __attribute__((always_inline)) {
-    return kDivisors[distance[k] + 32 * sign[k]];
+    return kDivisors[distance[k] + 32 * at.sign[k]];
   };
   const __m256d divisors = _mm256_setr_pd(divisor(0), divisor(1), divisor(2), divisor(3));
   const __m256d good = _mm256_and_pd(_mm256_cmp_pd(whole, _mm256_set1_pd(0x1p53), _CMP_LT_OQ),
                                      _mm256_cmp_pd(divisors, divisors, _CMP_ORD_Q));
-  if (__builtin_expect(foreign != 0 || room < 0 || _mm256_testz_si256(anything, anything) == 0 ||
+  if (__builtin_expect(at.foreign != 0 || at.room < 0 ||
+                           _mm256_testz_si256(anything, anything) == 0 ||
                            _mm256_movemask_pd(good) != 15,
                        0))
     return false;
