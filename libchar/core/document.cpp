@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {

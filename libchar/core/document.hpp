@@ -44,14 +44,8 @@ inline constexpr std::size_t kMaxDocumentDepth = 64;
 /// Throws Error(input) with FILE:LINE:COL.
 Document parse_yaml_document(std::string_view text, const std::string& file);
 
-/// The same tree from JSON, by parse_json's rules. Throws Error(input) with FILE:LINE:COL (byte N).
-Document parse_json_document(std::string_view text, const std::string& file);
-
 /// JSON when `file` ends in .json, else YAML.
 Document parse_document(std::string_view text, const std::string& file);
-
-/// Reads a whole small text file: a regular one of at most 16 MiB. Throws Error(input).
-std::string read_document_text(const std::string& path);
 
 /// The document without its places.
 Json as_json(const Document& document);

@@ -1,3 +1,5 @@
+#include "libchar/core/document_file.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>

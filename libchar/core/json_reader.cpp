@@ -1,5 +1,7 @@
 // JSON as a tree with places: nlohmann's parser with the guards it lacks.
 
+#include "libchar/core/json_reader.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

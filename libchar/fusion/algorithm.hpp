@@ -98,9 +98,6 @@ struct Description {
   std::string_view learning_complexity = "";
 };
 
-/// Empty: the algorithm can run on this. Else the sentence that a report prints.
-std::string why_not(const Description& description, const Array& array);
-
 template <class A>
 concept Steps = requires(A a, const Sample& y) {
   { a.step(y) } -> std::same_as<Estimate>;

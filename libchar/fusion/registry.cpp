@@ -20,6 +20,7 @@
 #include "libchar/fusion/algorithms/tilt_complementary.hpp"
 #include "libchar/fusion/algorithms/tilt_kalman.hpp"
 #include "libchar/fusion/algorithms/tilt_tuned.hpp"
+#include "libchar/fusion/why_not.hpp"
 
 // A build may bring algorithms of its own, which stand first: their header by -include, their
 // entries by -D'LIBCHAR_MORE_ALGORITHMS=entry<Mine>(),'.

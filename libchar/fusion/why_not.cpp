@@ -1,3 +1,5 @@
+#include "libchar/fusion/why_not.hpp"
+
 #include <cmath>
 #include <string>
 

@@ -1,6 +1,7 @@
 #include "libchar/model/model_reader.hpp"
 
 #include "libchar/core/document.hpp"
+#include "libchar/core/document_file.hpp"
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {

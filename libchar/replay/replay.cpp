@@ -14,6 +14,7 @@
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/plan_sentences.hpp"
 
 namespace libchar {
 namespace {

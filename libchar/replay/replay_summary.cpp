@@ -7,7 +7,9 @@
 #include <limits>
 #include <set>
 
+#include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/schema.hpp"
 #include "libchar/core/text.hpp"

@@ -1,5 +1,7 @@
 // curves.csv: one tidy table, a row for each point of each curve.
 
+#include "libchar/report/csv_curves.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "libchar/core/csv_cell.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {

@@ -3,6 +3,8 @@
 //
 // The page holds no time: the same characterization gives the same bytes.
 
+#include "libchar/report/html_report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,10 +17,11 @@
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html_channel.hpp"
 #include "libchar/report/detail/html_page.hpp"
-#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/outputs.hpp"
+#include "libchar/report/json_report.hpp"
 
 namespace libchar {
 namespace {

@@ -1,5 +1,7 @@
 // report.json: the documents of every verb in one frame, and what the report adds to them.
 
+#include "libchar/report/json_report.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,7 +12,6 @@
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/verification_json.hpp"
-#include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/report/allan_json.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {

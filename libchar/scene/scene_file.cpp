@@ -5,11 +5,17 @@
 #include <algorithm>
 
 #include "libchar/core/document.hpp"
+#include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/fields.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/detail/scene_reference.hpp"
+#include "libchar/scene/detail/scene_sensors.hpp"
+#include "libchar/scene/detail/scene_simulation.hpp"
+#include "libchar/scene/detail/scene_times.hpp"
 
 namespace libchar {
 namespace {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/why_not.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;

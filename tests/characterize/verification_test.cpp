@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/log/write.hpp"
-#include "libchar/report/outputs.hpp"
+#include "libchar/report/html_report.hpp"
+#include "libchar/report/json_report.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/support/shared.hpp"
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/schema.hpp"
 
 using namespace libchar;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/vectors.hpp"
 
 using namespace libchar;

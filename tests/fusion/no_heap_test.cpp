@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/heap_counter.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"
 

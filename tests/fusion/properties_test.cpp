@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/heap_counter.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"
 

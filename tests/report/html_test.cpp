@@ -6,7 +6,7 @@
 
 #include "libchar/core/whole_file.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/outputs.hpp"
+#include "libchar/report/html_report.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/shared.hpp"
 

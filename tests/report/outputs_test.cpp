@@ -1,4 +1,3 @@
-#include "libchar/report/outputs.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,6 +10,9 @@
 #include "libchar/core/text.hpp"
 #include "libchar/export/consumers.hpp"
 #include "libchar/log/inspection.hpp"
+#include "libchar/report/csv_curves.hpp"
+#include "libchar/report/html_report.hpp"
+#include "libchar/report/json_report.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -10,7 +10,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
-#include "libchar/report/outputs.hpp"
+#include "libchar/report/allan_json.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

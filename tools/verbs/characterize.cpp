@@ -18,7 +18,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/characterization_text.hpp"
-#include "libchar/report/outputs.hpp"
+#include "libchar/report/json_report.hpp"
 #include "libchar/report/report_files.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"

@@ -9,6 +9,7 @@
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/fields.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"

@@ -6,6 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/fusion/why_not.hpp"
 
 namespace libchar {
 namespace {

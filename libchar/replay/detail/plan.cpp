@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fusion/why_not.hpp"
 
 namespace libchar {
 namespace {

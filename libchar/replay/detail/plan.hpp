@@ -7,6 +7,7 @@
 
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/sensor_knowledge.hpp"
 #include "libchar/replay/replay.hpp"
 
 namespace libchar {
@@ -21,16 +22,6 @@ struct PlannedAlgorithm {
   bool learns_before() const { return entry->description->needs.reference; }
   bool learns_run() const { return entry->description->needs.reference_throughout; }
 };
-
-/// What was found out about each sensor before the plan.
-struct SensorKnowledge {
-  std::vector<double> offsets;
-  std::vector<double> noise_variances;     ///< NaN: not known
-  std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
-};
-
-/// Measures the rest when the scene has one, and asks scene and models for noise levels.
-SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress);
 
 struct ReplayPlan {
   fusion::Array array;
@@ -52,12 +43,6 @@ ReplayPlan make_plan(const Scene& scene,
                      const ReplayOptions& options,
                      const Instants& instants,
                      const SensorKnowledge& knowledge);
-
-/// The plan in words, a sentence a line.
-std::vector<std::string> sentences(const ReplayPlan& plan,
-                                   const Scene& scene,
-                                   const Instants& instants,
-                                   const SensorKnowledge& knowledge);
 
 /// The same array with some of its channels only.
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels);

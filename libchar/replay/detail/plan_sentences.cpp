@@ -1,3 +1,5 @@
+#include "libchar/replay/detail/plan_sentences.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

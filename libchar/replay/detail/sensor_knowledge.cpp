@@ -1,5 +1,7 @@
 // Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
 // scene's own figure, else from the sensor's model, else from the stretch at rest.
+#include "libchar/replay/detail/sensor_knowledge.hpp"
+
 #include <cmath>
 
 #include "libchar/core/error.hpp"

@@ -1,5 +1,7 @@
 // One channel's section of report.html.
 
+#include "libchar/report/detail/html_channel.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +13,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/detail/html_plots.hpp"
+#include "libchar/report/detail/html_tables.hpp"
 
 namespace libchar {
 namespace {
@@ -321,28 +324,6 @@ std::string curve_points(const ChannelView& view) {
 }
 
 }  // namespace
-
-std::string table_row(const std::vector<std::string>& cells) {
-  std::string out = "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    out += i == 0 ? "<th scope=\"row\">" + html_text(cells[i]) + "</th>"
-                  : "<td>" + html_text(cells[i]) + "</td>";
-  }
-  return out + "</tr>\n";
-}
-
-std::string table_head(const std::vector<std::string>& cells) {
-  std::string out = "<thead><tr>";
-  for (const std::string& cell : cells) out += "<th scope=\"col\">" + html_text(cell) + "</th>";
-  return out + "</tr></thead>\n<tbody>\n";
-}
-
-std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
-  if (items.empty()) return "";
-  std::string out = fmt::format("<ul class=\"{}\">\n", css_class);
-  for (const std::string& item : items) out += "<li>" + html_text(item) + "</li>\n";
-  return out + "</ul>\n";
-}
 
 std::string channel_section(const ChannelView& view, const LogInfo& log, std::size_t index) {
   const ChannelResult& c = *view.result;

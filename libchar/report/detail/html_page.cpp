@@ -10,7 +10,7 @@
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/detail/html_tables.hpp"
 
 namespace libchar {
 namespace {

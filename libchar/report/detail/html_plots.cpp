@@ -1,6 +1,8 @@
 // The figures of one channel's section: titles, axes, captions that say what is drawn. page.js
 // draws into them.
 
+#include "libchar/report/detail/html_plots.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html_parts.hpp"
 
 namespace libchar {
 namespace {

@@ -9,7 +9,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html_parts.hpp"
+#include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/replay_words.hpp"
 
 namespace libchar {

@@ -1,7 +1,6 @@
 #pragma once
-// The readers of a scene's parts, for the reader of the file alone.
+// What the readers of a scene's blocks share: refusals, names, files.
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,38 +61,5 @@ std::string scene_recording_of(const MapReader& at,
                                const SceneFolder& folder,
                                ReadOptions& reading,
                                Scene& scene);
-
-// ---- blocks ----
-
-/// The block `simulate`, without sensors and faults.
-ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& folder, Scene& scene);
-
-/// Where the sensors of a scene stand in its file, and which has which name.
-struct SensorIndex {
-  struct Place {
-    const Document* node;
-    std::string path;  ///< "sensors[3]"
-  };
-  std::vector<Place> places;  ///< of scene.sensors
-  std::map<std::string, std::size_t> by_name;
-};
-
-/// The block `sensors`, into `scene.sensors`.
-SensorIndex read_scene_sensors(const MapReader& top, const SceneFolder& folder, Scene& scene);
-
-/// The sensor that `key` names.
-std::size_t sensor_index(const MapReader& at,
-                         std::string_view key,
-                         const Scene& scene,
-                         const SensorIndex& index);
-
-/// The blocks `reference` and `tilt`, and whether every row h fits the true inputs.
-void read_scene_reference(const MapReader& top,
-                          const SceneFolder& folder,
-                          const SensorIndex& index,
-                          Scene& scene);
-
-/// The blocks `learning`, `evaluation`, `rest`, `fault_free_s`, `faults` and `simulated`.
-void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& scene);
 
 }  // namespace libchar

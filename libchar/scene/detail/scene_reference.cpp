@@ -1,5 +1,7 @@
 // The blocks `reference` and `tilt` of a scene file, and the rows h that they go with.
 
+#include "libchar/scene/detail/scene_reference.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/detail/scene_sensors.hpp"
 
 namespace libchar {
 namespace {

@@ -1,5 +1,7 @@
 // The block `sensors` of a scene file.
 
+#include "libchar/scene/detail/scene_sensors.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // The blocks `recording` and `simulate` of a scene file.
 
+#include "libchar/scene/detail/scene_simulation.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,9 +1,12 @@
 // When things happen in a scene: windows, faults, what a simulated recording holds.
 
+#include "libchar/scene/detail/scene_times.hpp"
+
 #include <fmt/format.h>
 
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/detail/scene_sensors.hpp"
 
 namespace libchar {
 namespace {

@@ -1,3 +1,5 @@
+#include "libchar/report/detail/json_pieces.hpp"
+
 // The JSON pieces that the verbs share; the keys are those of docs/json.md, which may grow and
 // never change.
 
@@ -7,8 +9,6 @@
 
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/outputs.hpp"
 
 namespace libchar {
 namespace {
@@ -71,16 +71,6 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const M
   out["missing"] = curve.missing;
   out["stride_divisor"] = curve.stride_divisor;
   out["notes"] = strings(curve.notes);
-  return out;
-}
-
-Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
-  Json out = json_frame("allan");
-  out["type"] = name_of(curves.empty() ? DeviationType::oadev : curves[0].type);
-  out["channels"] = Json::array();
-  for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
-    out["channels"].push_back(allan_channel_json(channels[i], curves[i], nullptr));
-  }
   return out;
 }
 

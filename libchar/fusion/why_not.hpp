@@ -1,0 +1,13 @@
+#pragma once
+// Who can run on what is known of an array.
+
+#include <string>
+
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::fusion {
+
+/// Empty: the algorithm can run on this. Else the sentence that a report prints.
+std::string why_not(const Description& description, const Array& array);
+
+}  // namespace libchar::fusion

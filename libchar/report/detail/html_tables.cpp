@@ -1,0 +1,29 @@
+#include "libchar/report/detail/html_tables.hpp"
+
+#include "libchar/report/detail/escape.hpp"
+
+namespace libchar {
+
+std::string table_row(const std::vector<std::string>& cells) {
+  std::string out = "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    out += i == 0 ? "<th scope=\"row\">" + html_text(cells[i]) + "</th>"
+                  : "<td>" + html_text(cells[i]) + "</td>";
+  }
+  return out + "</tr>\n";
+}
+
+std::string table_head(const std::vector<std::string>& cells) {
+  std::string out = "<thead><tr>";
+  for (const std::string& cell : cells) out += "<th scope=\"col\">" + html_text(cell) + "</th>";
+  return out + "</tr></thead>\n<tbody>\n";
+}
+
+std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
+  if (items.empty()) return "";
+  std::string out = fmt::format("<ul class=\"{}\">\n", css_class);
+  for (const std::string& item : items) out += "<li>" + html_text(item) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+}  // namespace libchar
