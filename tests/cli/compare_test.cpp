@@ -10,7 +10,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr const char* kScene = R"(format: scene
+constexpr const char* kComparedScene = R"(format: scene
 version: 1
 name: three
 simulate:
@@ -31,7 +31,7 @@ struct Replays {
   void make(const std::string& name,
             std::vector<std::string> more,
             const std::string& seed = "1") const {
-    std::string text = kScene;
+    std::string text = kComparedScene;
     text.replace(text.find("SEED"), 4, seed);
     std::ofstream(path(name + ".yaml")) << text;
     std::vector<std::string> words = {"replay", path(name + ".yaml"), "-o", path(name)};

@@ -14,7 +14,7 @@ using Catch::Contains;
 namespace {
 
 // Model files of one IMU, as somebody writes them from a data sheet.
-struct Bench {
+struct ModelBench {
   test::TemporaryFolder folder;
   std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string file(const std::string& name, const std::string& text) const {
@@ -44,7 +44,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("model --to writes the file to stdout and what was replaced to stderr") {
-  const Bench bench;
+  const ModelBench bench;
   const auto ran = test::run(bench.imu({"--to", "kalibr"}));
   INFO(ran.err);
   REQUIRE(ran.code == 0);
@@ -57,7 +57,7 @@ TEST_CASE("model --to writes the file to stdout and what was replaced to stderr"
 }
 
 TEST_CASE("model -o writes a whole file, and overwrites only with --force") {
-  const Bench bench;
+  const ModelBench bench;
   const std::string out = bench.path("imu.yaml");
   CHECK(test::run(bench.imu({"--to", "euroc", "-o", out})).code == 0);
   const std::string text = test::slurp(out);
@@ -87,7 +87,7 @@ TEST_CASE("model --list names every target with its convention") {
 }
 
 TEST_CASE("model FILE says what the model says, in everybody's units, and the sides") {
-  const Bench bench;
+  const ModelBench bench;
   const std::string file =
       bench.model("gyro",
                   "unit: deg/s\ndensity: one-sided\nwhite_noise: {value: 0.0135, unit: "
@@ -108,7 +108,7 @@ TEST_CASE("model FILE says what the model says, in everybody's units, and the si
 }
 
 TEST_CASE("model --to --json carries text and notes") {
-  const Bench bench;
+  const ModelBench bench;
   const auto ran = test::run(bench.imu({"--to", "px4", "--json", "--filter-step", "0.008"}));
   REQUIRE(ran.code == 0);
   const Json document = parse_json(ran.out, "stdout");
@@ -120,7 +120,7 @@ TEST_CASE("model --to --json carries text and notes") {
 }
 
 TEST_CASE("model: options reach the numbers") {
-  const Bench bench;
+  const ModelBench bench;
   CHECK_THAT(test::run(bench.imu({"--to", "vins", "--gravity", "9.8"})).out,
              Contains("\ng_norm: 9.8 "));
   CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--topic", "/other"})).out,
@@ -138,7 +138,7 @@ TEST_CASE("model: options reach the numbers") {
 }
 
 TEST_CASE("model: what a channel is can be said with --axis") {
-  const Bench bench;
+  const ModelBench bench;
   auto words = bench.imu({"--to", "kalibr"});
   words[1] = bench.model("first",
                          "unit: deg/s\nwhite_noise: {value: 6, unit: deg/√h}\nrandom_walk: {value: "
@@ -155,7 +155,7 @@ TEST_CASE("model: what a channel is can be said with --axis") {
 }
 
 TEST_CASE("model: bad command lines and files") {
-  const Bench bench;
+  const ModelBench bench;
   CHECK(test::run({"model"}).code == 2);
   const auto target = test::run(bench.imu({"--to", "kalbir"}));
   CHECK(target.code == 2);
@@ -176,7 +176,7 @@ TEST_CASE("model: bad command lines and files") {
 
 TEST_CASE(
     "characterize, then model: the recording's SHA-256 and coefficients arrive at the consumer") {
-  const Bench bench;
+  const ModelBench bench;
   const std::size_t n = 20000;
   test::NoiseSource source(n, 200, 5);
   std::vector<std::vector<double>> columns;

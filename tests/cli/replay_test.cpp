@@ -31,7 +31,7 @@ learning: [0, 10]
 faults: [{sensor: d, kind: bias, value: 1, from_s: 30, to_s: 40}]
 )";
 
-struct Bench {
+struct ReplayBench {
   test::TemporaryFolder folder;
   std::string scene = file("scene.yaml", kScene);
   std::string path(const std::string& name) const { return (folder / name).string(); }
@@ -66,7 +66,7 @@ std::size_t files_in(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("replay: three files, a table, and no progress on stderr") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto ran =
       bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minque,tilt-kalman"});
   INFO(ran.out + ran.err);
@@ -98,7 +98,7 @@ TEST_CASE("replay: three files, a table, and no progress on stderr") {
 }
 
 TEST_CASE("replay: --json is the report itself, and the same scores come again") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto first = bench.replay({"-o", bench.path("out"), "--json", "--algorithms", "mean"});
   REQUIRE(first.code == 0);
   const auto printed = libchar::parse_json(first.out, "stdout");
@@ -112,7 +112,7 @@ TEST_CASE("replay: --json is the report itself, and the same scores come again")
 }
 
 TEST_CASE("replay: results are not overwritten unless --force, and -o is needed") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto without = bench.replay({"--algorithms", "mean"});
   CHECK(without.code == 2);
   CHECK_THAT(without.err, Contains("-o") && Contains("--explain"));
@@ -131,7 +131,7 @@ TEST_CASE("replay: results are not overwritten unless --force, and -o is needed"
 }
 
 TEST_CASE("replay: --explain says what would be done and writes nothing") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto ran = bench.replay({"--explain", "-o", bench.path("out")});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
@@ -150,7 +150,7 @@ TEST_CASE("replay: --explain says what would be done and writes nothing") {
 }
 
 TEST_CASE("replay: algorithms and their options from the command line") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto typo = bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minqe"});
   CHECK(typo.code == 2);
   CHECK_THAT(typo.err, Contains("E0853") && Contains("minque"));
@@ -183,7 +183,7 @@ TEST_CASE("replay: algorithms and their options from the command line") {
 }
 
 TEST_CASE("replay: windows from the command line win over the scene's") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto window = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"-o", bench.path("out"), "--algorithms", "least-squares", "--force"});
     const auto ran = bench.replay(more);
@@ -218,7 +218,7 @@ TEST_CASE("replay: windows from the command line win over the scene's") {
 }
 
 TEST_CASE("replay: faults from the command line stand beside the scene's") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto faults = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"-o", bench.path("out"), "--algorithms", "mean", "--force"});
     const auto ran = bench.replay(more);
@@ -249,7 +249,7 @@ TEST_CASE("replay: faults from the command line stand beside the scene's") {
 }
 
 TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
-  const Bench bench;
+  const ReplayBench bench;
   for (const std::string format : {"csv", "npy", "f64"}) {
     const auto ran = bench.replay({"-o",
                                    bench.path(format),
@@ -286,7 +286,7 @@ TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
 }
 
 TEST_CASE("replay: --no-skip changes no number") {
-  const Bench bench;
+  const ReplayBench bench;
   REQUIRE(bench.replay({"-o", bench.path("a"), "--algorithms", "mean,median"}).code == 0);
   REQUIRE(bench.replay({"-o", bench.path("b"), "--algorithms", "mean,median", "--no-skip"}).code ==
           0);
@@ -302,7 +302,7 @@ TEST_CASE("replay: --no-skip changes no number") {
 }
 
 TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
-  const Bench bench;
+  const ReplayBench bench;
   std::string log = "t,x,y,z\n";
   for (int k = 0; k < 2000; ++k)
     log += std::to_string(k) + "," + std::to_string(k % 7) + "," + std::to_string(k % 5) + "," +
@@ -310,7 +310,7 @@ TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
   bench.file("log.csv", log);
   const std::string scene = bench.file(
       "recorded.yaml", "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n");
-  const auto ran = Bench::replay_of(scene, {"-o", bench.path("out"), "--algorithms", "mean"});
+  const auto ran = ReplayBench::replay_of(scene, {"-o", bench.path("out"), "--algorithms", "mean"});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("leave-one-out"));
@@ -328,12 +328,12 @@ TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
 }
 
 TEST_CASE("replay: scenes that do not fit their files end with exit code 3 and write nothing") {
-  const Bench bench;
+  const ReplayBench bench;
   bench.file("log.csv", "t,left,right,truth\n0,1,2,1\n1,2,1,1\n2,1,2,1\n3,2,1,1\n");
   const auto refused = [&](const std::string& rest, std::vector<std::string> more = {}) {
     const std::string scene = bench.file("bad.yaml", "format: scene\nversion: 1\n" + rest);
     more.insert(more.end(), {"-o", bench.path("out")});
-    const auto ran = Bench::replay_of(scene, more);
+    const auto ran = ReplayBench::replay_of(scene, more);
     INFO(ran.out + ran.err);
     CHECK(ran.code == 3);
     CHECK(ran.out.empty());
@@ -351,12 +351,12 @@ TEST_CASE("replay: scenes that do not fit their files end with exit code 3 and w
              Contains("bad.yaml:5:") && Contains("median"));
   CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nevaluation: [10, 20]\n"),
              Contains("evaluation"));
-  CHECK(Bench::replay_of(bench.path("absent.yaml"), {"-o", bench.path("out")}).code == 3);
-  CHECK(Bench::replay_of(bench.path("log.csv"), {"-o", bench.path("out")}).code == 3);
+  CHECK(ReplayBench::replay_of(bench.path("absent.yaml"), {"-o", bench.path("out")}).code == 3);
+  CHECK(ReplayBench::replay_of(bench.path("log.csv"), {"-o", bench.path("out")}).code == 3);
 }
 
 TEST_CASE("replay: nothing can run is said with exit code 4") {
-  const Bench bench;
+  const ReplayBench bench;
   const auto ran = bench.replay({"-o", bench.path("out"), "--algorithms", "tilt-kalman"});
   CHECK(ran.code == 4);
   CHECK_THAT(ran.err, Contains("no algorithm can run") && Contains("--explain"));
@@ -364,7 +364,7 @@ TEST_CASE("replay: nothing can run is said with exit code 4") {
 }
 
 TEST_CASE("replay: stopped by Ctrl-C: exit code 130 and nothing is left") {
-  const Bench bench;
+  const ReplayBench bench;
   std::string longer = kScene;
   longer.replace(longer.find("6000"), 4, "60000000");
   const std::string scene = bench.file("long.yaml", longer);

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Bench {
+struct SimulateBench {
   test::TemporaryFolder folder;
   std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string file(const std::string& name, const std::string& text) const {
@@ -32,7 +32,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("simulate: every log format holds the same samples, and truth stands beside them") {
-  const Bench bench;
+  const SimulateBench bench;
   const std::string model = bench.gyro();
   std::vector<double> first;
   for (const std::string name : {"a.csv", "a.npy", "a.f64"}) {
@@ -65,7 +65,7 @@ TEST_CASE("simulate: every log format holds the same samples, and truth stands b
 }
 
 TEST_CASE("simulate: a seed is a recording; devices differ; white noise has its variance") {
-  const Bench bench;
+  const SimulateBench bench;
   const std::string model = bench.gyro();
   const auto make = [&](const std::string& out, const std::string& seed) {
     const auto ran = test::run({"simulate",
@@ -95,7 +95,7 @@ TEST_CASE("simulate: a seed is a recording; devices differ; white noise has its 
 }
 
 TEST_CASE("simulate: the scene it writes is read back and simulates no second time") {
-  const Bench bench;
+  const SimulateBench bench;
   REQUIRE(test::run({"simulate",
                      bench.gyro(),
                      "-o",
@@ -117,7 +117,7 @@ TEST_CASE("simulate: the scene it writes is read back and simulates no second ti
 }
 
 TEST_CASE("simulate: a scene file says it all") {
-  const Bench bench;
+  const SimulateBench bench;
   bench.gyro();
   const std::string scene = bench.file(
       "s.scene.yaml",
@@ -144,7 +144,7 @@ TEST_CASE("simulate: a scene file says it all") {
 }
 
 TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
-  const Bench bench;
+  const SimulateBench bench;
   const std::string model = bench.gyro(), out = bench.path("o.csv");
   const struct {
     std::vector<std::string> arguments;
@@ -211,7 +211,7 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
 }
 
 TEST_CASE("simulate: truth from a log, a bare number, and a fault after the end") {
-  const Bench bench;
+  const SimulateBench bench;
   const std::string model = bench.file(
       "ideal.yaml", "format: sensor-model\nversion: 1\nchannel: a\nunit: deg/s\nrate_hz: 100\n");
   const std::string log =
@@ -242,7 +242,7 @@ TEST_CASE("simulate: truth from a log, a bare number, and a fault after the end"
 }
 
 TEST_CASE("simulate: a characterized model closes the loop on the command line") {
-  const Bench bench;
+  const SimulateBench bench;
   REQUIRE(test::run({"characterize",
                      test::fixture("imu_at_rest.csv").string(),
                      "-o",

@@ -7,18 +7,13 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/html_report.hpp"
+#include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
 
 namespace {
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
-  return n;
-}
 
 // The page without the parts that are ours byte for byte.
 std::string without_assets(std::string page) {
@@ -44,45 +39,45 @@ TEST_CASE("html: asks for nothing from anywhere") {
                            " style=\"",
                            " onclick"}) {
     INFO(word);
-    CHECK(count(page, word) == 0);
+    CHECK(test::count(page, word) == 0);
   }
-  CHECK(count(page, "default-src 'none'; script-src 'sha256-") == 1);
-  CHECK(count(page, "unsafe-") == 0);
+  CHECK(test::count(page, "default-src 'none'; script-src 'sha256-") == 1);
+  CHECK(test::count(page, "unsafe-") == 0);
 }
 
 TEST_CASE("html: the plotting library comes with its whole licence and both notices") {
   const std::string page = html_report(test::synthetic_imu());
-  CHECK(count(page, "Chart.js Contributors") >= 1);
-  CHECK(count(page, "Permission is hereby granted, free of charge") == 1);
-  CHECK(count(page, "kurkle/color") >= 1);
-  CHECK(count(without_assets(page), "Jukka Kurkela") == 1);
+  CHECK(test::count(page, "Chart.js Contributors") >= 1);
+  CHECK(test::count(page, "Permission is hereby granted, free of charge") == 1);
+  CHECK(test::count(page, "kurkle/color") >= 1);
+  CHECK(test::count(without_assets(page), "Jukka Kurkela") == 1);
   CHECK(chart_js().find("Chart.js v3.") != std::string_view::npos);
 }
 
 TEST_CASE("html: names from a file never become elements or attributes") {
   const std::string plain = html_report(test::synthetic_imu());
   const std::string page = html_report(test::hostile());
-  CHECK(count(page, "<script") == count(plain, "<script"));
-  CHECK(count(page, "</script") == count(plain, "</script"));
-  CHECK(count(without_assets(page), "<!--") == 1);
+  CHECK(test::count(page, "<script") == test::count(plain, "<script"));
+  CHECK(test::count(page, "</script") == test::count(plain, "</script"));
+  CHECK(test::count(without_assets(page), "<!--") == 1);
   for (const char* word : {"<img", "<svg", " onerror=\"", " onmouseover=\"", "<b>;"}) {
     INFO(word);
-    CHECK(count(without_assets(page), word) == 0);
+    CHECK(test::count(without_assets(page), word) == 0);
   }
-  CHECK(count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
+  CHECK(test::count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
   CHECK(page.find('\0') == std::string::npos);
-  CHECK(count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
+  CHECK(test::count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
 }
 
 TEST_CASE("html: every number of a channel stands in a table too") {
   const auto result = test::synthetic_imu();
   const std::string page = without_assets(html_report(result));
-  CHECK(count(page, "<noscript>") == 1);
-  CHECK(count(page, "<section class=\"channel\"") == result.channels.size());
-  CHECK(count(page, "Overlapping Allan deviation</h3>") == result.channels.size());
-  CHECK(count(page, "One-sided power spectral density</h3>") == result.channels.size());
-  CHECK(count(page, result.log.sha256) >= 1);
-  CHECK(count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it
+  CHECK(test::count(page, "<noscript>") == 1);
+  CHECK(test::count(page, "<section class=\"channel\"") == result.channels.size());
+  CHECK(test::count(page, "Overlapping Allan deviation</h3>") == result.channels.size());
+  CHECK(test::count(page, "One-sided power spectral density</h3>") == result.channels.size());
+  CHECK(test::count(page, result.log.sha256) >= 1);
+  CHECK(test::count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it
   for (const char* word : {"deg/√h",
                            "deg/h",
                            "µg/√Hz",
@@ -91,14 +86,14 @@ TEST_CASE("html: every number of a channel stands in a table too") {
                            "not detected",
                            "undetermined"}) {
     INFO(word);
-    CHECK(count(page, word) > 0);
+    CHECK(test::count(page, word) > 0);
   }
 }
 
 TEST_CASE("html: what could not be computed leaves a sentence, not a hole") {
   const std::string page = html_report(test::barely_anything());
-  CHECK(count(page, "5 samples are too few for a fit") >= 2);
-  CHECK(count(page, "unit not stated") == 1);
+  CHECK(test::count(page, "5 samples are too few for a fit") >= 2);
+  CHECK(test::count(page, "unit not stated") == 1);
   CHECK(!std::regex_search(without_assets(page), std::regex("\\b(nan|inf)\\b")));
 }
 

@@ -5,20 +5,15 @@
 
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/replay_markdown.hpp"
+#include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;
 
 namespace {
 
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
-  return n;
-}
-
 // The page without the parts that are ours byte for byte.
-std::string without_assets(std::string page) {
+std::string without_replay_assets(std::string page) {
   for (const std::string_view asset :
        {chart_js(), page_common_js(), replay_page_js(), page_css(), replay_page_css()}) {
     const std::size_t at = page.find(asset);
@@ -37,57 +32,58 @@ std::string tables_of(const std::string& page) {
 TEST_CASE("replay html: asks for nothing from anywhere") {
   for (const char* kind : {"plain", "blind", "inputs", "nothing", "hostile"}) {
     INFO(kind);
-    const std::string page = without_assets(replay_html(test::synthetic_replay_of_kind(kind)));
+    const std::string page =
+        without_replay_assets(replay_html(test::synthetic_replay_of_kind(kind)));
     for (const char* word : {" src=\"", "href=\"http", "@import", "url(", "style=\""})
-      CHECK(count(tables_of(page), word) == 0);
-    CHECK(count(page, "default-src 'none'; script-src 'sha256-") == 1);
-    CHECK(count(page, "<script") == 3);
+      CHECK(test::count(tables_of(page), word) == 0);
+    CHECK(test::count(page, "default-src 'none'; script-src 'sha256-") == 1);
+    CHECK(test::count(page, "<script") == 3);
   }
 }
 
 TEST_CASE("replay html: names from a file never become elements or attributes") {
-  const std::string page = without_assets(replay_html(test::hostile_replay()));
-  CHECK(count(page, "<script") == 3);
-  CHECK(count(page, "</script") == 3);
-  CHECK(count(page, "<!--") == 1);
+  const std::string page = without_replay_assets(replay_html(test::hostile_replay()));
+  CHECK(test::count(page, "<script") == 3);
+  CHECK(test::count(page, "</script") == 3);
+  CHECK(test::count(page, "<!--") == 1);
   for (const char* word : {"<img", "<svg", " onerror=\"", " onmouseover=\"", "<b>;"}) {
     INFO(word);
-    CHECK(count(page, word) == 0);
+    CHECK(test::count(page, word) == 0);
   }
-  CHECK(count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
+  CHECK(test::count(page, "\xE2\x80\xAE") == 0);  // right-to-left override
   CHECK(page.find('\0') == std::string::npos);
-  CHECK(count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
+  CHECK(test::count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
 }
 
 TEST_CASE("replay html: every algorithm stands in the table, skipped ones with their sentence") {
   const ReplayResult r = test::synthetic_replay();
-  const std::string page = tables_of(without_assets(replay_html(r)));
+  const std::string page = tables_of(without_replay_assets(replay_html(r)));
   for (const AlgorithmResult& a : r.algorithms) {
     INFO(a.label);
-    CHECK(count(page, "<th scope=\"row\">" + a.label) >= (a.ran ? 2 : 1));
+    CHECK(test::count(page, "<th scope=\"row\">" + a.label) >= (a.ran ? 2 : 1));
   }
-  CHECK(count(page, "needs one gyroscope axis and two accelerometer axes") >= 1);
-  CHECK(count(page, "class=\"best\"") == 1);
-  CHECK(count(page, "missed") > 0);
-  CHECK(count(page, "Pareto front") >= 1);
+  CHECK(test::count(page, "needs one gyroscope axis and two accelerometer axes") >= 1);
+  CHECK(test::count(page, "class=\"best\"") == 1);
+  CHECK(test::count(page, "missed") > 0);
+  CHECK(test::count(page, "Pareto front") >= 1);
 }
 
 TEST_CASE("replay html: without a reference the columns say what they are") {
-  const std::string page = tables_of(without_assets(replay_html(test::without_reference())));
-  CHECK(count(page, "Leave-one-out RMS, rad/s") >= 1);
-  CHECK(count(page, "Split-array RMS") >= 1);
-  CHECK(count(page, "Neither sees an error that all sensors share") == 1);
-  CHECK(count(page, ">Regret<") == 0);
-  CHECK(count(page, ">RMSE") == 0);
+  const std::string page = tables_of(without_replay_assets(replay_html(test::without_reference())));
+  CHECK(test::count(page, "Leave-one-out RMS, rad/s") >= 1);
+  CHECK(test::count(page, "Split-array RMS") >= 1);
+  CHECK(test::count(page, "Neither sees an error that all sensors share") == 1);
+  CHECK(test::count(page, ">Regret<") == 0);
+  CHECK(test::count(page, ">RMSE") == 0);
 }
 
 TEST_CASE("replay html: a figure an input, and no figure without anything to draw") {
   const std::string two = tables_of(replay_html(test::synthetic_replay(6, 2)));
-  CHECK(count(two, "data-kind=\"window\"") == 2);
-  CHECK(count(two, "data-kind=\"error-allan\"") == 2);
+  CHECK(test::count(two, "data-kind=\"window\"") == 2);
+  CHECK(test::count(two, "data-kind=\"error-allan\"") == 2);
   const std::string none = tables_of(replay_html(test::nothing_scored()));
-  CHECK(count(none, "<figure") == count(none, "data-kind=\"sensors\""));
-  CHECK(!std::regex_search(without_assets(replay_html(test::nothing_scored())),
+  CHECK(test::count(none, "<figure") == test::count(none, "data-kind=\"sensors\""));
+  CHECK(!std::regex_search(without_replay_assets(replay_html(test::nothing_scored())),
                            std::regex("\\b(nan|inf)\\b")));
 }
 
@@ -97,8 +93,8 @@ TEST_CASE("replay html: 24 algorithms on 12 sensors stay below 3 MB") {
 
 TEST_CASE("replay markdown: tables keep their columns whatever the names hold") {
   const std::string text = replay_markdown(test::hostile_replay());
-  CHECK(count(text, "<script") == count(text, "\\<script"));
-  CHECK(count(text, "<img") == count(text, "\\<img"));
+  CHECK(test::count(text, "<script") == test::count(text, "\\<script"));
+  CHECK(test::count(text, "<img") == test::count(text, "\\<img"));
   for (const char c : {'\0', '\x01'}) CHECK(text.find(c) == std::string::npos);
   std::size_t columns = 0;
   std::istringstream lines(text);

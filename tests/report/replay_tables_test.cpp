@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libchar/report/replay_html.hpp"
+#include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;
@@ -19,12 +20,6 @@ std::string inputs_of(const ReplayResult& r) {
 }
 std::string needs_of(const ReplayResult& r) {
   return needs_table(replay_view(r));
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
-  return n;
 }
 
 // The page without what is ours byte for byte, and without the document in it.
@@ -50,12 +45,12 @@ TEST_CASE("replay page: bounds stand behind all methods, in a body of their own"
   const std::string table = ranking_of(r);
   const std::size_t bounds = table.find("<tbody class=\"bounds\">");
   REQUIRE(bounds != std::string::npos);
-  CHECK(count(table.substr(0, bounds), "<tr class=\"bound\">") == 0);
+  CHECK(test::count(table.substr(0, bounds), "<tr class=\"bound\">") == 0);
   std::size_t expected = 0;
   for (const AlgorithmResult& a : r.algorithms) expected += a.ran && a.bound;
   REQUIRE(expected > 0);
-  CHECK(count(table.substr(bounds), "<tr class=\"bound\">") == expected);
-  CHECK(count(table, "<tr class=\"best\">") == 1);
+  CHECK(test::count(table.substr(bounds), "<tr class=\"bound\">") == expected);
+  CHECK(test::count(table, "<tr class=\"best\">") == 1);
 }
 
 TEST_CASE("replay page: methods stand in the order of their score") {
@@ -76,18 +71,18 @@ TEST_CASE("replay page: methods stand in the order of their score") {
 TEST_CASE("replay page: a large regret is a multiple of the optimum, a small one a percentage") {
   ReplayResult r = test::synthetic_replay();
   for (AlgorithmResult& a : r.algorithms) a.regret = 16.013;
-  CHECK(count(ranking_of(r), "17.0 × optimum") > 5);
+  CHECK(test::count(ranking_of(r), "17.0 × optimum") > 5);
   for (AlgorithmResult& a : r.algorithms) a.regret = 0.0034;
-  CHECK(count(ranking_of(r), ">0.34 %<") > 5);
+  CHECK(test::count(ranking_of(r), ">0.34 %<") > 5);
 }
 
 TEST_CASE("replay page: a table for each input when there are several, none for one") {
   CHECK(inputs_of(test::synthetic_replay()).empty());
   const ReplayResult r = test::synthetic_replay(6, 2);
   const std::string tables = inputs_of(r);
-  CHECK(count(tables, "<table") == 2);
-  CHECK(count(tables, "<h3>Input axis_0</h3>") == 1);
-  CHECK(count(tables, "<h3>Input axis_1</h3>") == 1);
+  CHECK(test::count(tables, "<table") == 2);
+  CHECK(test::count(tables, "<h3>Input axis_0</h3>") == 1);
+  CHECK(test::count(tables, "<h3>Input axis_1</h3>") == 1);
   // An algorithm that estimates fewer inputs has no row in the other tables.
   ReplayResult fewer = r;
   std::size_t ran = 0;
@@ -97,18 +92,18 @@ TEST_CASE("replay page: a table for each input when there are several, none for 
       a.inputs.resize(1);
       break;
     }
-  CHECK(count(tables, "<th scope=\"row\">") == 2 * ran);
-  CHECK(count(inputs_of(fewer), "<th scope=\"row\">") == 2 * ran - 1);
+  CHECK(test::count(tables, "<th scope=\"row\">") == 2 * ran);
+  CHECK(test::count(inputs_of(fewer), "<th scope=\"row\">") == 2 * ran - 1);
 }
 
 TEST_CASE("replay page: without a reference the scores have their own names and their limit") {
   const std::string body = body_of(test::without_reference());
-  CHECK(count(body, "Leave-one-out RMS") > 0);
-  CHECK(count(body, "Split-array RMS") > 0);
-  CHECK(count(body, "Neither sees an error that all sensors share") == 1);
-  CHECK(count(body, ">Regret<") == 0);
-  CHECK(count(body, ">RMSE") == 0);
-  CHECK(count(body, "data-kind=\"sensors\"") == 0);
+  CHECK(test::count(body, "Leave-one-out RMS") > 0);
+  CHECK(test::count(body, "Split-array RMS") > 0);
+  CHECK(test::count(body, "Neither sees an error that all sensors share") == 1);
+  CHECK(test::count(body, ">Regret<") == 0);
+  CHECK(test::count(body, ">RMSE") == 0);
+  CHECK(test::count(body, "data-kind=\"sensors\"") == 0);
 }
 
 TEST_CASE("replay page: what could not be computed leaves a dash, never a name of a bit pattern") {
@@ -117,7 +112,7 @@ TEST_CASE("replay page: what could not be computed leaves a dash, never a name o
     const std::string body = body_of(test::synthetic_replay_of_kind(kind));
     CHECK(!std::regex_search(body, std::regex("\\b(nan|NaN|inf|Infinity)\\b")));
   }
-  CHECK(count(body_of(test::nothing_scored()), "data-kind=\"cost-time\"") == 0);
+  CHECK(test::count(body_of(test::nothing_scored()), "data-kind=\"cost-time\"") == 0);
 }
 
 TEST_CASE("replay page: every algorithm has a row, and who was skipped a sentence") {
@@ -126,13 +121,13 @@ TEST_CASE("replay page: every algorithm has a row, and who was skipped a sentenc
   std::size_t skipped = 0;
   for (const AlgorithmResult& a : r.algorithms) {
     INFO(a.label);
-    CHECK(count(needs, ">" + a.label + "</th>") == 1);
+    CHECK(test::count(needs, ">" + a.label + "</th>") == 1);
     skipped += !a.ran;
   }
   REQUIRE(skipped == 3);
-  CHECK(count(needs, "skipped: ") == skipped);
+  CHECK(test::count(needs, "skipped: ") == skipped);
   // One reason, said once for all three.
-  CHECK(count(body, "needs one gyroscope axis and two accelerometer axes</li>") == 1);
+  CHECK(test::count(body, "needs one gyroscope axis and two accelerometer axes</li>") == 1);
 }
 
 TEST_CASE("replay page: the same result gives the same bytes") {
