@@ -34,7 +34,8 @@ MASKS = [
 REPLAY_MASKS = [
     (re.compile(r"\b[\d.]+ (ns|µs|ms|s|B|kB|MB|GB)\b"), r"# \1"),
     (re.compile(r'data-value="[^"]*">[^<]*'), 'data-value="">#'),  # report.json has the same numbers
-    (re.compile(r"% +[\d.]+ +# (B|kB|MB|GB) *"), "% # # "),
+    (re.compile(r"(%|-|x) +[\d.e+]+ +# (B|kB|MB|GB) *\*? *"), r"\1 # # "),
+    (re.compile(r"Of these \S+ is the cheapest"), "Of these # is the cheapest"),
     (re.compile(r"fronts?: [a-z, ]*"), "fronts: "),
     (re.compile(r'("pareto_front"|"front[a-z_]*"): *(\{[^{}]*\}|\[[^\[\]]*\]|\w+)'), r"\1: MASKED"),
 ]
@@ -160,7 +161,7 @@ class Side:
 
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
-LAST_DIGITS = 1e-12
+LAST_DIGITS = 2e-13  # the probability of a chi-square far out in its tail has chi2/2 times the rounding of chi2
 
 
 def differs_in_last_digits(a, b):
@@ -171,6 +172,18 @@ def differs_in_last_digits(a, b):
     return all(x == y or abs(float(x) - float(y)) <= LAST_DIGITS * max(abs(float(x)), abs(float(y))) for x, y in pairs)
 
 
+def different_lines(a, b):
+    for kind, a_from, a_to, b_from, b_to in difflib.SequenceMatcher(None, a, b, autojunk=False).get_opcodes():
+        if kind == "equal":
+            continue
+        pairs = list(zip(a[a_from:a_to], b[b_from:b_to])) if a_to - a_from == b_to - b_from else []
+        close = [differs_in_last_digits(*pair) for pair in pairs]
+        if any(close):
+            yield "~", "last digits of numbers"
+        yield from (("-", line) for k, line in enumerate(a[a_from:a_to]) if not (close and close[k]))
+        yield from (("+", line) for k, line in enumerate(b[b_from:b_to]) if not (close and close[k]))
+
+
 def differences(a, b):
     for part in sorted(set(a) | set(b)):
         if part not in a or part not in b:
@@ -178,9 +191,7 @@ def differences(a, b):
         elif a[part] != b[part] and differs_in_last_digits(a[part], b[part]):
             yield part, "~", "last digits of numbers"
         elif a[part] != b[part]:
-            for line in difflib.unified_diff(a[part].splitlines(), b[part].splitlines(), lineterm="", n=0):
-                if not line.startswith(("---", "+++", "@@")):
-                    yield part, line[0], line[1:]
+            yield from ((part, sign, line) for sign, line in different_lines(a[part].splitlines(), b[part].splitlines()))
 
 
 listed = []
