@@ -14,8 +14,8 @@ namespace {
 
 struct Scene {
   Array array;
-  Eigen::MatrixXd lesson, lesson_truth;  // learning window
-  Eigen::MatrixXd y, truth;              // run
+  Eigen::MatrixXd learning_y, learning_truth;  // learning window
+  Eigen::MatrixXd y, truth;                    // run
 };
 
 constexpr Eigen::Index kInstants = 1500;
@@ -33,7 +33,7 @@ Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64
     }
   };
   Scene scene;
-  record(scene.lesson, scene.lesson_truth, 600);
+  record(scene.learning_y, scene.learning_truth, 600);
   record(scene.y, scene.truth, kInstants);
   scene.array.channels = n;
   scene.array.noise_levels = deviations.cwiseAbs2();
@@ -51,7 +51,7 @@ Scene scene_of(Eigen::Index n) {
 
 std::unique_ptr<Runner> trained(const Entry& entry, const Scene& scene) {
   auto runner = entry.make(scene.array, Settings(entry.options));
-  if (entry.description->needs.reference) runner->learn(scene.lesson, scene.lesson_truth);
+  if (entry.description->needs.reference) runner->learn(scene.learning_y, scene.learning_truth);
   if (entry.description->needs.reference_throughout) runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return runner;
@@ -140,8 +140,8 @@ TEST_CASE("units: everything scaled, the estimate scales") {
     Scene scaled = plain;
     scaled.y *= factor;
     scaled.truth *= factor;
-    scaled.lesson *= factor;
-    scaled.lesson_truth *= factor;
+    scaled.learning_y *= factor;
+    scaled.learning_truth *= factor;
     scaled.array.noise_levels *= factor * factor;
     for_each(plain, [&](const Entry& entry) {
       // Its Q is a number in the units of the input, not an estimate.
@@ -158,7 +158,7 @@ TEST_CASE("the order of the channels does not matter") {
   order.indices() << 0, 1, 5, 3, 2, 4;
   Scene mixed = plain;
   mixed.y = order * plain.y;
-  mixed.lesson = order * plain.lesson;
+  mixed.learning_y = order * plain.learning_y;
   mixed.array.noise_levels = order * plain.array.noise_levels;
   for_each(plain, [&](const Entry& entry) {
     // Its training starts from random weights, drawn channel by channel.
