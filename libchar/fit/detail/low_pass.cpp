@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "libchar/core/silent_glog.hpp"
 #include "libchar/fit/detail/bin_likelihood.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/detail/scoring.hpp"
@@ -42,6 +43,7 @@ class LowPassResiduals final : public ceres::CostFunction {
       }
       if (!(model > 0) || !std::isfinite(model)) return false;
       const DevianceResidual r = deviance_residual(bins_[j].energy, model, bins_[j].dof);
+      if (!std::isfinite(r.value) || !std::isfinite(r.slope * low_pass.log_slope)) return false;
       residuals[j] = r.value;
       if (jacobians == nullptr || jacobians[0] == nullptr) continue;
       double* row = jacobians[0] + j * (p + 1);
@@ -136,6 +138,7 @@ std::vector<PowerBin> low_passed(std::vector<PowerBin> bins, double corner_hz, d
 std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
                                        double rate_hz,
                                        const std::array<bool, kTerms>& offered) {
+  const SilentGlog silent;
   const double log_corner = best_log_corner(bins, rate_hz, offered);
   const ScoringResult start = scored(bins, std::exp(log_corner), rate_hz, offered);
   std::vector<std::size_t> terms;

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/silent_glog.hpp"
+
 namespace libchar {
 namespace {
 
@@ -34,6 +36,7 @@ class BinResiduals final : public ceres::CostFunction {
       for (std::size_t i = 0; i < p; ++i) model += part[i] = theta[i] * problem_.unit(j, terms_[i]);
       if (!(model > 0) || !std::isfinite(model)) return false;
       const DevianceResidual r = deviance_residual(problem_.energy[j], model, problem_.dof[j]);
+      if (!std::isfinite(r.value) || !std::isfinite(r.slope)) return false;
       residuals[j] = r.value;
       if (jacobians == nullptr || jacobians[0] == nullptr) continue;
       for (std::size_t i = 0; i < p; ++i)
@@ -79,6 +82,7 @@ DevianceResidual deviance_residual(double energy, double model, double dof) {
 }
 
 Polished polish(const BinProblem& problem, const Mixture& start) {
+  const SilentGlog silent;
   std::vector<Eigen::Index> terms;
   std::vector<double> log_theta;
   for (std::size_t i = 0; i < kTerms; ++i) {

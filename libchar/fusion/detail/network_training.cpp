@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libchar/core/dense.hpp"
+#include "libchar/core/silent_glog.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -43,6 +44,7 @@ class Residuals final : public ceres::CostFunction {
       const double* const z = rows_.rows + k * (network_.inputs + 1);
       residuals[k] =
           (row ? network_.output(p, z, row) : network_.output(p, z)) - z[network_.inputs];
+      if (!std::isfinite(residuals[k])) return false;
       if (row) row += network_.size();
     }
     return true;
@@ -139,6 +141,7 @@ Training train(const TanhNetwork& network,
                const TrainingRows& rows,
                const TrainingRows& held_out,
                const TrainingPlan& plan) {
+  const SilentGlog silent;
   Training training;
   training.held_out_square = std::numeric_limits<double>::infinity();
   Uniform draw(plan.seed);
