@@ -257,3 +257,112 @@ TEST_CASE("what stamps need does not depend on where blocks of the file begin") 
     }
   }
 }
+
+namespace {
+
+/// Stamps in microseconds of rows that come in packets: each row `inner` after the one before, the
+/// last at the time of the packet.
+std::vector<std::int64_t> packets(std::size_t rows,
+                                  double dt,
+                                  const std::vector<std::size_t>& sizes,
+                                  double inner,
+                                  double jitter) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, jitter);
+  std::vector<std::int64_t> t;
+  for (std::size_t k = 0; t.size() < rows; ++k) {
+    const std::size_t size = sizes[k % sizes.size()];
+    const double arrival = dt * static_cast<double>(t.size() + size) + noise(random);
+    for (std::size_t i = 0; i < size; ++i)
+      t.push_back(static_cast<std::int64_t>(
+          std::llround(arrival - inner * static_cast<double>(size - 1 - i))));
+  }
+  t.resize(rows);
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("stamps in packets: the rate is rows over time") {
+  struct Clock {
+    std::vector<std::size_t> sizes;
+    double dt, inner, jitter;
+  };
+  for (const Clock& clock : {Clock{{5}, 10000, 200, 0},
+                             Clock{{5}, 10000, 200, 1500},
+                             Clock{{4}, 10000, 150, 300},
+                             Clock{{1, 7, 3, 4}, 5000, 40, 200},
+                             Clock{{2}, 2500, 30, 100},
+                             Clock{{20}, 1000, 10, 50}}) {
+    const Recording r =
+        read_text(log_of(packets(20000, clock.dt, clock.sizes, clock.inner, clock.jitter)));
+    INFO(clock.sizes.size() << " " << clock.sizes[0] << " " << clock.dt << " " << clock.jitter);
+    CHECK(r.info.time.rate_hz == Approx(1e6 / clock.dt).epsilon(1e-3));
+    CHECK(r.info.samples == 20000);
+    CHECK(count(r, "packets") == 1);
+    CHECK(count(r, "rate_change") == 0);
+  }
+  ReadOptions inside;
+  inside.rate_hz = 5000;
+  CHECK(read_text(log_of(packets(5000, 10000, {5}, 200, 0)), inside).info.time.rate_hz ==
+        Approx(5000).epsilon(1e-3));
+}
+
+TEST_CASE("coarse stamps: the rate is rows over time") {
+  struct Clock {
+    double rate_hz, tick_ms;
+  };
+  for (const Clock clock : {Clock{81.3, 10},
+                            Clock{85.47, 10},
+                            Clock{3, 1000},
+                            Clock{1.2, 1000},
+                            Clock{0.7, 1000},
+                            Clock{700, 1},
+                            Clock{1100, 1},
+                            Clock{130, 10},
+                            Clock{400, 1}}) {
+    for (const int rows : {200, 20000}) {
+      std::vector<std::int64_t> t;
+      for (int i = 0; i < rows; ++i)
+        t.push_back(static_cast<std::int64_t>(std::floor(i * 1000 / clock.rate_hz / clock.tick_ms) *
+                                              clock.tick_ms));
+      const Recording r = read_text(log_of(t, "t_ms"));
+      INFO(clock.rate_hz << " Hz, " << clock.tick_ms << " ms, " << rows);
+      CHECK(r.info.time.rate_hz == Approx(clock.rate_hz).epsilon(rows == 200 ? 0.01 : 1e-4));
+      CHECK(r.info.samples == static_cast<std::uint64_t>(rows));
+      CHECK(r.info.time.gaps == 0);
+    }
+  }
+}
+
+TEST_CASE("rows missing at random are gaps, however many; rows missing at pauses too") {
+  std::mt19937_64 random(9);
+  for (const double share : {0.03, 0.1, 0.3}) {
+    std::vector<std::int64_t> t;
+    for (int i = 0; i < 20000; ++i)
+      if (static_cast<double>(random() % 1000) >= 1000 * share) t.push_back(i * 10);
+    const Recording r = read_text(log_of(t, "t_ms"));
+    INFO(share);
+    CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-6));
+    CHECK(static_cast<double>(r.info.time.missing_samples) == Approx(20000 * share).epsilon(0.1));
+  }
+  std::vector<std::int64_t> pauses;
+  for (int i = 0; i < 20000; ++i) pauses.push_back(i * 10 + i / 200 * 1013);  // 2 s, then a pause
+  CHECK(read_text(log_of(pauses, "t_ms")).info.time.rate_hz == Approx(100).epsilon(1e-3));
+}
+
+TEST_CASE("stamps that say two rates are refused with both, and the rate given decides") {
+  std::vector<std::int64_t> t{0};
+  for (int i = 0; i < 3000; ++i)
+    t.push_back(t.back() + (i % 5 == 4 ? 12300 + 1700 * (i % 3) : 5000));
+  const std::string said = failure(log_of(t));
+  CHECK(said.find("E0324") != std::string::npos);
+  CHECK(said.find("200 Hz") != std::string::npos);
+  CHECK(said.find("`rate_hz` 200 or `rate_hz` ") != std::string::npos);
+  const double over_time = 3000 / (static_cast<double>(t.back()) * 1e-6);
+  ReadOptions options;
+  options.rate_hz = over_time;
+  CHECK(read_text(log_of(t), options).info.time.rate_hz == Approx(over_time).epsilon(0.01));
+  options.rate_hz = 200;
+  CHECK(read_text(log_of(t), options).info.time.rate_hz == Approx(200).epsilon(0.1));
+}

@@ -176,6 +176,20 @@ TEST_CASE("two columns that differ in the unit of time only: the first is the ti
   CHECK(info.channels.size() == 2);
 }
 
+TEST_CASE("the device's own time is preferred to the host's") {
+  const auto column_of = [](const std::string& header) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "x.csv") << header << "\n0,0,1\n5000,5,2\n10000,10,1\n";
+    return read_recording((folder / "x.csv").string()).info.time.column;
+  };
+  CHECK(column_of("host_time[us],device_time[ms],x") == "device_time");
+  CHECK(column_of("timestamp[us],imu_time[ms],x") == "imu_time");
+  CHECK(column_of("sensor_timestamp[us],time[ms],x") == "sensor_timestamp");
+  CHECK(column_of("host_timestamp[us],timestamp[ms],x") == "timestamp");
+  CHECK(column_of("recv_time[us],arrival_time[ms],x") == "recv_time");
+  CHECK(column_of("time[us],T_imu[degC],x") == "time");  // a temperature
+}
+
 TEST_CASE("a wrong time column or unit is refused in every format alike") {
   const auto message = [](Found (*read)(const Stamps&, const ReadOptions&),
                           const ReadOptions& options) {

@@ -134,9 +134,9 @@ void TimeGrid::learn() {
   for (const Pending& item : pending_)
     for (std::size_t i = 0; i < item.block.rows && stamps.size() < kLearn; ++i)
       stamps.push_back(item.block.time_ns[i]);
-  const FirstInterval found = first_interval(stamps);
+  const FirstInterval found = first_interval(stamps, options_.rate_hz);
   dt_ = found.ns;
-  coarse_ = found.coarse;
+  coarse_ = found.pattern != StampPattern::steps;
   limit_ = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
   if (dt_ == 0 && stamps.size() > 1) {
     const Pending* item = &pending_.front();
@@ -153,11 +153,46 @@ void TimeGrid::learn() {
          equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
          "`time_column` none and `rate_hz` HZ ignore the stamps");
   }
-  if (coarse_)
-    warnings_.add("coarse_stamps",
-                  "the clock is too coarse to tell rows apart (many equal stamps): rows are kept "
-                  "and spaced evenly");
+  say_pattern(found);
   begin();
+}
+
+void TimeGrid::say_pattern(const FirstInterval& found) {
+  const double step_hz = 1e9 / found.step_ns, span_hz = 1e9 / found.span_ns;
+  switch (found.pattern) {
+    case StampPattern::steps:
+      return;
+    case StampPattern::equal:
+      warnings_.add("coarse_stamps",
+                    "the clock is too coarse to tell rows apart (many equal stamps): rows are kept "
+                    "and spaced evenly");
+      return;
+    case StampPattern::coarse:
+      warnings_.add("coarse_stamps",
+                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
+                                "{:.5g} Hz: rows are spaced evenly (`rate_hz` {:.5g} takes the "
+                                "longer steps as gaps)",
+                                span_hz,
+                                step_hz));
+      return;
+    case StampPattern::packets:
+      warnings_.add("packets",
+                    fmt::format("the stamps are those of packets: rows are spaced evenly at "
+                                "{:.5g} Hz, rows over time (`rate_hz` {:.5g}, the rate inside a "
+                                "packet, takes the rest as gaps)",
+                                span_hz,
+                                step_hz));
+      return;
+    case StampPattern::disputed:
+      fail(pending_.front(),
+           0,
+           "E0324",
+           fmt::format("two sampling rates: most stamps follow each other at {:.5g} Hz, rows over "
+                       "time give {:.5g} Hz, and gaps do not explain it",
+                       step_hz,
+                       span_hz),
+           fmt::format("`rate_hz` {:.5g} or `rate_hz` {:.5g} decides", step_hz, span_hz));
+  }
 }
 
 // Rows whose stamps all follow each other as they should are taken together; a run of them goes to
@@ -210,7 +245,7 @@ bool TimeGrid::take_one_by_one(
         run = i + 1;
         continue;
       }
-    } else if (same_ratio_ != 0 || step * 4 < 3 * static_cast<std::int64_t>(dt_)) {
+    } else if (!coarse_ && (same_ratio_ != 0 || step * 4 < 3 * static_cast<std::int64_t>(dt_))) {
       watch_rate(front, i, static_cast<double>(step) / dt_);
     }
     dropped_in_a_row_ = 0;
@@ -308,6 +343,23 @@ void TimeGrid::deliver(const std::vector<const double*>& channels, std::size_t r
   sink_.block(block);
 }
 
+// The rate that most of the log keeps, unless rows over time contradict it.
+double TimeGrid::even_interval() {
+  const double usual = coarse_ ? sketch_.line_ns() : sketch_.interval_ns();
+  const double stamped = static_cast<double>(last_ - first_stamp_);
+  const double off = std::abs(static_cast<double>(index_) * usual - stamped);
+  if (index_ <= 0 || off <= std::max(0.01 * stamped, 2.0 * static_cast<double>(limit_)))
+    return usual;
+  const double spanned = stamped / static_cast<double>(index_);
+  warnings_.add("uneven_sampling",
+                fmt::format("long stretches of the log keep {:.5g} Hz, rows over time are {:.5g} "
+                            "Hz, which is used: the sampling is uneven, and times on the axes are "
+                            "off by that",
+                            1e9 / usual,
+                            1e9 / spanned));
+  return spanned;
+}
+
 void TimeGrid::finish(LogInfo& info) {
   process(true);
   begin();
@@ -323,7 +375,7 @@ void TimeGrid::finish(LogInfo& info) {
   time.start_ns = start_ns_;
   time.gaps = gaps_;
   time.missing_samples = missing_;
-  const double interval = sketch_.interval_ns();
+  const double interval = even_interval();
   time.rate_hz = interval > 0 ? 1e9 / interval : 0;
   const auto deviation = sketch_.deviation(interval);
   time.jitter_s = deviation.robust * 1e-9;
@@ -333,15 +385,6 @@ void TimeGrid::finish(LogInfo& info) {
                   fmt::format("stamps scatter by {:.0f} % of the sampling interval: the samples "
                               "are treated as evenly spaced",
                               100 * deviation.robust / interval));
-  const double stamped_s = static_cast<double>(last_ - first_stamp_) * 1e-9;
-  const double grid_s = static_cast<double>(index_) * interval * 1e-9;
-  if (index_ > 0 && std::abs(grid_s - stamped_s) > 0.01 * stamped_s)
-    warnings_.add(
-        "uneven_sampling",
-        fmt::format("the stamps span {:.4g} s, the samples at one even rate {:.4g} s: the "
-                    "sampling is uneven and times on the axes are off by that",
-                    stamped_s,
-                    grid_s));
   if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
     warnings_.add(
         "rate_ignored",

@@ -2,7 +2,7 @@
 // From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN
 // (never interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and
 // everything is counted.
-// The interval comes from stamp_sketch.hpp; what becomes of a stamp that does not fit is decided in
+// The interval comes from first_interval.hpp, the rate from stamp_sketch.hpp; what becomes of a stamp that does not fit is decided in
 // time_repairs.cpp.
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
+#include "libchar/log/time/first_interval.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
 #include "libchar/log/time/time_repairs.hpp"
 
@@ -44,6 +45,8 @@ class TimeGrid {
   };
   void begin();
   void learn();
+  void say_pattern(const FirstInterval& found);
+  double even_interval();
   void process(bool end);
   void process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
@@ -82,7 +85,8 @@ class TimeGrid {
   std::deque<Pending> pending_;
   std::vector<RowBlock> spare_;
   std::uint64_t rows_ = 0, waiting_ = 0;
-  bool stamped_ = false, began_ = false, learned_ = false, window_over_ = false, coarse_ = false;
+  bool stamped_ = false, began_ = false, learned_ = false, window_over_ = false;
+  bool coarse_ = false;     ///< stamps do not tell rows apart, one by one
   double dt_ = 0;           // ns
   std::int64_t limit_ = 0;  // longest regular step, ns
   std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;

@@ -113,6 +113,22 @@ double StampSketch::interval_ns() const {
   return median(slopes);
 }
 
+double StampSketch::line_ns() const {
+  double index = 0, stamp = 0;
+  for (const Cell& cell : cells_) {
+    index += static_cast<double>(cell.first.index - origin_.index);
+    stamp += static_cast<double>(cell.first.stamp - origin_.stamp);
+  }
+  const auto n = static_cast<double>(cells_.size());
+  double across = 0, along = 0;
+  for (const Cell& cell : cells_) {
+    const double k = static_cast<double>(cell.first.index - origin_.index) - index / n;
+    along += k * k;
+    across += k * (static_cast<double>(cell.first.stamp - origin_.stamp) - stamp / n);
+  }
+  return along > 0 ? across / along : 0;
+}
+
 StampSketch::Deviation StampSketch::deviation(double interval) const {
   if (cells_.size() < 3) return {};
   const Pair origin = cells_.front().first;
@@ -129,48 +145,6 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
         {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
   for (double& value : r) value = std::fabs(value - centre);
   result.robust = 1.4826 * median(r);
-  return result;
-}
-
-FirstInterval first_interval(const std::vector<std::int64_t>& stamps) {
-  std::vector<double> steps;
-  std::size_t zeros = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    std::int64_t step = 0;
-    if (__builtin_sub_overflow(stamps[i], stamps[i - 1], &step)) continue;
-    zeros += step == 0;
-    if (step > 0) steps.push_back(static_cast<double>(step));
-  }
-  FirstInterval result;
-  if (steps.empty()) return result;
-  result.coarse = stamps.size() > 8 && zeros * 4 > stamps.size();
-  const double middle = median(steps);
-  std::vector<double> scatter;
-  for (const double step : steps) scatter.push_back(std::fabs(step - middle));
-  const double deviation = 1.4826 * median(scatter);
-  double sum = 0;
-  std::size_t close = 0;
-  for (const double step : steps) {
-    if (std::fabs(step - middle) > 0.1 * middle) continue;
-    sum += step;
-    ++close;
-  }
-  if (!result.coarse && close * 2 >= steps.size()) {
-    result.ns = sum / static_cast<double>(close);
-    result.longest_step = 1.5 * result.ns;
-    return result;
-  }
-  // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
-  // dominate.
-  std::vector<double> slopes;
-  const std::size_t half = stamps.size() / 2;
-  for (std::size_t i = 0; i + half < stamps.size(); ++i)
-    slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
-                     static_cast<double>(half));
-  const double slope = median(slopes);
-  result.ns = result.coarse || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
-  if (!(result.ns > 0)) result.ns = middle;
-  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
   return result;
 }
 

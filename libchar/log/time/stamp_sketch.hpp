@@ -1,9 +1,9 @@
 #pragma once
 // The sampling interval behind a series of time stamps, in bounded memory.
 //
-// The interval dt that tells a gap from a step is the median of the first differences; the rate
-// that is reported is the median of long-baseline slopes (Theil 1950, in the half-length form) over
-// a thinned set of (grid index, stamp) pairs.
+// The rate that is reported is the median of long-baseline slopes (Theil 1950, in the half-length
+// form) over a thinned set of (grid index, stamp) pairs. What tells a gap from a step is decided
+// before, by first_interval.hpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +32,8 @@ class StampSketch {
   void add_run(std::int64_t index, const std::int64_t* stamps, std::size_t n);
   /// ns per grid step by the median of long-baseline slopes; 0 with fewer than two pairs.
   double interval_ns() const;
+  /// The same by least squares: of stamps on a coarse grid, whose slopes are fractions of its step.
+  double line_ns() const;
   /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.
   struct Deviation {
     double robust = 0, largest = 0;
@@ -60,15 +62,5 @@ class StampSketch {
   double slope_ = 0;  // provisional, to tell which pair of a cell deviates most
   static constexpr std::size_t kCells = 4096;
 };
-
-/// Sampling interval from the first stamps; `coarse` when so many are equal that the clock is too
-/// coarse to tell rows apart.
-struct FirstInterval {
-  double ns = 0;
-  double longest_step =
-      0;  ///< a longer one is a gap: 1.5 dt, or more where the stamps scatter widely, ns
-  bool coarse = false;
-};
-FirstInterval first_interval(const std::vector<std::int64_t>& stamps);
 
 }  // namespace libchar

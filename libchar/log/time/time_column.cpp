@@ -48,12 +48,44 @@ constexpr std::array kTimeNames = {
     TimeName{"nanoseconds", 1},
     TimeName{"sampletimefine", 100000}};  // Xsens SampleTimeFine counts 0.1 ms
 
+// Whose clock it is: a device stamps its samples when it takes them, a host when they arrive.
+constexpr std::array<std::string_view, 7> kDevices = {
+    "device", "dev", "sensor", "imu", "hardware", "hw", "sample"};
+constexpr std::array<std::string_view, 11> kHosts = {
+    "host", "pc", "ros", "system", "sys", "recv", "receive", "received", "arrival", "log", "unix"};
+constexpr std::array<std::string_view, 3> kTimes = {"time", "timestamp", "stamp"};
+
+// "imu_time", "time_host" or "arrival timestamp": one of `words` beside a word for time.
+template <std::size_t N>
+bool time_of(const std::string& name, const std::array<std::string_view, N>& words) {
+  const std::size_t between = name.find_first_of("_ .-");
+  if (between == std::string::npos) return false;
+  const std::string_view all(name), first = all.substr(0, between),
+                                    second = all.substr(between + 1);
+  const auto among = [](const auto& list, std::string_view word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+  };
+  return (among(words, first) && among(kTimes, second)) ||
+         (among(kTimes, first) && among(words, second));
+}
+
+enum class Clock { device, unknown, host };
+
+Clock clock_of(std::string_view stem) {
+  const std::string name = ascii_lower(stem);
+  if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices))
+    return Clock::device;
+  return time_of(name, kHosts) ? Clock::host : Clock::unknown;
+}
+
 const TimeName* find_time_name(std::string_view stem) {
   const std::string wanted = ascii_lower(stem);
   for (const TimeName& known : kTimeNames)
     if (known.name == wanted) return &known;
   static constexpr TimeName other{"timestamp_", 0};
-  return wanted.starts_with("timestamp_") || wanted.starts_with("timestamp ") ? &other : nullptr;
+  const bool said = wanted.starts_with("timestamp_") || wanted.starts_with("timestamp ") ||
+                    clock_of(stem) != Clock::unknown;
+  return said ? &other : nullptr;
 }
 
 std::int64_t unit_in_ns(std::string_view unit) {
@@ -145,13 +177,21 @@ std::size_t named_column(const TableFront& table,
                channel_hint(wanted, names, options)});
 }
 
-std::optional<std::size_t> column_called_time(const TableFront& table) {
-  const auto found =
-      std::find_if(table.columns.begin(), table.columns.end(), [](const ColumnLabel& c) {
-        return find_time_name(stem_of(c)) != nullptr;
-      });
-  if (found == table.columns.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - table.columns.begin());
+// The first that is a device's time, else the first that is not said to be a host's, else the first.
+std::optional<std::size_t> column_called_time(const TableFront& table, LogInfo& info) {
+  std::optional<std::size_t> found;
+  std::size_t named = 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string stem = stem_of(table.columns[c]);
+    if (find_time_name(stem) == nullptr) continue;
+    ++named;
+    if (!found || clock_of(stem) < clock_of(stem_of(table.columns[*found]))) found = c;
+  }
+  if (named > 1 && clock_of(stem_of(table.columns[*found])) == Clock::device)
+    info.guesses.push_back(
+        fmt::format("time column: {}, the device's own clock (`time_column` takes another one)",
+                    printable(table.columns[*found].name)));
+  return found;
 }
 
 // Without names: a first column that rises evenly.
@@ -199,7 +239,7 @@ std::optional<std::size_t> find_time_column(const TableFront& table,
   if (options.time_column == "none") return std::nullopt;
   if (options.time_column != "auto")
     return named_column(table, options.time_column, options, info.file);
-  return table.named ? column_called_time(table) : column_that_rises(table, options, info);
+  return table.named ? column_called_time(table, info) : column_that_rises(table, options, info);
 }
 
 std::int64_t find_time_unit(const TableFront& table,

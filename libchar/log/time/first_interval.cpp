@@ -1,0 +1,194 @@
+// Two estimates of the sampling interval: the common step (the median of the first differences),
+// right in a log with gaps, and span / (rows - 1), right wherever each row is a sample. Where they
+// differ by more than 2 % one of three things explains it, or the log is refused:
+//   coarse   all steps are multiples of the clock's step q, and every stamp stands within
+//            a band of 1.5 q about one line: rounding moves a stamp by at most q, while rows missing
+//            at random lead away from every line like a random walk
+//   packets  most of the samples would be missing, again and again after at most 32 rows
+//   gaps     the longer steps are few, or multiples of the common step
+#include "libchar/log/time/first_interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace libchar {
+namespace {
+
+constexpr double kSameRate = 0.02;
+constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
+constexpr double kLongestPacket = 32;  // rows
+
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The steps between stamps in file order; those back in time are left out.
+struct FirstSteps {
+  std::vector<double> rising;
+  std::size_t equal = 0;
+  bool back = false;
+};
+
+FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
+  FirstSteps steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    std::int64_t step = 0;
+    if (__builtin_sub_overflow(stamps[i], stamps[i - 1], &step) || step < 0) {
+      steps.back = true;
+      continue;
+    }
+    steps.equal += step == 0;
+    if (step > 0) steps.rising.push_back(static_cast<double>(step));
+  }
+  return steps;
+}
+
+/// The common step, and what is longer than it.
+FirstInterval common_step(const std::vector<std::int64_t>& stamps, const FirstSteps& steps) {
+  FirstInterval result;
+  const bool equal = stamps.size() > 8 && steps.equal * 4 > stamps.size();
+  if (equal) result.pattern = StampPattern::equal;
+  const double middle = middle_of(steps.rising);
+  std::vector<double> scatter;
+  for (const double step : steps.rising) scatter.push_back(std::fabs(step - middle));
+  const double deviation = 1.4826 * middle_of(std::move(scatter));
+  double sum = 0;
+  std::size_t close = 0;
+  for (const double step : steps.rising) {
+    if (std::fabs(step - middle) > 0.1 * middle) continue;
+    sum += step;
+    ++close;
+  }
+  if (!equal && close * 2 >= steps.rising.size()) {
+    result.ns = sum / static_cast<double>(close);
+    result.longest_step = 1.5 * result.ns;
+    return result;
+  }
+  // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
+  // dominate.
+  std::vector<double> slopes;
+  const std::size_t half = stamps.size() / 2;
+  for (std::size_t i = 0; i + half < stamps.size(); ++i)
+    slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
+                     static_cast<double>(half));
+  const double slope = middle_of(std::move(slopes));
+  result.ns = equal || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
+  if (!(result.ns > 0)) result.ns = middle;
+  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
+  return result;
+}
+
+bool same_rate(double a, double b) {
+  return std::fabs(a - b) <= kSameRate * std::max(a, b);
+}
+
+bool multiple_of(double value, double unit, double tolerance) {
+  return std::fabs(value / unit - std::round(value / unit)) <= tolerance;
+}
+
+/// The clock's own step: the least difference between stamps, or between the steps themselves.
+double tick_of(std::vector<double> steps) {
+  std::sort(steps.begin(), steps.end());
+  double tick = steps.front();
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (steps[i] > steps[i - 1]) tick = std::min(tick, steps[i] - steps[i - 1]);
+  return tick;
+}
+
+/// The line through the stamps by least squares: ns a row, and how far they spread about it.
+struct StampLine {
+  double slope = 0, spread = 0;
+};
+
+StampLine line_through(const std::vector<std::int64_t>& stamps) {
+  const double middle = 0.5 * static_cast<double>(stamps.size() - 1);
+  double across = 0, along = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const double k = static_cast<double>(i) - middle;
+    across += k * static_cast<double>(stamps[i] - stamps[0]);
+    along += k * k;
+  }
+  StampLine line{across / along, 0};
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const double off =
+        static_cast<double>(stamps[i] - stamps[0]) - line.slope * static_cast<double>(i);
+    low = std::min(low, off);
+    high = std::max(high, off);
+  }
+  line.spread = high - low;
+  return line;
+}
+
+bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) {
+  const double tick = tick_of(steps.rising);
+  std::size_t odd = steps.equal;
+  for (const double step : steps.rising) {
+    if (!multiple_of(step, tick, 1e-3)) return false;
+    odd += std::fabs(step - common) > 0.5 * tick;
+  }
+  return odd >= kLeastOdd && line.spread <= 1.5 * tick;
+}
+
+std::vector<double> longer_than(const FirstSteps& steps, double limit) {
+  std::vector<double> longer;
+  for (const double step : steps.rising)
+    if (step > limit) longer.push_back(step);
+  std::sort(longer.begin(), longer.end());
+  return longer;
+}
+
+/// What explains that the span says another rate than the common step.
+StampPattern explanation(const FirstSteps& steps,
+                         const FirstInterval& common,
+                         double rows,
+                         double span) {
+  const std::vector<double> longer = longer_than(steps, 1.5 * common.ns);
+  const auto gaps = static_cast<double>(longer.size());
+  if (span > 2 * common.ns && longer.size() >= kLeastOdd && rows <= kLongestPacket * gaps)
+    return StampPattern::packets;
+  if (common.pattern == StampPattern::equal || span < common.ns) return common.pattern;
+  const auto on_grid = static_cast<double>(std::count_if(
+      longer.begin(), longer.end(), [&](double s) { return multiple_of(s, common.ns, 0.2); }));
+  return gaps * 50 <= rows || on_grid >= 0.8 * gaps ? StampPattern::steps : StampPattern::disputed;
+}
+
+}  // namespace
+
+FirstInterval first_interval(const std::vector<std::int64_t>& stamps,
+                             std::optional<double> rate_hz) {
+  const FirstSteps steps = steps_of(stamps);
+  if (steps.rising.empty()) return {};
+  FirstInterval result = common_step(stamps, steps);
+  result.step_ns = result.span_ns = result.ns;
+  if (steps.back || stamps.size() <= kLeastOdd) return result;
+  const auto rows = static_cast<double>(stamps.size());
+  const StampLine line = line_through(stamps);
+  double span =
+      (static_cast<double>(stamps.back()) - static_cast<double>(stamps.front())) / (rows - 1);
+  const bool equal_at_times = steps.equal * 50 > stamps.size();
+  if (same_rate(span, result.ns) && !equal_at_times) return result;
+  const bool coarse = on_one_line(line, steps, result.ns);
+  const StampPattern pattern =
+      coarse ? StampPattern::coarse : explanation(steps, result, rows, span);
+  if (pattern == result.pattern) return result;
+  if (coarse) span = line.slope;
+  result.span_ns = span;
+  if (rate_hz && same_rate(1e9 / *rate_hz, result.step_ns)) return result;
+  const bool told = rate_hz && same_rate(1e9 / *rate_hz, span);
+  result.pattern = pattern == StampPattern::disputed && told ? StampPattern::packets : pattern;
+  if (result.pattern == StampPattern::disputed) return result;
+  result.ns = span;
+  const std::vector<double> longer = longer_than(steps, 0);
+  const double usual = coarse ? longer.back() : 1.6 * longer[longer.size() * 98 / 100];
+  result.longest_step = std::max(1.5 * span, 1.25 * usual);
+  // Two steps on either side of the rate, none of them a gap: nothing that needs a word.
+  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * result.step_ns)
+    result.pattern = StampPattern::steps;
+  return result;
+}
+
+}  // namespace libchar
