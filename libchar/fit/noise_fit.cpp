@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/interval.hpp"
@@ -19,7 +20,6 @@
 #include "libchar/fit/detail/low_pass.hpp"
 #include "libchar/fit/power_bins.hpp"
 #include "libchar/fit/remedies.hpp"
-#include "libchar/fit/spike_cleaner.hpp"
 
 namespace libchar {
 
@@ -323,19 +323,15 @@ NoiseFit fit_record(std::span<const double> record,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
-  std::vector<Remedy> remedies;
-  std::vector<double> cleaned;
-  std::span<const double> data = record;
-  if (options.remedies) {
-    const double kurtosis = kurtosis_of_differences(record), alarm = spike_alarm(record.size());
-    if (kurtosis > alarm) {
-      cleaned.assign(record.begin(), record.end());
-      const std::uint64_t replaced = clean_spikes(cleaned);
-      if (replaced > 0) {
-        remedies.push_back(spikes_remedy(kurtosis, alarm, replaced));
-        data = cleaned;
-      }
-    }
+  const DespikedRecord despiked = options.remedies ? without_spikes(record) : DespikedRecord{};
+  const std::span<const double> data =
+      despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
+  AllanCurve own;  // a curve of the spikes is no opinion on what is left
+  if (allan != nullptr && !despiked.samples.empty()) {
+    AllanPyramid pyramid;
+    pyramid.push(data);
+    own = pyramid.finish(1 / rate_hz);
+    allan = &own;
   }
   // One exact transform while it is cheap; a longer record goes by blocks.
   constexpr std::uint64_t kWhole = std::uint64_t{1} << 21U;
@@ -345,7 +341,7 @@ NoiseFit fit_record(std::span<const double> record,
   binner.push(data);
   NoiseFit fit =
       fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options, workspace);
-  fit.remedies.insert(fit.remedies.begin(), remedies.begin(), remedies.end());
+  add_spike_answer(despiked.answer, fit);
   return fit;
 }
 

@@ -29,11 +29,41 @@ double kurtosis_of_differences(std::span<const double> record) {
   return moments.kurtosis();
 }
 
-Remedy spikes_remedy(double kurtosis, double alarm, std::uint64_t replaced) {
-  return {"spikes",
-          fmt::format("kurtosis of differences {:.3g} > {:.3g}", kurtosis, alarm),
-          fmt::format("{} samples replaced by the mean of their neighbours", replaced),
-          replaced};
+SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count) {
+  SpikeAnswer answer;
+  answer.sentence = spike_sentence(count);
+  if (judge_spikes(count) == SpikeVerdict::spikes)
+    answer.remedy = {
+        "spikes",
+        fmt::format("kurtosis of differences {:.3g} > {:.3g}", kurtosis, alarm),
+        fmt::format("{} sample{} left out", count.left_out, count.left_out == 1 ? "" : "s"),
+        count.left_out};
+  return answer;
+}
+
+DespikedRecord without_spikes(std::span<const double> record) {
+  const double kurtosis = kurtosis_of_differences(record), alarm = spike_alarm(record.size());
+  if (!(kurtosis > alarm)) return {};
+  SpikeScan scan;
+  scan.push(record);
+  SpikeCleaner cleaner(scan.scale());
+  DespikedRecord out;
+  out.samples.reserve(record.size());
+  const auto keep = [&](std::span<const double> cleaned) {
+    out.samples.insert(out.samples.end(), cleaned.begin(), cleaned.end());
+  };
+  constexpr std::size_t kPiece = 8192;
+  for (std::size_t from = 0; from < record.size(); from += kPiece)
+    keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
+  keep(cleaner.finish());
+  out.answer = spike_answer(kurtosis, alarm, cleaner.count());
+  if (!out.answer.remedy) out.samples = {};
+  return out;
+}
+
+void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit) {
+  if (answer.remedy) fit.remedies.insert(fit.remedies.begin(), *answer.remedy);
+  if (!answer.sentence.empty()) fit.sentences.insert(fit.sentences.begin(), answer.sentence);
 }
 
 Remedy lines_remedy(std::uint64_t clipped) {

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/spike_cleaner.hpp"
 
 namespace libchar {
 
@@ -19,7 +21,23 @@ double spike_alarm(std::uint64_t samples);
 /// Kurtosis of the first differences of a record; NaN are skipped.
 double kurtosis_of_differences(std::span<const double> record);
 
-Remedy spikes_remedy(double kurtosis, double alarm, std::uint64_t replaced);
+/// What is done about what stands out of a record: left out, or kept with a sentence that says why.
+struct SpikeAnswer {
+  std::optional<Remedy> remedy;  ///< the spikes are to be left out
+  std::string sentence;          ///< or why nothing is; "" where nothing stands out
+};
+SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count);
+
+/// A record and what became of its spikes, looked for only when the kurtosis asks for it.
+struct DespikedRecord {
+  std::vector<double> samples;  ///< with spikes missing (NaN); empty: as the record was
+  SpikeAnswer answer;
+};
+DespikedRecord without_spikes(std::span<const double> record);
+
+/// Puts the answer in front of what else a fit says.
+void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
+
 Remedy lines_remedy(std::uint64_t clipped);
 
 }  // namespace libchar

@@ -1,105 +1,284 @@
-// Three-sample residual e_t = y_t - (y_{t-1} + y_{t+1})/2. A spike at t stands out in e_t with its
-// full height and in the neighbours with half of it; drift and slow noise cancel. Sample t is
-// replaced by the mean of its neighbours when
-//   |e_t| > mad_limit * 1.4826 * median|e|   and   |e_t| > |e_{t+1}|   (|e_{t-1}| was settled
-//   before: cleaned, or smaller).
-// Under Gaussian noise 6 robust standard deviations are passed once in 5e8 samples.
+// A single spike stands out of the three-sample residual e_t = y_t - (y_{t-1} + y_{t+1})/2, from
+// which drift and slow noise cancel, with its full height (its neighbours with half of it):
+//   |e_t| > 6 s_e  and  |e_t| > |e_{t-1}|, |e_{t+1}|,      s = 1.4826 median|.|
+// A run of up to 16 wild rows begins with |y_t - g| > 6 s_d, g the last good sample and s_d of first
+// differences, and ends where two samples are back within 3 s_d of g; at the record's ends one side
+// is enough. What does not come back is a step, and stays. More than six other wild samples within
+// 32 are a loud stretch, and stay. Under Gaussian noise a sample passes 6 s once in 5e8.
+//
+// Spikes or the noise's own tail? A tail is everywhere: most of what lies beyond 5 s lies just
+// beyond it. Under P(size > x) ~ (x/5 s)^-a the logarithms ln(size/5 s) are exponential with mean
+// 1/a (Hill 1975), so that 2.5 * their sum exceeds the 97 % quantile of a gamma distribution in at
+// most 3 % of records with a >= 2.5; and at least a third lies between 5 s and 6 s (0.42 for a = 3,
+// the t distribution of three degrees of freedom). Spikes are what contradicts one of the two.
 #include "libchar/fit/spike_cleaner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <limits>
 
 namespace libchar {
 namespace {
 
 constexpr double kMadToSd = 1.482602218505602;  // 1 / Phi^-1(3/4)
+constexpr std::size_t kPlaces = std::size_t{1} << 14U;
+constexpr double kLimit = 6, kShoulder = 5;  // robust standard deviations
+constexpr std::int64_t kLongestRun = 16;
+constexpr std::int64_t kReach = 32;      // samples on either side that a spike is alone in
+constexpr std::int64_t kMostOthers = 6;  // samples of other spikes and runs
+constexpr double kMostShare = 0.01;
+constexpr double kTail = 2.5;              // index of the heaviest tail that is taken for noise
+constexpr double kTailShoulder = 1.0 / 3;  // of such a tail at least
+constexpr double kTailAlarm = 0.03, kShoulderAlarm = 0.01;
 
-double residual(double before, double at, double after) {
-  return at - 0.5 * (before + after);
+/// Robust standard deviation of what is not zero. Zero is what rounding leaves of it.
+double spread_of(std::vector<double> size, double largest) {
+  std::sort(size.begin(), size.end());
+  if (size.size() < 8) return 0;
+  const double high = size[size.size() * 9 / 10];
+  const double zero = std::max(1e-3 * high, 8 * std::numeric_limits<double>::epsilon() * largest);
+  const auto first = std::upper_bound(size.begin(), size.end(), zero);
+  const std::ptrdiff_t count = size.end() - first;
+  return count < 8 ? 0 : kMadToSd * first[count / 2];
+}
+
+void halve(std::vector<double>& values) {
+  for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+  values.resize((values.size() + 1) / 2);
 }
 
 }  // namespace
 
-double spike_limit(std::span<const double> record, double mad_limit) {
-  if (record.size() < 3) return 0;
-  const std::size_t stride = std::max<std::size_t>(1, record.size() / 65536);
-  std::vector<double> size;
-  for (std::size_t t = 1; t + 1 < record.size(); t += stride) {
-    const double e = residual(record[t - 1], record[t], record[t + 1]);
-    if (std::isfinite(e)) size.push_back(std::abs(e));
+void SpikeScan::push(std::span<const double> samples) {
+  // Place t needs the samples t, t+1 and t+2; `samples_` of them are gone.
+  const auto sample = [&](std::uint64_t t) {
+    return t >= samples_ ? samples[t - samples_] : two_[2 - (samples_ - t)];
+  };
+  const std::uint64_t end = samples_ + samples.size();
+  for (; next_ + 2 < end; next_ += stride_) {
+    if (residual_.size() == kPlaces) {
+      halve(residual_);
+      halve(step_);
+      stride_ *= 2;
+      next_ = residual_.size() * stride_;
+      if (next_ + 2 >= end) break;
+    }
+    look(sample(next_), sample(next_ + 1), sample(next_ + 2));
   }
-  if (size.size() < 8) return 0;
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return mad_limit * kMadToSd * *middle;
+  if (samples.size() >= 2) {
+    two_[0] = samples[samples.size() - 2];
+    two_[1] = samples.back();
+  } else if (samples.size() == 1) {
+    two_[0] = two_[1];
+    two_[1] = samples[0];
+  }
+  samples_ = end;
 }
 
-SpikeCleaner::SpikeCleaner(double mad_limit, std::size_t pilot)
-    : mad_limit_(mad_limit), pilot_(pilot) {}
+// A place with a missing sample counts as one with NaN, so that places stay where they are.
+void SpikeScan::look(double before, double at, double after) {
+  residual_.push_back(std::abs(at - 0.5 * (before + after)));
+  step_.push_back(std::abs(after - at));
+  if (std::abs(at) > largest_) largest_ = std::abs(at);
+}
 
-SpikeCleaner SpikeCleaner::with_limit(double limit) {
-  SpikeCleaner cleaner(0, 0);
-  cleaner.limit_ = std::max(limit, 0.0);
-  return cleaner;
+SpikeScale SpikeScan::scale() const {
+  std::vector<double> residual = residual_, step = step_;
+  const auto missing = [](double value) { return !std::isfinite(value); };
+  std::erase_if(residual, missing);
+  std::erase_if(step, missing);
+  return {spread_of(std::move(residual), largest_), spread_of(std::move(step), largest_)};
+}
+
+SpikeVerdict judge_spikes(const SpikeCount& count) {
+  if (count.spikes == 0) return SpikeVerdict::none;
+  if (static_cast<double>(count.left_out) > kMostShare * static_cast<double>(count.samples))
+    return SpikeVerdict::too_many;
+  const auto events = static_cast<double>(count.spikes + count.shoulder);
+  if (boost::math::gamma_q(events, kTail * count.log_size) < kTailAlarm)
+    return SpikeVerdict::spikes;
+  const boost::math::binomial of_tail(events, kTailShoulder);
+  return cdf(of_tail, static_cast<double>(count.shoulder)) < kShoulderAlarm
+             ? SpikeVerdict::spikes
+             : SpikeVerdict::heavy_tails;
+}
+
+std::string spike_sentence(const SpikeCount& count) {
+  switch (judge_spikes(count)) {
+    case SpikeVerdict::too_many:
+      return fmt::format(
+          "{:.2g} % of the samples stand out of their neighbours: too many for spikes (at most 1 "
+          "%), and all were kept.",
+          100 * static_cast<double>(count.left_out) / static_cast<double>(count.samples));
+    case SpikeVerdict::heavy_tails:
+      return fmt::format(
+          "{} sample{} beyond six standard deviations, sized as the tails of heavy-tailed noise or "
+          "of motion are: not taken for spikes, and kept.",
+          count.left_out,
+          count.left_out == 1 ? "" : "s");
+    default:
+      return "";
+  }
 }
 
 std::span<const double> SpikeCleaner::push(std::span<const double> samples) {
   held_.insert(held_.end(), samples.begin(), samples.end());
   ready_.clear();
-  if (limit_ < 0) {
-    if (held_.size() < pilot_) return {};
-    limit_ = spike_limit({held_.data(), pilot_}, mad_limit_);
-  }
+  examine(false);
   release(false);
   return ready_;
 }
 
 std::span<const double> SpikeCleaner::finish() {
   ready_.clear();
-  if (limit_ < 0) limit_ = spike_limit(held_, mad_limit_);
+  examine(true);
+  settle(std::numeric_limits<std::int64_t>::max() / 2);
   release(true);
-  held_.clear();
-  has_before_ = false;
   return ready_;
 }
 
-void SpikeCleaner::release(bool last) {
-  if (!has_before_ && !held_.empty()) {
-    ready_.push_back(held_.front());  // the very first sample has no neighbour before
-    has_before_ = true;
-  }
-  std::size_t t = 1;
-  for (; t + 2 < held_.size() || (last && t < held_.size()); ++t) {
-    if (limit_ > 0 && t + 1 < held_.size()) {
-      const double e = std::abs(residual(held_[t - 1], held_[t], held_[t + 1]));
-      const double next =
-          t + 2 < held_.size() ? std::abs(residual(held_[t], held_[t + 1], held_[t + 2])) : 0.0;
-      if (e > limit_ && !(next >= e)) {
-        held_[t] = 0.5 * (held_[t - 1] + held_[t + 1]);
-        ++count_;
-      }
-    }
-    ready_.push_back(held_[t]);
-  }
-  if (t > 1)
-    held_.erase(held_.begin(),
-                held_.begin() + static_cast<std::ptrdiff_t>(std::min(t - 1, held_.size())));
+double SpikeCleaner::residual(std::int64_t t) const {
+  if (t - 1 < wild_end_ || t - 1 < base_ || t + 1 >= end()) return 0;
+  const double e = std::abs(at(t) - 0.5 * (at(t - 1) + at(t + 1)));
+  return std::isfinite(e) ? e : 0;
 }
 
-std::uint64_t clean_spikes(std::span<double> record, double mad_limit) {
-  SpikeCleaner cleaner = SpikeCleaner::with_limit(spike_limit(record, mad_limit));
-  std::size_t written = 0;
-  const auto keep = [&](std::span<const double> cleaned) {
-    std::copy(
-        cleaned.begin(), cleaned.end(), record.begin() + static_cast<std::ptrdiff_t>(written));
-    written += cleaned.size();
-  };
-  constexpr std::size_t kPiece = 8192;
-  for (std::size_t from = 0; from < record.size(); from += kPiece) {
-    keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
+void SpikeCleaner::examine(bool last) {
+  if (!started_) {
+    if (!last && end() < kLongestRun + kReach) return;
+    started_ = true;
+    look_at_start();
   }
-  keep(cleaner.finish());
-  return cleaner.count();
+  while (last ? now_ < end() : now_ + kLongestRun + 2 < end()) {
+    look_at(now_, last);
+    settle(now_);
+  }
+}
+
+// Rows 0 … b are wild when they all lie far from the median of the 32 behind them, and the step to
+// those is wild.
+void SpikeCleaner::look_at_start() {
+  if (!(scale_.step > 0)) return;
+  const double limit = kLimit * scale_.step;
+  const std::int64_t longest = std::min(kLongestRun, end() - kReach);
+  for (std::int64_t count = longest; count >= 1; --count) {
+    if (!(std::abs(at(count) - at(count - 1)) > limit)) continue;
+    std::vector<double> behind(held_.begin() + count, held_.begin() + count + kReach);
+    std::erase_if(behind, [](double value) { return !std::isfinite(value); });
+    if (behind.size() < 8) continue;
+    std::nth_element(behind.begin(),
+                     behind.begin() + static_cast<std::ptrdiff_t>(behind.size() / 2),
+                     behind.end());
+    const double level = behind[behind.size() / 2];
+    bool away = true;
+    for (std::int64_t t = 0; t < count; ++t) away &= !(std::abs(at(t) - level) <= limit);
+    if (!away || !(std::abs(at(count) - level) <= limit)) continue;
+    for (std::int64_t t = 0; t < count; ++t) count_.samples += std::isfinite(at(t));
+    found(0, count, std::abs(at(count) - at(count - 1)) / scale_.step);
+    now_ = count;
+    return;
+  }
+}
+
+void SpikeCleaner::look_at(std::int64_t t, bool last) {
+  ++now_;
+  if (!std::isfinite(at(t))) return;
+  ++count_.samples;
+  if (look_for_run(t, last)) return;
+  look_alone(t);
+  if (wild_end_ > t) return;
+  good_ = at(t);
+  has_good_ = true;
+}
+
+/// Is sample t, and the one behind it, where the good ones were?
+bool SpikeCleaner::back(std::int64_t t) const {
+  const double limit = 0.5 * kLimit * scale_.step;
+  if (!(std::abs(at(t) - good_) <= limit)) return false;
+  return t + 1 >= end() || !(std::abs(at(t + 1) - good_) > limit);
+}
+
+bool SpikeCleaner::look_for_run(std::int64_t t, bool last) {
+  const double limit = kLimit * scale_.step;
+  if (!(limit > 0) || !has_good_ || !(std::abs(at(t) - good_) > limit)) return false;
+  const std::int64_t stop = std::min(t + kLongestRun + 1, end());
+  std::int64_t until = t + 1;
+  while (until < stop && !back(until)) ++until;
+  const bool to_the_end = until == stop && last && stop == end() && until - t <= kLongestRun;
+  if (until == stop && !to_the_end) return false;  // a step, or more than a run
+  double size = std::abs(at(t) - good_);
+  if (!to_the_end) size = std::min(size, std::abs(at(until) - at(until - 1)));
+  size /= scale_.step;
+  if (until == t + 1 && residual(t) > 0 && scale_.residual > 0)
+    size = residual(t) / scale_.residual;
+  if (!(size > kLimit)) return false;
+  for (std::int64_t i = t + 1; i < until; ++i) count_.samples += std::isfinite(at(i));
+  found(t, until, size);
+  now_ = until;
+  return true;
+}
+
+void SpikeCleaner::look_alone(std::int64_t t) {
+  if (!(scale_.residual > 0)) return;
+  const double e = residual(t);
+  if (!(e > kShoulder * scale_.residual) || residual(t - 1) >= e || residual(t + 1) > e) return;
+  // Beside a step or a run one neighbour is as near as the other is far.
+  const double up = at(t) - at(t - 1), down = at(t) - at(t + 1);
+  if (!(up * down > 0) || std::min(std::abs(up), std::abs(down)) < 0.5 * e) return;
+  const double size = e / scale_.residual;
+  if (size > kLimit)
+    found(t, t + 1, size);
+  else
+    events_.push_back({t, t + 1, size, false});
+}
+
+void SpikeCleaner::found(std::int64_t first, std::int64_t end, double size) {
+  events_.push_back({first, end, size, false});
+  wild_end_ = end;
+}
+
+/// Decides on the events whose surroundings are known when `now` samples have been examined.
+void SpikeCleaner::settle(std::int64_t now) {
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    Event& event = events_[i];
+    if (event.settled) continue;
+    if (event.end + kReach > now) break;
+    event.settled = true;
+    std::int64_t others = 0;
+    for (const Event& other : events_)
+      if (&other != &event && other.end > event.first - kReach && other.first < event.end + kReach)
+        others += other.end - other.first;
+    const bool beyond = event.size > kLimit;
+    if (others > kMostOthers) {
+      count_.crowded += beyond;
+      continue;
+    }
+    (beyond ? count_.spikes : count_.shoulder) += 1;
+    count_.log_size += std::log(event.size / kShoulder);
+    if (!beyond) continue;
+    for (std::int64_t t = event.first; t < event.end; ++t) {
+      double& sample = held_[static_cast<std::size_t>(t - base_)];
+      count_.left_out += std::isfinite(sample);
+      sample = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  while (!events_.empty() && events_.front().settled && events_.front().end + 2 * kReach < now)
+    events_.pop_front();
+}
+
+void SpikeCleaner::release(bool last) {
+  std::int64_t until = last ? end() : now_;
+  for (const Event& event : events_)
+    if (!event.settled) until = std::min(until, event.first);
+  for (; given_ < until; ++given_) ready_.push_back(at(given_));
+  // Two samples before the next one to be examined are its neighbours.
+  const std::int64_t keep = std::max(base_, std::min(given_, now_ - 2));
+  held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(keep - base_));
+  base_ = keep;
 }
 
 }  // namespace libchar

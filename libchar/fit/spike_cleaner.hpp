@@ -1,46 +1,104 @@
 #pragma once
-// Isolated outliers of a stream of samples, replaced and counted.
+// Wild samples that stand alone: found, left out and counted, in one pass and constant memory. What
+// is a spike and what is the tail of the noise is decided at the end, from all that was found.
 
 #include <cstdint>
+#include <deque>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace libchar {
 
-/// Takes samples in pieces of any size and gives them back cleaned, two samples late, the same
-/// whatever the pieces. The limit comes from a pilot (the first samples are held back until it is
-/// full), or is given.
+/// Robust standard deviations of a record's three-sample residuals and of its differences, in the
+/// channel's unit; 0: there is none, and nothing is looked for.
+struct SpikeScale {
+  double residual = 0;  ///< of y - (y₋ + y₊)/2
+  double step = 0;      ///< of y₊ - y
+};
+
+/// Takes a record in pieces of any size and learns the scale from at most 2^14 places spread evenly
+/// over it. Steps of zero (a coarse grid, values held) do not count.
+class SpikeScan {
+ public:
+  void push(std::span<const double> samples);
+  SpikeScale scale() const;
+
+ private:
+  void look(double before, double at, double after);
+  std::uint64_t next_ = 0, stride_ = 1;  ///< place that comes next, and the places' distance
+  double two_[2] = {0, 0};               ///< the last two samples
+  double largest_ = 0;                   ///< |sample| at the places
+  std::uint64_t samples_ = 0;
+  std::vector<double> residual_, step_;
+};
+
+/// What was found in a record.
+struct SpikeCount {
+  std::uint64_t samples = 0;   ///< not missing
+  std::uint64_t left_out = 0;  ///< samples of spikes
+  std::uint64_t spikes = 0;    ///< beyond six standard deviations and alone
+  std::uint64_t shoulder = 0;  ///< between five and six
+  std::uint64_t crowded = 0;   ///< beyond six, but among too many others: a loud stretch
+  double log_size = 0;         ///< sum of ln(size / 5 sd) over `spikes` and `shoulder`
+};
+
+enum class SpikeVerdict {
+  none,         ///< nothing stands out alone
+  spikes,       ///< they may be left out
+  heavy_tails,  ///< the ends of the noise's own distribution
+  too_many,     ///< more than 1 % of the samples
+};
+
+/// Are they spikes? Noise with tails as heavy as Student's t of three degrees of freedom passes for
+/// spikes in at most 3 % of records, of lighter tails in less.
+SpikeVerdict judge_spikes(const SpikeCount& count);
+
+/// For the verdicts that leave something in: why. Else "".
+std::string spike_sentence(const SpikeCount& count);
+
+/// Takes samples in pieces of any size and gives them back with the spikes missing (NaN), some
+/// fifty samples late, the same whatever the pieces.
 class SpikeCleaner {
  public:
-  explicit SpikeCleaner(double mad_limit = 6, std::size_t pilot = 16384);
-  /// A cleaner with a known limit on |y - (y₋+y₊)/2|, in the channel's unit; 0 cleans nothing.
-  static SpikeCleaner with_limit(double limit);
+  explicit SpikeCleaner(const SpikeScale& scale) : scale_(scale) {}
 
   /// Cleaned samples that became certain; valid until the next call.
   std::span<const double> push(std::span<const double> samples);
-  /// The last ones. The cleaner is empty afterwards and keeps its limit and count.
+  /// The last ones. The cleaner is done afterwards.
   std::span<const double> finish();
 
-  std::uint64_t count() const { return count_; }
-  double limit() const { return limit_; }
+  const SpikeCount& count() const { return count_; }
 
  private:
+  struct Event {
+    std::int64_t first = 0, end = 0;
+    double size = 0;  ///< in standard deviations
+    bool settled = false;
+  };
+  double at(std::int64_t t) const { return held_[static_cast<std::size_t>(t - base_)]; }
+  std::int64_t end() const { return base_ + static_cast<std::int64_t>(held_.size()); }
+  double residual(std::int64_t t) const;
+  bool back(std::int64_t t) const;
+  void examine(bool last);
+  void look_at_start();
+  void look_at(std::int64_t t, bool last);
+  bool look_for_run(std::int64_t t, bool last);
+  void look_alone(std::int64_t t);
+  void found(std::int64_t first, std::int64_t end, double size);
+  void settle(std::int64_t now);
   void release(bool last);
-  double mad_limit_;
-  std::size_t pilot_;
-  double limit_ = -1;  ///< < 0: the pilot is still being filled
-  std::uint64_t count_ = 0;
-  /// held_[0] is the neighbour before the next sample, given out already
-  bool has_before_ = false;
+
+  SpikeScale scale_;
+  SpikeCount count_;
   std::vector<double> held_, ready_;
+  std::deque<Event> events_;
+  std::int64_t base_ = 0;      ///< position of held_[0] in the record
+  std::int64_t given_ = 0;     ///< released so far
+  std::int64_t now_ = 0;       ///< examined so far
+  std::int64_t wild_end_ = 0;  ///< end of the last event
+  bool started_ = false, has_good_ = false;
+  double good_ = 0;  ///< the last sample that belongs to no event
 };
-
-/// The limit for a record: `mad_limit` robust standard deviations of the three-sample residual,
-/// from at most 65536 places spread over the record; 0 when more than half of the residuals are
-/// equal (a coarse grid), where no limit makes sense.
-double spike_limit(std::span<const double> record, double mad_limit);
-
-/// Spikes: 3-sample test y - (y₋+y₊)/2 beyond 6 MAD, local maximum, replaced by the mean of its neighbours. Returns the count.
-std::uint64_t clean_spikes(std::span<double> record, double mad_limit = 6);
 
 }  // namespace libchar

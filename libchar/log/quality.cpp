@@ -186,6 +186,10 @@ struct DifferenceMoments {
     s3 += block.s3;
     s4 += block.s4;
   }
+  double standard_deviation() const {
+    const double v = n > 1 ? (s2 - s1 * s1 / n) / (n - 1) : 0;
+    return v > 0 ? std::sqrt(v) : 0;
+  }
   double kurtosis() const {
     if (n < 4 || !(s2 > 0)) return 3;
     const double m = s1 / n, v = s2 / n - m * m;
@@ -195,6 +199,81 @@ struct DifferenceMoments {
     if (!(v > 1e-9 * (s2 / n)) || !std::isfinite(fourth) || !std::isnormal(v * v)) return 3;
     return fourth / (v * v);
   }
+};
+
+// Does the channel count? A clock, an index, a packet number: it moves one way with nearly every
+// sample, by one step, or falls back at once and further than it ever rises (a modulo counter).
+// Noise steps back every second time and is ruled out in the first block.
+class CounterWatch {
+ public:
+  void block(const double* x, const double* before, const bool* starts, std::size_t n) {
+    if (!possible_) return;
+    if (steps_ == 0) learn(x, before, starts, n);
+    for (std::size_t i = 0; i < n; ++i)
+      if (starts == nullptr || !starts[i]) step(x[i] - before[i], x[i]);
+    possible_ = static_cast<double>(std::min(up_.count, down_.count)) <= 0.25 * steps() ||
+                static_cast<double>(same_) >= kMost * steps();
+  }
+
+  std::string sentence() const {
+    if (!possible_ || steps_ < kLeastSteps) return "";
+    if (usual_ != 0 && static_cast<double>(same_) >= kMost * steps())
+      return fmt::format("{} by {:.4g} with {} sample: a counter or a clock, not a measurement",
+                         usual_ > 0 ? "rises" : "falls",
+                         std::fabs(usual_),
+                         same_ == steps_ ? "every" : "nearly every");
+    const bool rises = up_.count > down_.count;
+    const Direction &there = rises ? up_ : down_, &back = rises ? down_ : up_;
+    if (static_cast<double>(there.count) < 0.5 * steps()) return "";
+    if (back.count == 0)
+      return fmt::format("never {}: a clock, a counter or a drift, not noise",
+                         rises ? "falls" : "rises");
+    const bool saw =
+        back.least > 2 * there.largest && static_cast<double>(back.count) <= 0.125 * steps();
+    return saw ? fmt::format(
+                     "{} step by step and falls back {} times: a sawtooth, such as a counter "
+                     "that runs over, not noise",
+                     rises ? "rises" : "sinks",
+                     back.count)
+               : "";
+  }
+
+ private:
+  struct Direction {
+    std::uint64_t count = 0;
+    double least = __builtin_inf(), largest = 0;
+    void add(double size) {
+      ++count;
+      least = std::min(least, size);
+      largest = std::max(largest, size);
+    }
+  };
+  static constexpr std::uint64_t kLeastSteps = 63;
+  static constexpr double kMost = 0.9;
+
+  double steps() const { return static_cast<double>(steps_); }
+
+  // The usual step is the median of the first block.
+  void learn(const double* x, const double* before, const bool* starts, std::size_t n) {
+    std::vector<double> d;
+    for (std::size_t i = 0; i < n; ++i)
+      if (starts == nullptr || !starts[i]) d.push_back(x[i] - before[i]);
+    if (d.empty()) return;
+    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
+    std::nth_element(d.begin(), middle, d.end());
+    usual_ = *middle;
+  }
+  void step(double d, double value) {
+    ++steps_;
+    if (d > 0) up_.add(d);
+    if (d < 0) down_.add(-d);
+    same_ += std::fabs(d - usual_) <= 1e-6 * std::fabs(usual_) + 0x1p-51 * std::fabs(value);
+  }
+
+  bool possible_ = true;
+  double usual_ = 0;
+  std::uint64_t steps_ = 0, same_ = 0;
+  Direction up_, down_;
 };
 
 // The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing
@@ -257,6 +336,7 @@ struct QualityMeter::State {
   MeanAndSpread values;
   DifferenceMoments differences;
   DistinctValues distinct;
+  CounterWatch counter;
   Extreme top{1}, bottom{-1};
   std::uint64_t missing = 0, run = 0, longest_run = 0;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
@@ -286,6 +366,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
       if (!std::isnan(sums.sum)) {
         runs(x, x - 1, n, sums.repeats);
+        counter.block(x, x - 1, nullptr, n);
         process(x, sums, n, 0);
         x += n;
         continue;
@@ -339,6 +420,7 @@ void QualityMeter::State::process_held() {
   }
   const BlockSums sums = sums_of(x, before, n, x[0]);
   runs(x, held, n, sums.repeats);
+  counter.block(x, held, starts, n);
   process(x, sums, n, breaks);
   used = 0;
   any_start = false;
@@ -397,6 +479,7 @@ void suggest(ChannelQuality& q) {
     s.emplace_back("no value at all: check that the channel is switched on");
     return;
   }
+  if (!q.counter.empty()) s.push_back(q.counter);
   if (q.samples >= 16 && q.distinct_values == 1)
     s.emplace_back("constant: nothing to characterize");
   if (q.samples >= 16 && q.distinct_values > 1 && q.distinct_values <= 3)
@@ -452,6 +535,8 @@ ChannelQuality QualityMeter::finish() const {
   q.longest_stuck = state.longest_run;
   if (state.top.value > -state.bottom.value) q.saturated = state.top.in_runs + state.bottom.in_runs;
   q.difference_kurtosis = state.differences.kurtosis();
+  q.difference_sd = state.differences.standard_deviation();
+  q.counter = state.counter.sentence();
   q.float32 = q.samples > 0 && state.float32;
   const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
   if (std::isfinite(largest))

@@ -23,8 +23,12 @@ struct ChannelQuality {
       0;  ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
   std::uint64_t longest_stuck = 0;  ///< longest run of one value
   double difference_kurtosis = 3;   ///< kurtosis of first differences: 3 Gaussian, above = spikes
-  bool float32 = false;             ///< every value is exactly representable in 32 bits
-  double float32_step = 0;          ///< spacing of 32-bit floats at the largest magnitude
+  double difference_sd = 0;         ///< standard deviation of first differences
+  /// why the channel is a clock or a counter and no measurement ("rises by 1 with every sample"); ""
+  /// when it is none
+  std::string counter;
+  bool float32 = false;     ///< every value is exactly representable in 32 bits
+  double float32_step = 0;  ///< spacing of 32-bit floats at the largest magnitude
   std::vector<std::string>
       suggestions;  ///< in sentences ("2 distinct values: quantization-limited, record with more gain")
 };

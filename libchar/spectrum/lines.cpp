@@ -9,6 +9,11 @@
 // and a bin is part of a line when its ratio is above the F quantile of alarm / (number of bins
 // tested). The amplitude is that of the whole main lobe: A^2 / 2 = sum (P_k - floor) df, true at
 // any frequency between bins.
+//
+// Rounding makes lines of its own: a drift of s LSB a second is followed by a sawtooth of s Hz. With
+// noise of standard deviation sigma its k-th harmonic has the amplitude (Widrow & Kollar 2008, 5.3)
+//   LSB/(pi k) exp(-2 (pi k sigma/LSB)^2),
+// 0.32 LSB without noise, 0.002 LSB at sigma = LSB/2. A line that is no larger is not reported.
 
 #include "libchar/spectrum/lines.hpp"
 
@@ -17,6 +22,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <span>
 
 #include "libchar/core/chi_square.hpp"
@@ -286,8 +292,23 @@ void add_band(std::vector<Found>& lines, const Found& band) {
 
 }  // namespace
 
-std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm) {
+Quantization quantization_of(double step, double difference_sd) {
+  const double variance = difference_sd * difference_sd / 2 - step * step / 12;
+  return {step, std::sqrt(std::max(variance, 0.0))};
+}
+
+double largest_quantization_line(const Quantization& quantization) {
+  if (!(quantization.step > 0)) return 0;
+  const double blur = std::numbers::pi * quantization.noise_sd / quantization.step;
+  return quantization.step / std::numbers::pi * std::exp(-2 * blur * blur);
+}
+
+std::vector<SpectralLine> find_lines(const Spectrum& spectrum,
+                                     double alarm,
+                                     const Quantization& quantization) {
   if (spectrum.segment == 0) return {};
+  // Harmonics that fold onto each other make a fast drift's line up to 1.21 times as large.
+  constexpr double kMargin = 1.3;
   constexpr std::size_t kWidths[] = {4, 16, 64, 256};
   const double share = alarm / (1 + std::size(kWidths));
   const Density density = density_of(spectrum);
@@ -295,7 +316,9 @@ std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm) {
   for (const std::size_t width : kWidths)
     for (const Found& band : search(averaged(density, width), 1, share)) add_band(found, band);
   std::vector<SpectralLine> lines;
-  for (const Found& f : found) lines.push_back(f.line);
+  const double rounding = kMargin * largest_quantization_line(quantization);
+  for (const Found& f : found)
+    if (f.line.amplitude > rounding) lines.push_back(f.line);
   std::sort(lines.begin(), lines.end(), [](const SpectralLine& a, const SpectralLine& b) {
     return a.frequency_hz < b.frequency_hz;
   });

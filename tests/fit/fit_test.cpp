@@ -9,7 +9,6 @@
 #include "libchar/fit/detail/bounds.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/fit_json.hpp"
-#include "libchar/fit/spike_cleaner.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -102,34 +101,6 @@ TEST_CASE("a long gap starts a new segment") {
   CHECK(fit[Term::white].value.value() == Approx(1).epsilon(0.03));
   CHECK(fit[Term::walk].status == Status::not_detected);
   CHECK(fit.samples == 15000);
-}
-
-TEST_CASE(
-    "spikes are replaced, counted, the same for pieces of any size; clean noise is untouched") {
-  test::Gaussian gauss(6);
-  std::vector<double> y(50000);
-  for (double& value : y) value = gauss();
-  const std::vector<double> clean = y;
-  CHECK(clean_spikes(y) == 0);
-  CHECK(y == clean);
-  std::size_t put = 0;
-  for (std::size_t t = 50; t + 1 < y.size(); t += 997, ++put) y[t] += 20;
-  std::vector<double> once = y;
-  CHECK(clean_spikes(once) == put);
-  SpikeCleaner cleaner = SpikeCleaner::with_limit(spike_limit(y, 6));
-  std::vector<double> pieces;
-  const auto keep = [&](std::span<const double> part) {
-    pieces.insert(pieces.end(), part.begin(), part.end());
-  };
-  for (std::size_t from = 0, n = 1; from < y.size(); from += n, n = n * 5 % 911 + 1)
-    keep(cleaner.push(std::span<const double>(y).subspan(from, std::min(n, y.size() - from))));
-  keep(cleaner.finish());
-  CHECK(pieces == once);
-  SpikeCleaner streaming;  // limit from the pilot
-  std::size_t given = streaming.push(y).size();
-  given += streaming.finish().size();
-  CHECK(given == y.size());
-  CHECK(streaming.count() == put);
 }
 
 TEST_CASE("a first-order low-pass is found and its corner given") {

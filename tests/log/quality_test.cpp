@@ -133,3 +133,36 @@ TEST_CASE("the result does not depend on how the samples are pushed") {
     CHECK(q.suggestions == whole.suggestions);
   }
 }
+
+TEST_CASE("clocks, counters and sawteeth are named, noise and slow signals are not") {
+  const std::size_t n = 10000;
+  const auto counter_of = [&](auto&& value) {
+    std::vector<double> y(n);
+    for (std::size_t t = 0; t < n; ++t) y[t] = value(static_cast<double>(t));
+    return meter(y).counter;
+  };
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise;
+  CHECK(counter_of([](double t) { return t; }) ==
+        "rises by 1 with every sample: a counter or a clock, not a measurement");
+  CHECK(counter_of([](double t) { return 1.7e9 - 0.01 * t; }).find("falls by 0.01") == 0);
+  CHECK(counter_of([](double t) { return std::fmod(t, 256); }).find("rises by 1 with nearly") == 0);
+  CHECK(counter_of([&](double t) { return t + std::floor(t / 300) * 5; }).find("nearly") !=
+        std::string::npos);
+  CHECK(counter_of([&](double t) {
+          return 1e6 * (t + 0.05 * noise(random));
+        }).find("never falls") == 0);
+  CHECK(counter_of([&](double t) {
+          return std::fmod(t + 0.02 * noise(random), 100);
+        }).find("falls back") != std::string::npos);
+  double walk = 0;
+  CHECK(counter_of([&](double) { return noise(random); }).empty());
+  CHECK(counter_of([&](double) { return walk += noise(random); }).empty());
+  CHECK(counter_of([&](double t) { return 0.1 * t + noise(random); }).empty());
+  CHECK(counter_of([&](double t) {
+          return std::round(26 + 1e-3 * t + 0.1 * noise(random));
+        }).empty());
+  CHECK(counter_of([](double t) { return std::sin(0.01 * t); }).empty());
+  CHECK(counter_of([](double) { return 3.0; }).empty());
+  CHECK(counter_of([](double t) { return t < 5000 ? 0.0 : 1.0; }).empty());
+}

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -134,6 +135,46 @@ TEST_CASE("the lines of a real unit: the gyroscope at 19.9 Hz, the accelerometer
     seen = seen ||
            has(find_lines(welch(npy_column(path, axis, 6), 100, segments_of(32768))), 0.5, 0.62);
   CHECK(seen);
+}
+
+// 30 records a drift and noise: with lines in 1 % of them five or more would be in one of 2,000.
+TEST_CASE("rounding a slow drift makes no lines, and hides none that are larger than its own") {
+  constexpr std::size_t n = 1U << 15U;
+  const auto at = [](std::size_t t) { return static_cast<double>(t) / static_cast<double>(n); };
+  const std::vector<std::pair<const char*, std::function<double(double)>>> drifts = {
+      {"ramp", [](double x) { return 400 * x; }},
+      {"fast ramp", [](double x) { return 5000.3 * x; }},
+      {"parabola", [](double x) { return 300 * x * x; }},
+      {"warm-up", [](double x) { return 200 * std::exp(-3 * x); }},
+      {"slow sine", [](double x) { return 40 * std::sin(9 * x); }}};
+  const auto rounded_lines = [&](const std::vector<double>& y) {
+    std::vector<double> rounded = y;
+    double square = 0;
+    for (double& value : rounded) value = std::round(value);
+    const double mean = (rounded.back() - rounded.front()) / static_cast<double>(n - 1);
+    for (std::size_t t = 1; t < n; ++t) square += std::pow(rounded[t] - rounded[t - 1] - mean, 2);
+    return find_lines(welch(rounded, 1), 1e-3, quantization_of(1, std::sqrt(square / n)));
+  };
+  for (const auto& [name, drift] : drifts) {
+    for (const double sd : {0.0, 0.05, 0.15, 0.3, 0.6}) {
+      int with_lines = 0, hidden = 0;
+      for (unsigned seed = 0; seed < 30; ++seed) {
+        std::vector<double> y = coloured(n, 0, 7000 + seed);
+        for (std::size_t t = 0; t < n; ++t) y[t] = sd * y[t] + (1 + 0.01 * seed) * drift(at(t));
+        with_lines += !rounded_lines(y).empty();
+        for (std::size_t t = 0; t < n; ++t) y[t] += std::sin(1.3 * static_cast<double>(t));
+        hidden += rounded_lines(y).empty();
+      }
+      CAPTURE(name, sd);
+      CHECK(with_lines <= 4);
+      CHECK(hidden == 0);
+    }
+  }
+  // With noise of 0.6 LSB a line of a tenth of the step is no work of the rounding.
+  std::vector<double> y = coloured(n, 0, 5);
+  for (std::size_t t = 0; t < n; ++t)
+    y[t] = 0.6 * y[t] + 400 * at(t) + 0.1 * std::sin(1.3 * static_cast<double>(t));
+  CHECK(rounded_lines(y).size() == 1);
 }
 
 TEST_CASE("constant, empty and tiny spectra have no lines") {

@@ -31,8 +31,8 @@ WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
   return options;
 }
 
-void add_spectrum(ChannelResult& result, const Spectrum& spectrum) {
-  result.lines = find_lines(spectrum);
+void add_spectrum(ChannelResult& result, const Spectrum& spectrum, const Quantization& grid) {
+  result.lines = find_lines(spectrum, 1e-3, grid);
   result.spectrum = log_binned(spectrum, kPlottedBins);
 }
 
@@ -52,32 +52,24 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
   if (!second) quality_.push(samples);
-  if (options_->data == SampleKind::rate) {
-    stream(samples);
-  } else {
+  if (options_->data == SampleKind::frequency) {
     as_rate(samples);
-    stream(differenced_);
+    stream(fractional_);
+  } else {
+    stream(samples);
   }
 }
 
-// Phase becomes rate · dt (the division by dt waits for the final rate); frequency becomes fractional frequency.
+// Frequency becomes fractional frequency. Phase is differenced when the record is whole.
 void ChannelStage::as_rate(std::span<const double> samples) {
-  differenced_.clear();
-  if (options_->data == SampleKind::frequency) {
-    const double nominal = options_->nominal_frequency;
-    for (const double f : samples)
-      differenced_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
-    return;
-  }
-  for (const double x : samples) {
-    if (previous_phase_) differenced_.push_back(x - *previous_phase_);
-    previous_phase_ = x;
-  }
+  fractional_.clear();
+  const double nominal = options_->nominal_frequency;
+  for (const double f : samples) fractional_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
 }
 
 void ChannelStage::stream(std::span<const double> samples) {
   if (streams_ && streams_->cleaner) {
-    streams_->bins.push(streams_->cleaner->push(samples));
+    push_cleaned(streams_->cleaner->push(samples));
     return;
   }
   samples_ += samples.size();
@@ -86,6 +78,7 @@ void ChannelStage::stream(std::span<const double> samples) {
     return;
   }
   if (options_->wanted.allan) streams_->allan.push(samples);
+  if (options_->fit.remedies && wants_fit()) streams_->spikes.push(samples);
   if (streams_->blocks) return streams_->spectrum->push(samples, *streams_->blocks);
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
   if (wants_fit()) streams_->bins.push(samples);
@@ -131,9 +124,13 @@ bool ChannelStage::needs_second_pass() const {
 }
 
 void ChannelStage::begin_second_pass() {
-  streams_->bins = PowerBinner(kStreamedBlock);
-  streams_->blocks.reset();
-  streams_->cleaner.emplace();
+  streams_->cleaned.emplace(kStreamedBlock);
+  streams_->cleaner.emplace(streams_->spikes.scale());
+}
+
+void ChannelStage::push_cleaned(std::span<const double> samples) {
+  streams_->cleaned->push(samples);
+  streams_->cleaned_allan.push(samples);
 }
 
 bool ChannelStage::wants_fit() const {
@@ -157,27 +154,72 @@ AllanCurve ChannelStage::allan_of_kept(double rate_hz) const {
   return pyramid.finish(1 / rate_hz);
 }
 
+// Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
+// cleaned, then differenced.
+void ChannelStage::difference_kept(double rate_hz) {
+  const auto difference = [&](std::vector<double>& phase) {
+    for (std::size_t t = 1; t < phase.size(); ++t)
+      phase[t - 1] = (phase[t] - phase[t - 1]) * rate_hz;
+    if (!phase.empty()) phase.pop_back();
+  };
+  if (options_->fit.remedies && wants_fit()) despiked_ = without_spikes(kept_);
+  difference(despiked_.samples);
+  difference(kept_);
+}
+
 NoiseFit ChannelStage::fit_of_kept(const AllanCurve& allan, double rate_hz) const {
   const bool opinion = wants_octaves() && !allan.points.empty();
-  return fit_record(kept_, rate_hz, opinion ? &allan : nullptr, options_->fit, &workspace_->fit);
+  const bool cleaned = !despiked_.samples.empty();
+  AllanCurve own;
+  if (cleaned && opinion) {
+    AllanPyramid pyramid;
+    pyramid.push(despiked_.samples);
+    own = pyramid.finish(1 / rate_hz);
+  }
+  NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
+                            rate_hz,
+                            opinion ? cleaned ? &own : &allan : nullptr,
+                            options_->fit,
+                            &workspace_->fit);
+  add_spike_answer(despiked_.answer, fit);
+  return fit;
 }
 
 NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
-  const ChannelQuality quality = quality_.finish();
-  PowerBinner& bins = streams_->bins;
-  if (streams_->cleaner) bins.push(streams_->cleaner->finish());
-  NoiseFit fit = fit_binned(bins,
+  SpikeAnswer answer;
+  AllanCurve cleaned_allan;
+  if (streams_->cleaner) {
+    push_cleaned(streams_->cleaner->finish());
+    answer = spike_answer(
+        found_.difference_kurtosis, spike_alarm(found_.samples), streams_->cleaner->count());
+    cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
+  }
+  const bool cleaned = answer.remedy.has_value();
+  NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
-                            quality.samples,
-                            allan.points.empty() ? nullptr : &allan,
+                            found_.samples,
+                            allan.points.empty() ? nullptr
+                            : cleaned            ? &cleaned_allan
+                                                 : &allan,
                             options_->fit,
                             &workspace_->fit);
-  if (streams_->cleaner && streams_->cleaner->count() > 0)
-    fit.remedies.insert(
-        fit.remedies.begin(),
-        spikes_remedy(
-            quality.difference_kurtosis, spike_alarm(quality.samples), streams_->cleaner->count()));
+  add_spike_answer(answer, fit);
   return fit;
+}
+
+// Of the samples as they are in the log; those of other kinds are differences or ratios of them.
+Quantization ChannelStage::quantization() const {
+  if (options_->data != SampleKind::rate) return {};
+  return quantization_of(found_.resolution.value_or(0), found_.difference_sd);
+}
+
+// To be fitted, and no clock or counter: the result says which.
+bool ChannelStage::is_noise(ChannelResult& result) const {
+  if (!wants_fit()) return false;
+  if (options_->data == SampleKind::phase) return true;  // the phase of a clock does rise
+  if (found_.counter.empty()) return true;
+  result.problems.push_back("no noise fit: the channel " + found_.counter);
+  return false;
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
@@ -185,9 +227,10 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
     attempt(result, "Allan deviation", [&] { result.allan = allan_of_kept(rate_hz); });
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
-      add_spectrum(result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch));
+      add_spectrum(
+          result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
-  if (wants_fit())
+  if (is_noise(result))
     attempt(result, "noise fit", [&] { result.fit = fit_of_kept(result.allan, rate_hz); });
 }
 
@@ -196,8 +239,10 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
     attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
   if (streams_->blocks) streams_->spectrum->end(*streams_->blocks);
   if (options_->wanted.spectrum)
-    attempt(result, "spectrum", [&] { add_spectrum(result, streams_->spectrum->finish(rate_hz)); });
-  if (wants_fit())
+    attempt(result, "spectrum", [&] {
+      add_spectrum(result, streams_->spectrum->finish(rate_hz), quantization());
+    });
+  if (is_noise(result))
     attempt(result, "noise fit", [&] { result.fit = fit_of_streams(result.allan, rate_hz); });
 }
 
@@ -212,18 +257,19 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   ChannelResult result;
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
-  if (options_->wanted.quality) result.quality = quality_.finish();
+  found_ = quality_.finish();
+  if (options_->wanted.quality) result.quality = found_;
   if (rate_hz <= 0) {
     result.problems.push_back(
         "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
         "`rate_hz`)");
     return result;
   }
-  if (options_->data == SampleKind::phase)
-    for (double& y : kept_) y *= rate_hz;
+  if (options_->data == SampleKind::phase) difference_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
   add_intervals(result.allan, result.fit ? result.fit->theta : white_alone(result.allan));
   kept_ = {};
+  despiked_ = {};
   return result;
 }
 

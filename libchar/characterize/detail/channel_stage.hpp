@@ -8,6 +8,7 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 
@@ -24,7 +25,11 @@ struct ChannelStreams {
   // Where the spectrum goes by halves they are the blocks of `bins` too, and it transforms them for both: then every sample gets
   // to `bins` from `spectrum`. Points to `bins`.
   std::optional<SharedBlocks> blocks;
-  std::optional<SpikeCleaner> cleaner;  // in the second pass
+  SpikeScan spikes;
+  // In the second pass: the samples without spikes, their bins and their curve.
+  std::optional<SpikeCleaner> cleaner;
+  std::optional<PowerBinner> cleaned;
+  AllanPyramid cleaned_allan;
 };
 
 /// What the channels of one log share, from any number of threads.
@@ -59,22 +64,27 @@ class ChannelStage {
   std::string unit_of_rate(const std::string& unit) const;
   void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
+  void push_cleaned(std::span<const double> samples);
   bool wants_fit() const;
   bool wants_octaves() const;
   AllanCurve allan_of_kept(double rate_hz) const;
+  void difference_kept(double rate_hz);
   NoiseFit fit_of_kept(const AllanCurve& allan, double rate_hz) const;
   NoiseFit fit_of_streams(const AllanCurve& allan, double rate_hz);
+  Quantization quantization() const;
+  bool is_noise(ChannelResult& result) const;
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 
   const CharacterizeOptions* options_;
   CharacterizeWorkspace* workspace_;
   QualityMeter quality_;
+  ChannelQuality found_;  // by quality_, at the end
   bool keeping_ = true;
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
-  std::vector<double> differenced_;          // scratch of as_rate
-  std::optional<double> previous_phase_;
+  std::vector<double> fractional_;           // scratch of as_rate
+  DespikedRecord despiked_;  // rate of the phase without its spikes, when it has some
   std::uint64_t samples_ = 0;
 };
 

@@ -1,0 +1,108 @@
+// Wild samples on their way through a characterization: kept and streamed, of rates and of phases;
+// channels that are no measurement.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "libchar/characterize/characterization.hpp"
+
+using namespace libchar;
+
+namespace {
+
+Recording recording_of(std::vector<std::vector<double>> columns, double rate_hz) {
+  Recording recording;
+  recording.info.time.rate_hz = rate_hz;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    recording.info.channels.push_back({"c" + std::to_string(c), "", false});
+  recording.samples = std::move(columns);
+  return recording;
+}
+
+std::vector<double> white(std::size_t n, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> y(n);
+  for (double& value : y) value = normal(generator);
+  return y;
+}
+
+const Remedy* spikes_of(const ChannelResult& channel) {
+  for (const Remedy& remedy : channel.fit->remedies)
+    if (remedy.kind == "spikes") return &remedy;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("spikes of a streamed record are those of the same record kept") {
+  std::vector<double> y = white(300000, 2);
+  for (double& value : y) value += 100;
+  for (std::size_t t = 77; t < y.size(); t += 501) y[t] += t % 2 == 0 ? 30 : -30;
+  for (std::size_t t = 0; t < 8; ++t) y[t] = 0;
+  const Recording recording = recording_of({y}, 100);
+  CharacterizeOptions kept, streamed;
+  kept.spectrum.segment = streamed.spectrum.segment = 8192;
+  streamed.memory_bytes = 1U << 18U;
+  const ChannelResult whole = characterize(recording, kept).channels[0],
+                      pieces = characterize(recording, streamed).channels[0];
+  REQUIRE(spikes_of(whole) != nullptr);
+  REQUIRE(spikes_of(pieces) != nullptr);
+  CHECK(spikes_of(whole)->count == 599 + 8);
+  CHECK(spikes_of(pieces)->count == spikes_of(whole)->count);
+  CHECK((*whole.fit)[Term::white].value.value() == Approx(0.1).epsilon(0.005));
+  CHECK((*pieces.fit)[Term::white].value.value() == Approx(0.1).epsilon(0.005));
+}
+
+TEST_CASE("heavy tails of a streamed record are left as they are") {
+  std::vector<double> y = white(300000, 3);
+  std::mt19937_64 generator(4);
+  std::chi_squared_distribution<double> square(5);
+  for (double& value : y) value /= std::sqrt(square(generator) / 5);
+  const Recording recording = recording_of({y}, 100);
+  CharacterizeOptions with, without;
+  with.spectrum.segment = without.spectrum.segment = 8192;
+  with.memory_bytes = without.memory_bytes = 1U << 18U;
+  without.fit.remedies = false;
+  const ChannelResult a = characterize(recording, with).channels[0],
+                      b = characterize(recording, without).channels[0];
+  CHECK(spikes_of(a) == nullptr);
+  REQUIRE(!a.fit->sentences.empty());
+  CHECK(a.fit->sentences[0].find("not taken for spikes") != std::string::npos);
+  CHECK((*a.fit)[Term::white].value == (*b.fit)[Term::white].value);
+}
+
+TEST_CASE("a wild reading of a phase is taken out before the phase is differenced") {
+  const std::vector<double> frequency = white(100000, 5);
+  std::vector<double> phase(1, 3);
+  for (const double f : frequency) phase.push_back(phase.back() + f);
+  for (const std::size_t wild : {std::size_t{0}, std::size_t{40000}, phase.size() - 1}) {
+    std::vector<double> x = phase;
+    x[wild] += 5e4;
+    CharacterizeOptions options;
+    options.data = SampleKind::phase;
+    const ChannelResult result = characterize(recording_of({x}, 1), options).channels[0];
+    INFO(wild);
+    REQUIRE(result.fit);
+    CHECK((*result.fit)[Term::white].value.value() == Approx(1).epsilon(0.007));
+    REQUIRE(spikes_of(result) != nullptr);
+    CHECK(spikes_of(result)->count == 1);
+  }
+}
+
+TEST_CASE("a counter gets curves and no fit, and the reason is said") {
+  std::vector<double> index(5000), modulo(5000);
+  for (std::size_t t = 0; t < index.size(); ++t) {
+    index[t] = static_cast<double>(t);
+    modulo[t] = static_cast<double>(t % 256);
+  }
+  const Characterization result =
+      characterize(recording_of({index, modulo, white(5000, 1)}, 100), {});
+  for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
+    CHECK_FALSE(result.channels[c].fit);
+    REQUIRE(result.channels[c].problems.size() == 1);
+    CHECK(result.channels[c].problems[0].find("no noise fit: the channel rises by 1 with") == 0);
+    CHECK(!result.channels[c].allan.points.empty());
+  }
+  CHECK(result.channels[2].fit);
+}
