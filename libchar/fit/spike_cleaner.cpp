@@ -10,7 +10,8 @@
 // beyond it. Under P(size > x) ~ (x/5 s)^-a the logarithms ln(size/5 s) are exponential with mean
 // 1/a (Hill 1975), so that 2.5 * their sum exceeds the 97 % quantile of a gamma distribution in at
 // most 3 % of records with a >= 2.5; and at least a third lies between 5 s and 6 s (0.42 for a = 3,
-// the t distribution of three degrees of freedom). Spikes are what contradicts one of the two.
+// the t distribution of three degrees of freedom). Spikes are what contradicts one of the two. Where more jumps stay than come back the signal
+// itself jumps (telegraph noise), and short stays are no runs of wild rows.
 #include "libchar/fit/spike_cleaner.hpp"
 
 #include <fmt/format.h>
@@ -26,10 +27,10 @@ namespace {
 
 constexpr double kMadToSd = 1.482602218505602;  // 1 / Phi^-1(3/4)
 constexpr std::size_t kPlaces = std::size_t{1} << 14U;
-constexpr double kLimit = 6, kShoulder = 5;  // robust standard deviations
+constexpr double kSpikeLimit = 6, kSpikeShoulder = 5;  // robust standard deviations
 constexpr std::int64_t kLongestRun = 16;
-constexpr std::int64_t kReach = 32;      // samples on either side that a spike is alone in
-constexpr std::int64_t kMostOthers = 6;  // samples of other spikes and runs
+constexpr std::int64_t kSpikeReach = 32;  // samples on either side that a spike is alone in
+constexpr std::int64_t kMostOthers = 6;   // samples of other spikes and runs
 constexpr double kMostShare = 0.01;
 constexpr double kTail = 2.5;              // index of the heaviest tail that is taken for noise
 constexpr double kTailShoulder = 1.0 / 3;  // of such a tail at least
@@ -98,6 +99,7 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
   if (count.spikes == 0) return SpikeVerdict::none;
   if (static_cast<double>(count.left_out) > kMostShare * static_cast<double>(count.samples))
     return SpikeVerdict::too_many;
+  if (count.steps > count.spikes) return SpikeVerdict::heavy_tails;  // a signal that jumps
   const auto events = static_cast<double>(count.spikes + count.shoulder);
   if (boost::math::gamma_q(events, kTail * count.log_size) < kTailAlarm)
     return SpikeVerdict::spikes;
@@ -116,8 +118,8 @@ std::string spike_sentence(const SpikeCount& count) {
           100 * static_cast<double>(count.left_out) / static_cast<double>(count.samples));
     case SpikeVerdict::heavy_tails:
       return fmt::format(
-          "{} sample{} beyond six standard deviations, sized as the tails of heavy-tailed noise or "
-          "of motion are: not taken for spikes, and kept.",
+          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a "
+          "signal that jumps: not taken for spikes, and kept.",
           count.left_out,
           count.left_out == 1 ? "" : "s");
     default:
@@ -149,7 +151,7 @@ double SpikeCleaner::residual(std::int64_t t) const {
 
 void SpikeCleaner::examine(bool last) {
   if (!started_) {
-    if (!last && end() < kLongestRun + kReach) return;
+    if (!last && end() < kLongestRun + kSpikeReach) return;
     started_ = true;
     look_at_start();
   }
@@ -163,11 +165,11 @@ void SpikeCleaner::examine(bool last) {
 // those is wild.
 void SpikeCleaner::look_at_start() {
   if (!(scale_.step > 0)) return;
-  const double limit = kLimit * scale_.step;
-  const std::int64_t longest = std::min(kLongestRun, end() - kReach);
+  const double limit = kSpikeLimit * scale_.step;
+  const std::int64_t longest = std::min(kLongestRun, end() - kSpikeReach);
   for (std::int64_t count = longest; count >= 1; --count) {
     if (!(std::abs(at(count) - at(count - 1)) > limit)) continue;
-    std::vector<double> behind(held_.begin() + count, held_.begin() + count + kReach);
+    std::vector<double> behind(held_.begin() + count, held_.begin() + count + kSpikeReach);
     std::erase_if(behind, [](double value) { return !std::isfinite(value); });
     if (behind.size() < 8) continue;
     std::nth_element(behind.begin(),
@@ -197,25 +199,28 @@ void SpikeCleaner::look_at(std::int64_t t, bool last) {
 
 /// Is sample t, and the one behind it, where the good ones were?
 bool SpikeCleaner::back(std::int64_t t) const {
-  const double limit = 0.5 * kLimit * scale_.step;
+  const double limit = 0.5 * kSpikeLimit * scale_.step;
   if (!(std::abs(at(t) - good_) <= limit)) return false;
   return t + 1 >= end() || !(std::abs(at(t + 1) - good_) > limit);
 }
 
 bool SpikeCleaner::look_for_run(std::int64_t t, bool last) {
-  const double limit = kLimit * scale_.step;
+  const double limit = kSpikeLimit * scale_.step;
   if (!(limit > 0) || !has_good_ || !(std::abs(at(t) - good_) > limit)) return false;
   const std::int64_t stop = std::min(t + kLongestRun + 1, end());
   std::int64_t until = t + 1;
   while (until < stop && !back(until)) ++until;
   const bool to_the_end = until == stop && last && stop == end() && until - t <= kLongestRun;
-  if (until == stop && !to_the_end) return false;  // a step, or more than a run
+  if (until == stop && !to_the_end) {
+    ++count_.steps;
+    return false;
+  }
   double size = std::abs(at(t) - good_);
   if (!to_the_end) size = std::min(size, std::abs(at(until) - at(until - 1)));
   size /= scale_.step;
   if (until == t + 1 && residual(t) > 0 && scale_.residual > 0)
     size = residual(t) / scale_.residual;
-  if (!(size > kLimit)) return false;
+  if (!(size > kSpikeLimit)) return false;
   for (std::int64_t i = t + 1; i < until; ++i) count_.samples += std::isfinite(at(i));
   found(t, until, size);
   now_ = until;
@@ -225,12 +230,13 @@ bool SpikeCleaner::look_for_run(std::int64_t t, bool last) {
 void SpikeCleaner::look_alone(std::int64_t t) {
   if (!(scale_.residual > 0)) return;
   const double e = residual(t);
-  if (!(e > kShoulder * scale_.residual) || residual(t - 1) >= e || residual(t + 1) > e) return;
+  if (!(e > kSpikeShoulder * scale_.residual) || residual(t - 1) >= e || residual(t + 1) > e)
+    return;
   // Beside a step or a run one neighbour is as near as the other is far.
   const double up = at(t) - at(t - 1), down = at(t) - at(t + 1);
   if (!(up * down > 0) || std::min(std::abs(up), std::abs(down)) < 0.5 * e) return;
   const double size = e / scale_.residual;
-  if (size > kLimit)
+  if (size > kSpikeLimit)
     found(t, t + 1, size);
   else
     events_.push_back({t, t + 1, size, false});
@@ -246,19 +252,20 @@ void SpikeCleaner::settle(std::int64_t now) {
   for (std::size_t i = 0; i < events_.size(); ++i) {
     Event& event = events_[i];
     if (event.settled) continue;
-    if (event.end + kReach > now) break;
+    if (event.end + kSpikeReach > now) break;
     event.settled = true;
     std::int64_t others = 0;
     for (const Event& other : events_)
-      if (&other != &event && other.end > event.first - kReach && other.first < event.end + kReach)
+      if (&other != &event && other.end > event.first - kSpikeReach &&
+          other.first < event.end + kSpikeReach)
         others += other.end - other.first;
-    const bool beyond = event.size > kLimit;
+    const bool beyond = event.size > kSpikeLimit;
     if (others > kMostOthers) {
       count_.crowded += beyond;
       continue;
     }
     (beyond ? count_.spikes : count_.shoulder) += 1;
-    count_.log_size += std::log(event.size / kShoulder);
+    count_.log_size += std::log(event.size / kSpikeShoulder);
     if (!beyond) continue;
     for (std::int64_t t = event.first; t < event.end; ++t) {
       double& sample = held_[static_cast<std::size_t>(t - base_)];
@@ -266,7 +273,7 @@ void SpikeCleaner::settle(std::int64_t now) {
       sample = std::numeric_limits<double>::quiet_NaN();
     }
   }
-  while (!events_.empty() && events_.front().settled && events_.front().end + 2 * kReach < now)
+  while (!events_.empty() && events_.front().settled && events_.front().end + 2 * kSpikeReach < now)
     events_.pop_front();
 }
 

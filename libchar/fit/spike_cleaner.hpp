@@ -39,6 +39,7 @@ struct SpikeCount {
   std::uint64_t left_out = 0;  ///< samples of spikes
   std::uint64_t spikes = 0;    ///< beyond six standard deviations and alone
   std::uint64_t shoulder = 0;  ///< between five and six
+  std::uint64_t steps = 0;     ///< jumps that are no run: the level does not come back
   std::uint64_t crowded = 0;   ///< beyond six, but among too many others: a loud stretch
   double log_size = 0;         ///< sum of ln(size / 5 sd) over `spikes` and `shoulder`
 };

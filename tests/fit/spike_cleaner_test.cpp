@@ -128,6 +128,17 @@ Record held(std::size_t n, std::uint64_t seed) {
   return y;
 }
 
+Record telegraph(std::size_t n, std::uint64_t seed) {
+  Record y = white(n, seed);
+  test::Gaussian turn(seed + 1000);
+  double level = 0;
+  for (double& value : y) {
+    if (turn.uniform() < 0.01) level = 12 - level;
+    value += level;
+  }
+  return y;
+}
+
 Record flicker(std::size_t n, std::uint64_t seed) {
   return test::NoiseSource(n, 100, seed).record(0, 1, 0);
 }
@@ -227,7 +238,8 @@ TEST_CASE("noise of other kinds has no spikes") {
                         {"loud stretches", loud_stretches},
                         {"thermometer", thermometer},
                         {"rounded", rounded},
-                        {"held", held}};
+                        {"held", held},
+                        {"telegraph", telegraph}};
   for (const Kind& kind : kinds) {
     for (const std::size_t n : {500, 3000, 30000}) {
       int called = 0;
@@ -247,7 +259,7 @@ TEST_CASE("heavy tails are said to be tails, and nothing is left out") {
     return fit_record(y, 100, nullptr, options);
   }();
   REQUIRE(!fit.sentences.empty());
-  CHECK(fit.sentences[0].find("sized as the tails of heavy-tailed noise") != std::string::npos);
+  CHECK(fit.sentences[0].find("like the tails of heavy-tailed noise") != std::string::npos);
   CHECK(fit[Term::white].value == as_is[Term::white].value);
 }
 

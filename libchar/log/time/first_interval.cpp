@@ -2,9 +2,9 @@
 // right in a log with gaps, and span / (rows - 1), right wherever each row is a sample. Where they
 // differ by more than 2 % one of three things explains it, or the log is refused:
 //   coarse   all steps are multiples of the clock's step q, and every stamp stands within
-//            a band of 1.5 q about one line: rounding moves a stamp by at most q, while rows missing
+//            a band of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most q, while rows missing
 //            at random lead away from every line like a random walk
-//   packets  most of the samples would be missing, again and again after at most 32 rows
+//   packets  most of the samples would be missing, again and again after at most 40 rows
 //   gaps     the longer steps are few, or multiples of the common step
 #include "libchar/log/time/first_interval.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSameRate = 0.02;
 constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
-constexpr double kLongestPacket = 32;  // rows
+constexpr double kLongestPacket = 40;  // rows
 
 double middle_of(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -46,11 +46,16 @@ FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
   return steps;
 }
 
-/// The common step, and what is longer than it.
-FirstInterval common_step(const std::vector<std::int64_t>& stamps, const FirstSteps& steps) {
-  FirstInterval result;
-  const bool equal = stamps.size() > 8 && steps.equal * 4 > stamps.size();
-  if (equal) result.pattern = StampPattern::equal;
+/// What most of the stamps say by themselves.
+struct CommonStep {
+  double ns = 0, longest = 0;
+  bool tidy = false;   ///< half of the steps lie within a tenth of it
+  bool equal = false;  ///< a quarter of the stamps do not rise
+};
+
+CommonStep common_step(const std::vector<std::int64_t>& stamps, const FirstSteps& steps) {
+  CommonStep result;
+  result.equal = stamps.size() > 8 && steps.equal * 4 > stamps.size();
   const double middle = middle_of(steps.rising);
   std::vector<double> scatter;
   for (const double step : steps.rising) scatter.push_back(std::fabs(step - middle));
@@ -62,9 +67,10 @@ FirstInterval common_step(const std::vector<std::int64_t>& stamps, const FirstSt
     sum += step;
     ++close;
   }
-  if (!equal && close * 2 >= steps.rising.size()) {
+  result.tidy = close * 2 >= steps.rising.size();
+  if (!result.equal && result.tidy) {
     result.ns = sum / static_cast<double>(close);
-    result.longest_step = 1.5 * result.ns;
+    result.longest = 1.5 * result.ns;
     return result;
   }
   // No common step (coarse or jittered stamps): long baselines average it out, unless gaps
@@ -75,9 +81,9 @@ FirstInterval common_step(const std::vector<std::int64_t>& stamps, const FirstSt
     slopes.push_back((static_cast<double>(stamps[i + half]) - static_cast<double>(stamps[i])) /
                      static_cast<double>(half));
   const double slope = middle_of(std::move(slopes));
-  result.ns = equal || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
+  result.ns = result.equal || (slope > 0.6 * middle && slope < 1.45 * middle) ? slope : middle;
   if (!(result.ns > 0)) result.ns = middle;
-  result.longest_step = std::max(1.5 * result.ns, result.ns + 3 * deviation);
+  result.longest = std::max(1.5 * result.ns, result.ns + 3 * deviation);
   return result;
 }
 
@@ -130,7 +136,7 @@ bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) 
     if (!multiple_of(step, tick, 1e-3)) return false;
     odd += std::fabs(step - common) > 0.5 * tick;
   }
-  return odd >= kLeastOdd && line.spread <= 1.5 * tick;
+  return odd >= kLeastOdd && line.spread <= (odd >= 2 * kLeastOdd ? 2 : 1.5) * tick;
 }
 
 std::vector<double> longer_than(const FirstSteps& steps, double limit) {
@@ -143,17 +149,18 @@ std::vector<double> longer_than(const FirstSteps& steps, double limit) {
 
 /// What explains that the span says another rate than the common step.
 StampPattern explanation(const FirstSteps& steps,
-                         const FirstInterval& common,
+                         const CommonStep& common,
                          double rows,
                          double span) {
   const std::vector<double> longer = longer_than(steps, 1.5 * common.ns);
   const auto gaps = static_cast<double>(longer.size());
-  if (span > 2 * common.ns && longer.size() >= kLeastOdd && rows <= kLongestPacket * gaps)
-    return StampPattern::packets;
-  if (common.pattern == StampPattern::equal || span < common.ns) return common.pattern;
-  const auto on_grid = static_cast<double>(std::count_if(
+  const bool often = longer.size() >= kLeastOdd && gaps * 50 > rows;
+  if (span > 2 * common.ns && often && rows <= kLongestPacket * gaps) return StampPattern::packets;
+  if (!common.tidy || !often || span < common.ns) return StampPattern::steps;
+  // Of steps that are no multiples 40 % come as near to one by chance.
+  const auto near = static_cast<double>(std::count_if(
       longer.begin(), longer.end(), [&](double s) { return multiple_of(s, common.ns, 0.2); }));
-  return gaps * 50 <= rows || on_grid >= 0.8 * gaps ? StampPattern::steps : StampPattern::disputed;
+  return near > 0.55 * gaps ? StampPattern::steps : StampPattern::disputed;
 }
 
 }  // namespace
@@ -162,31 +169,41 @@ FirstInterval first_interval(const std::vector<std::int64_t>& stamps,
                              std::optional<double> rate_hz) {
   const FirstSteps steps = steps_of(stamps);
   if (steps.rising.empty()) return {};
-  FirstInterval result = common_step(stamps, steps);
-  result.step_ns = result.span_ns = result.ns;
+  const CommonStep common = common_step(stamps, steps);
+  const StampPattern as_it_is = common.equal ? StampPattern::equal : StampPattern::steps;
+  FirstInterval result{common.ns, common.longest, as_it_is, common.ns, common.ns};
   if (steps.back || stamps.size() <= kLeastOdd) return result;
-  const auto rows = static_cast<double>(stamps.size());
+
   const StampLine line = line_through(stamps);
-  double span =
+  const auto rows = static_cast<double>(stamps.size());
+  const double span =
       (static_cast<double>(stamps.back()) - static_cast<double>(stamps.front())) / (rows - 1);
-  const bool equal_at_times = steps.equal * 50 > stamps.size();
-  if (same_rate(span, result.ns) && !equal_at_times) return result;
-  const bool coarse = on_one_line(line, steps, result.ns);
-  const StampPattern pattern =
-      coarse ? StampPattern::coarse : explanation(steps, result, rows, span);
-  if (pattern == result.pattern) return result;
-  if (coarse) span = line.slope;
-  result.span_ns = span;
-  if (rate_hz && same_rate(1e9 / *rate_hz, result.step_ns)) return result;
-  const bool told = rate_hz && same_rate(1e9 / *rate_hz, span);
+  const bool same = same_rate(span, common.ns), equal_at_times = steps.equal * 50 > stamps.size();
+  if (same && !equal_at_times) return result;
+  StampPattern pattern = as_it_is;
+  if (on_one_line(line, steps, common.ns))
+    pattern = StampPattern::coarse;
+  else if (same && !common.tidy)
+    pattern = StampPattern::equal;  // stamps that scatter by more than a step
+  else if (!same && !common.equal)
+    pattern = explanation(steps, common, rows, span);
+  if (pattern == as_it_is) return result;
+  if (pattern == StampPattern::equal) {
+    result.pattern = pattern;
+    return result;
+  }
+  result.span_ns = line.slope;
+  if (rate_hz && same_rate(1e9 / *rate_hz, common.ns)) return result;
+  const bool told = rate_hz && same_rate(1e9 / *rate_hz, line.slope);
   result.pattern = pattern == StampPattern::disputed && told ? StampPattern::packets : pattern;
   if (result.pattern == StampPattern::disputed) return result;
-  result.ns = span;
+  result.ns = line.slope;
   const std::vector<double> longer = longer_than(steps, 0);
+  const bool coarse = pattern == StampPattern::coarse;
   const double usual = coarse ? longer.back() : 1.6 * longer[longer.size() * 98 / 100];
-  result.longest_step = std::max(1.5 * span, 1.25 * usual);
+  result.longest_step = std::max(1.5 * result.ns, 1.25 * usual);
   // Two steps on either side of the rate, none of them a gap: nothing that needs a word.
-  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * result.step_ns)
+  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * common.ns)
     result.pattern = StampPattern::steps;
   return result;
 }
