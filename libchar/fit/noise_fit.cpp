@@ -14,6 +14,7 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/detail/allan_fit.hpp"
+#include "libchar/fit/detail/bridge.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/contradiction.hpp"
 #include "libchar/fit/detail/goodness.hpp"
@@ -338,7 +339,8 @@ NoiseFit fit_record(std::span<const double> record,
   const std::uint64_t block =
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
-  binner.push(data);
+  const std::vector<double> filled = options.remedies ? bridged(data) : std::vector<double>{};
+  binner.push(filled.empty() ? data : filled);
   NoiseFit fit =
       fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options, workspace);
   add_spike_answer(despiked.answer, fit);
