@@ -36,6 +36,11 @@ void add_spectrum(ChannelResult& result, const Spectrum& spectrum) {
   result.spectrum = log_binned(spectrum, kPlottedBins);
 }
 
+// Octaves of the overlapping deviation: what the streaming form gives.
+bool octaves_only(const AllanOptions& allan) {
+  return allan.type == DeviationType::oadev && allan.grid == TauGrid::octave;
+}
+
 // A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
 template <class Step>
 void attempt(ChannelResult& result, const char* what, Step&& step) {
@@ -48,6 +53,15 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
 }
 
 }  // namespace
+
+std::string what_needs_all_samples(const CharacterizeOptions& options) {
+  if (options.data == SampleKind::phase) return "phase data";
+  if (!options.wanted.allan) return "";
+  if (options.allan.type != DeviationType::oadev)
+    return fmt::format("the deviation {}", name_of(options.allan.type));
+  if (options.allan.grid != TauGrid::octave) return "a curve at other times than octaves";
+  return options.full_overlap ? "a curve with full overlap" : "";
+}
 
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
@@ -85,7 +99,7 @@ void ChannelStage::stream(std::span<const double> samples) {
     kept_.insert(kept_.end(), samples.begin(), samples.end());
     return;
   }
-  if (options_->wanted.allan) streams_->allan.push(samples);
+  if (wants_fit()) streams_->allan.push(samples);
   if (streams_->blocks) return streams_->spectrum->push(samples, *streams_->blocks);
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
   if (wants_fit()) streams_->bins.push(samples);
@@ -101,13 +115,6 @@ void ChannelStage::reserve(std::size_t samples) {
 
 void ChannelStage::stop_keeping() {
   if (!keeping_) return;
-  if (options_->data == SampleKind::phase)
-    throw Error({ErrorKind::usage,
-                 "E0701",
-                 "",
-                 "phase data longer than the memory budget cannot be streamed",
-                 "",
-                 "raise `memory_bytes`"});
   keeping_ = false;
   streams_ = std::make_unique<ChannelStreams>();
   const std::uint64_t segment = options_->spectrum.segment;
@@ -140,36 +147,32 @@ bool ChannelStage::wants_fit() const {
   return options_->wanted.fit || options_->wanted.allan;
 }
 
-// Octaves of the overlapping deviation: what the streaming form gives.
-bool ChannelStage::wants_octaves() const {
-  return options_->allan.type == DeviationType::oadev && options_->allan.grid == TauGrid::octave;
-}
-
-AllanCurve ChannelStage::allan_of_kept(double rate_hz) const {
-  const bool exact = kept_.size() <= options_->exact_samples;
-  if (exact || options_->full_overlap || !wants_octaves()) {
-    AllanOptions allan = options_->allan;
-    allan.data = DataKind::rate;  // `as_rate` has differenced phase data
-    return allan_deviation(kept_, 1 / rate_hz, allan);
-  }
+// The curve that the fit checks itself with, whatever is plotted.
+AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
+  AllanOptions octaves;
+  octaves.threads = options_->allan.threads;
+  if (kept_.size() <= options_->exact_samples) return allan_deviation(kept_, 1 / rate_hz, octaves);
   AllanPyramid pyramid;
   pyramid.push(kept_);
   return pyramid.finish(1 / rate_hz);
 }
 
-NoiseFit ChannelStage::fit_of_kept(const AllanCurve& allan, double rate_hz) const {
-  const bool opinion = wants_octaves() && !allan.points.empty();
-  return fit_record(kept_, rate_hz, opinion ? &allan : nullptr, options_->fit, &workspace_->fit);
+AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
+  const bool exact = kept_.size() <= options_->exact_samples || !options_->full_overlap;
+  if (octaves_only(options_->allan) && exact) return limited(octaves, options_->allan);
+  AllanOptions allan = options_->allan;
+  allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+  return allan_deviation(kept_, 1 / rate_hz, allan);
 }
 
-NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
+NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz) {
   const ChannelQuality quality = quality_.finish();
   PowerBinner& bins = streams_->bins;
   if (streams_->cleaner) bins.push(streams_->cleaner->finish());
   NoiseFit fit = fit_binned(bins,
                             rate_hz,
                             quality.samples,
-                            allan.points.empty() ? nullptr : &allan,
+                            octaves.points.empty() ? nullptr : &octaves,
                             options_->fit,
                             &workspace_->fit);
   if (streams_->cleaner && streams_->cleaner->count() > 0)
@@ -181,24 +184,45 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
   if (wants_fit())
-    attempt(result, "Allan deviation", [&] { result.allan = allan_of_kept(rate_hz); });
+    attempt(result, "Allan deviation", [&] {
+      octaves = octaves_of_kept(rate_hz);
+      result.allan = wanted_of_kept(octaves, rate_hz);
+    });
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
       add_spectrum(result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch));
     });
   if (wants_fit())
-    attempt(result, "noise fit", [&] { result.fit = fit_of_kept(result.allan, rate_hz); });
+    attempt(result, "noise fit", [&] {
+      result.fit = fit_record(kept_,
+                              rate_hz,
+                              octaves.points.empty() ? nullptr : &octaves,
+                              options_->fit,
+                              &workspace_->fit);
+    });
 }
 
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
   if (wants_fit())
-    attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
+    attempt(result, "Allan deviation", [&] {
+      octaves = streams_->allan.finish(1 / rate_hz);
+      result.allan = limited(octaves, options_->allan);
+    });
   if (streams_->blocks) streams_->spectrum->end(*streams_->blocks);
   if (options_->wanted.spectrum)
-    attempt(result, "spectrum", [&] { add_spectrum(result, streams_->spectrum->finish(rate_hz)); });
+    attempt(result, "spectrum", [&] {
+      add_spectrum(result, streams_->spectrum->finish(rate_hz));
+      if (options_->spectrum.segment == 0)
+        result.spectrum.notes.push_back(
+            fmt::format("segments of {} samples instead of a quarter of the record, which does "
+                        "not fit into the memory allowed",
+                        kStreamedSegment));
+    });
   if (wants_fit())
-    attempt(result, "noise fit", [&] { result.fit = fit_of_streams(result.allan, rate_hz); });
+    attempt(result, "noise fit", [&] { result.fit = fit_of_streams(octaves, rate_hz); });
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
