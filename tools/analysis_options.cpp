@@ -85,10 +85,12 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
                   "with --data frequency: the frequency that counts as zero deviation, Hz "
                   "(default: values are fractional)",
                   0);
-  verb.add_bytes("--memory",
-                 a.options.memory_bytes,
-                 "samples kept in memory at most; a longer log streams through fixed-size stages "
-                 "(default: 1GiB)");
+  verb.add_bytes(
+      "--memory",
+      a.options.memory_bytes,
+      "samples kept in memory at most; a longer log streams through fixed-size stages, and an "
+      "option that takes all samples is refused "
+      "(default: 1GiB)");
 }
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -138,7 +139,9 @@ AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
     Side a = side_of(curve, curve.points[pairs[k].first]),
          b = side_of(curve, curve.points[pairs[k].second]);
     if (a.stride > b.stride) std::swap(a, b);
-    products_[k] = pair_sum(a, b, dt_s_) * factor_of(a, b);
+    const double inflation =
+        curve.points[pairs[k].first].inflation * curve.points[pairs[k].second].inflation;
+    products_[k] = pair_sum(a, b, dt_s_) * (factor_of(a, b) * inflation);
   });
 }
 
@@ -167,7 +170,8 @@ Eigen::MatrixXd allan_covariance(const AllanCurve& curve, const Mixture& theta) 
 
 std::shared_ptr<const AllanCovariance> AllanCovarianceCache::of(const AllanCurve& curve) {
   std::vector<std::uint64_t> key = {static_cast<std::uint64_t>(curve.type), curve.stride_divisor};
-  for (const AllanPoint& point : curve.points) key.insert(key.end(), {point.m, point.terms});
+  for (const AllanPoint& point : curve.points)
+    key.insert(key.end(), {point.m, point.terms, std::bit_cast<std::uint64_t>(point.inflation)});
   const std::lock_guard lock(mutex_);
   for (const Entry& entry : entries_)
     if (entry.dt_s == curve.dt_s && entry.key == key) return entry.covariance;

@@ -12,7 +12,8 @@
 //   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
 //                 ends by reflection about the end point; that is, the rate is mirrored
 //
-// A term that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts,
+// Where samples of a rate are missing the first two lines take means over what is present (detail/missing_samples.cpp); the others drop
+// each term that touches a missing sample, as all of them do for phase. Sums run over fixed pieces of 65536 starts,
 // added in order, so that the result does not depend on the number of threads.
 
 #include "libchar/allan/allan_deviation.hpp"
@@ -26,6 +27,7 @@
 #include <limits>
 
 #include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -169,11 +171,14 @@ std::span<const double> without_gaps(std::span<const double> record, AllanCurve&
   return record.subspan(s.begin, s.end - s.begin);
 }
 
-void note_empty(const std::vector<std::uint64_t>& empty, double dt_s, AllanCurve& curve) {
-  if (empty.empty()) return;
-  curve.notes.push_back("gaps leave no term at " + std::to_string(empty.size()) +
-                        " averaging times from " +
-                        significant(static_cast<double>(empty.front()) * dt_s, 4) + " s on");
+[[noreturn]] void none_fits(const AllanCurve& curve) {
+  throw Error({ErrorKind::numeric,
+               "",
+               "",
+               "no averaging time that was asked for fits the record of " +
+                   significant(static_cast<double>(curve.samples) * curve.dt_s, 4) + " s",
+               "",
+               ""});
 }
 
 void check(double dt_s, const AllanOptions& options) {
@@ -188,25 +193,31 @@ void check(double dt_s, const AllanOptions& options) {
     throw Error({ErrorKind::usage, "", "", "no averaging time is listed", "", ""});
 }
 
-void fill_points(const AnchoredPhase& phase,
-                 const DeviationRow& f,
-                 std::uint64_t reach,
-                 const std::vector<std::uint64_t>& factors,
-                 DataKind kind,
-                 AllanCurve& curve) {
+std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,
+                                        const DeviationRow& f,
+                                        std::uint64_t reach,
+                                        const std::vector<std::uint64_t>& factors,
+                                        DataKind kind,
+                                        double dt_s) {
   std::vector<AllanPoint> points(factors.size());
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     const Totals total = total_over(phase, f, m, ranges_of(phase, f, m, reach));
-    if (total.terms > 0) points[k] = point_of(total, f, m, curve.dt_s, phase.scale, kind);
+    if (total.terms > 0) points[k] = point_of(total, f, m, dt_s, phase.scale, kind);
   });
+  return points;
+}
+
+void fill_points(const std::vector<AllanPoint>& points,
+                 const std::vector<std::uint64_t>& factors,
+                 AllanCurve& curve) {
   std::vector<std::uint64_t> empty;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (points[k].terms > 0)
       curve.points.push_back(points[k]);
     else
       empty.push_back(factors[k]);
-  note_empty(empty, curve.dt_s, curve);
+  note_missing(empty, curve);
 }
 
 AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summed) {
@@ -238,21 +249,27 @@ AllanCurve allan_deviation(std::span<const double> record,
   const int cores = tbb::info::default_concurrency();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.execute([&] {
+    if (curve.missing > 0 && options.data == DataKind::rate && of_window_means(f))
+      return fill_points(points_of_present(used, f, factors, dt_s), factors, curve);
     const AnchoredPhase phase =
         total ? anchored(continued(used, reach, options.data), options.data, false)
               : anchored(used, options.data, f.of_sum);
-    fill_points(phase, f, reach, factors, options.data, curve);
+    fill_points(points_of_phase(phase, f, reach, factors, options.data, dt_s), factors, curve);
   });
   if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list)
     too_short(f, curve.samples);
-  if (curve.points.empty())
-    throw Error({ErrorKind::numeric,
-                 "",
-                 "",
-                 "no averaging time that was asked for fits the record of " +
-                     significant(static_cast<double>(curve.samples) * dt_s, 4) + " s",
-                 "",
-                 ""});
+  if (curve.points.empty()) none_fits(curve);
+  return curve;
+}
+
+AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options) {
+  AllanCurve curve = octaves;
+  const std::vector<std::uint64_t> wanted =
+      averaging_factors(options, curve.dt_s, curve.samples, curve.notes);
+  std::erase_if(curve.points, [&](const AllanPoint& point) {
+    return !std::binary_search(wanted.begin(), wanted.end(), point.m);
+  });
+  if (curve.points.empty()) none_fits(curve);
   return curve;
 }
 

@@ -33,6 +33,8 @@ struct AllanPoint {
   double edf = 0;
   Interval ci68, ci95;   ///< equal-tailed chi-square, at confidence 68.27 % and 95 %
   bool reliable = true;  ///< edf >= 5
+  double inflation = 1;  ///< of the relative standard deviation, by missing samples
+  double added = 0;      ///< to the variance by missing samples, as white noise would; taken off
 };
 
 struct AllanCurve {
@@ -57,12 +59,17 @@ struct AllanOptions {
   int threads = 0;       ///< 0 = all cores; the result does not depend on it
 };
 
-/// Deviations of a record with full overlap. NaN = missing: every term that touches one is dropped.
+/// Deviations of a record with full overlap. NaN = missing: means are over what is present of a window, more than half
+/// (detail/missing_samples.cpp); modified deviations and phase drop every term that touches a missing one.
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
 /// needed; Error(usage) for a bad tau.
 AllanCurve allan_deviation(std::span<const double> record,
                            double dt_s,
                            const AllanOptions& options = {});
+
+/// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would leave it. Throws Error(numeric)
+/// when nothing is.
+AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options);
 
 }  // namespace libchar

@@ -6,6 +6,9 @@
 // 4096 that stay in the processor's cache; a block costs half as many of the level above, so that
 // all of them cost twice the first.
 //
+// In a record with missing samples a level also holds how many of the 2^l each sum lacks (missing_samples.cpp); blocks that lack none
+// go the same way as ever.
+//
 // Squares are added in double within a block and in long double between blocks, whose wide exponent
 // also carries blocks that had to be scaled because their squares overflow or vanish.
 
@@ -15,9 +18,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/detail/equivalent_dof.hpp"
+#include "libchar/allan/detail/missing_samples.hpp"
+#include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/pyramid_kernels.hpp"
 #include "libchar/core/error.hpp"
 
@@ -29,9 +37,14 @@ constexpr std::size_t kTail =
     7;  // samples of the last block that terms reaching into the next one need
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-struct Tally {
-  long double sum = 0;
-  std::uint64_t terms = 0;
+/// Terms of one averaging factor; `squares` of differences of sums, not of means.
+using Tally = PresentTerms;
+
+/// Sums of what is present, less the first sample of the record, and how many each lacks of `size`.
+struct Holed {
+  const double* sum;
+  const double* absent;
+  double size;
 };
 
 /// Terms of sums of `width` neighbours that start in z[from], …, touching nothing missing; z scaled
@@ -51,9 +64,49 @@ void add_one_by_one(const double* z, std::size_t n, std::size_t width, double sc
   }
   const double sum =
       ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-  tally.sum += static_cast<long double>(sum) / static_cast<long double>(scale) /
-               static_cast<long double>(scale);
+  tally.squares += static_cast<long double>(sum) / static_cast<long double>(scale) /
+                   static_cast<long double>(scale);
   tally.terms += terms;
+  tally.starts += terms;
+}
+
+double sum_of(const double* values, std::size_t width) {
+  if (width == 1) return values[0];
+  if (width == 2) return values[0] + values[1];
+  return (values[0] + values[2]) + (values[1] + values[3]);
+}
+
+/// The same where something may be missing: differences of means over what is present, times m.
+void add_present(const Holed& z, std::size_t n, std::size_t width, double scale, Tally& tally) {
+  const double m = z.size * static_cast<double>(width);
+  double squares = 0, shortfall = 0, imbalance = 0;
+  for (std::size_t i = 0; i + 2 * width <= n; ++i) {
+    const double a = m - sum_of(z.absent + i, width), b = m - sum_of(z.absent + i + width, width);
+    imbalance += (b - a) / m * ((b - a) / m);
+    ++tally.starts;
+    if (!has_mean(a, m) || !has_mean(b, m)) continue;
+    const double d = (sum_of(z.sum + i + width, width) * scale) * (m / b) -
+                     (sum_of(z.sum + i, width) * scale) * (m / a);
+    squares += d * d;
+    shortfall += 1 / a + 1 / b - 2 / m;
+    ++tally.terms;
+  }
+  const auto wide = static_cast<long double>(scale);
+  tally.squares += static_cast<long double>(squares) / wide / wide;
+  tally.shortfall += static_cast<long double>(shortfall);
+  tally.imbalance += static_cast<long double>(imbalance);
+}
+
+/// Samples with NaN as sums of one, less `origin`, and which of them are missing.
+void split(const double* x, std::size_t n, double origin, double* sum, double* absent) {
+  for (std::size_t i = 0; i < n; ++i) {
+    absent[i] = std::isnan(x[i]) ? 1 : 0;
+    sum[i] = std::isnan(x[i]) ? 0 : x[i] - origin;
+  }
+}
+
+bool any(const double* absent, std::size_t n) {
+  return std::any_of(absent, absent + n, [](double count) { return count > 0; });
 }
 
 /// A power of two that brings the largest deviation of the block near 1.
@@ -77,10 +130,11 @@ bool safe(double sum) {
 
 struct AllanPyramid::State {
   struct Level {
-    std::array<double, kTail> tail;  // end of the previous block
+    std::array<double, kTail> tail, tail_absent{};  // end of the previous block
     std::vector<double>
         block;  // kBlock places for the block that is being filled, `held` of them taken
     std::size_t held = 0;
+    std::vector<double> absent;  // how many samples the places of `block` lack; empty: none
     std::array<Tally, 3> tally;  // sums of 1 and 2 (level 0 only) and of 4
     bool started = false;        // tail is filled
   };
@@ -89,12 +143,22 @@ struct AllanPyramid::State {
   double origin = kMissing;
 
   void push(const double* x, std::size_t n);
-  void finish_block(std::size_t level, const double* z, std::size_t n);
+  void close();
+  void finish_block(std::size_t level, const double* z, const double* absent, std::size_t n);
   void finish_held(std::size_t level);
   void within(Level& level, bool base, const double* z, std::size_t n, const double* sums);
-  void across(Level& level, bool base, const double* z, std::size_t n);
-  void sanitized(std::size_t level, const double* z, std::size_t n);
-  void hand_up(std::size_t level, const double* z, std::size_t n, double origin_of_level);
+  void across(
+      Level& level, std::size_t index, const double* z, const double* absent, std::size_t n);
+  void across_holed(Level& level, std::size_t index, const Holed& joint, std::size_t taken);
+  void holed_block(
+      std::size_t level, const double* z, const double* sum, const double* absent, std::size_t n);
+  void holed_base(const double* x, std::size_t n);
+  void hand_up(std::size_t level,
+               const double* z,
+               const double* absent,
+               std::size_t n,
+               double origin_of_level);
+  void keep_tail(Level& level, const double* z, const double* absent) const;
   Level& at(std::size_t level);
 };
 
@@ -111,7 +175,7 @@ void AllanPyramid::State::push(const double* x, std::size_t n) {
   at(0);
   while (n > 0) {
     if (levels[0].held == 0 && n >= kBlock) {  // straight from the caller's memory
-      finish_block(0, x, kBlock);
+      finish_block(0, x, nullptr, kBlock);
       x += kBlock;
       n -= kBlock;
       continue;
@@ -128,8 +192,9 @@ void AllanPyramid::State::push(const double* x, std::size_t n) {
 /// The block of a level is full. It is taken out while it is looked at: levels may be added above.
 void AllanPyramid::State::finish_held(std::size_t level) {
   std::vector<double> full = std::move(levels[level].block);
+  std::vector<double> absent = std::exchange(levels[level].absent, {});
   levels[level].held = 0;
-  finish_block(level, full.data(), kBlock);
+  finish_block(level, full.data(), absent.empty() ? nullptr : absent.data(), kBlock);
   levels[level].block = std::move(full);
 }
 
@@ -140,8 +205,9 @@ void AllanPyramid::State::within(
     const std::size_t width = std::size_t{1} << k;
     if (n < 2 * width) continue;
     if (sums != nullptr && safe(sums[k])) {
-      level.tally[k].sum += static_cast<long double>(sums[k]);
+      level.tally[k].squares += static_cast<long double>(sums[k]);
       level.tally[k].terms += n - 2 * width + 1;
+      level.tally[k].starts += n - 2 * width + 1;
     } else {
       add_one_by_one(z, n, width, block_scale(z, n), level.tally[k]);
     }
@@ -149,14 +215,22 @@ void AllanPyramid::State::within(
 }
 
 /// Terms that begin in the previous block and end in this one.
-void AllanPyramid::State::across(Level& level, bool base, const double* z, std::size_t n) {
+void AllanPyramid::State::across(
+    Level& level, std::size_t index, const double* z, const double* absent, std::size_t n) {
   if (!level.started) return;
-  double joint[2 * kTail];
+  const std::size_t taken = std::min(n, kTail), all = kTail + taken;
+  double joint[2 * kTail], lacks[2 * kTail] = {};
   std::copy(level.tail.begin(), level.tail.end(), joint);
-  const std::size_t taken = std::min(n, kTail);
   std::copy_n(z, taken, joint + kTail);
-  const double scale = block_scale(joint, kTail + taken);
-  for (std::size_t k = base ? 0 : 2; k < 3; ++k) {
+  if (index > 0) std::copy(level.tail_absent.begin(), level.tail_absent.end(), lacks);
+  if (absent != nullptr) std::copy_n(absent, taken, lacks + kTail);
+  if (index == 0 && std::any_of(joint, joint + all, [](double v) { return std::isnan(v); }))
+    split(joint, all, origin, joint, lacks);
+  if (any(lacks, all))
+    return across_holed(
+        level, index, {joint, lacks, std::ldexp(1.0, static_cast<int>(index))}, taken);
+  const double scale = block_scale(joint, all);
+  for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k,
                       reach = 2 * width - 1;  // samples needed on either side
     const std::size_t right = std::min(taken, reach);
@@ -164,19 +238,51 @@ void AllanPyramid::State::across(Level& level, bool base, const double* z, std::
   }
 }
 
-void AllanPyramid::State::hand_up(std::size_t level, const double* z, std::size_t n, double shift) {
+void AllanPyramid::State::across_holed(Level& level,
+                                       std::size_t index,
+                                       const Holed& joint,
+                                       std::size_t taken) {
+  const double scale = block_scale(joint.sum, kTail + taken);
+  for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k) {
+    const std::size_t width = std::size_t{1} << k, reach = 2 * width - 1;
+    const std::size_t from = kTail - reach, right = std::min(taken, reach);
+    add_present({joint.sum + from, joint.absent + from, joint.size},
+                reach + right,
+                width,
+                scale,
+                level.tally[k]);
+  }
+}
+
+void AllanPyramid::State::keep_tail(Level& level, const double* z, const double* absent) const {
+  std::copy_n(z + kBlock - kTail, kTail, level.tail.begin());
+  level.tail_absent = {};
+  if (absent != nullptr) std::copy_n(absent + kBlock - kTail, kTail, level.tail_absent.begin());
+  level.started = true;
+}
+
+void AllanPyramid::State::hand_up(
+    std::size_t level, const double* z, const double* absent, std::size_t n, double shift) {
   const std::size_t pairs = n / 2;
   if (pairs == 0) return;
   Level& above = at(level + 1);
   sum_pairs(z, pairs, shift, above.block.data() + above.held);
+  if (absent != nullptr && above.absent.empty()) above.absent.resize(kBlock);
+  if (absent != nullptr)
+    for (std::size_t i = 0; i < pairs; ++i)
+      above.absent[above.held + i] = absent[2 * i] + absent[2 * i + 1];
   above.held += pairs;
   if (above.held == kBlock) finish_held(level + 1);
 }
 
-/// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have
-/// kBlock values.
-void AllanPyramid::State::finish_block(std::size_t index, const double* z, std::size_t n) {
+/// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have kBlock values. `absent` is null where
+/// none is missing, and at the base, where NaN says so.
+void AllanPyramid::State::finish_block(std::size_t index,
+                                       const double* z,
+                                       const double* absent,
+                                       std::size_t n) {
   const bool base = index == 0;
+  if (absent != nullptr) return holed_block(index, z, z, absent, n);
   double sums[3] = {};
   if (base)
     squares_of_one_two_four(z, n, sums);
@@ -185,31 +291,83 @@ void AllanPyramid::State::finish_block(std::size_t index, const double* z, std::
   // Every value is in some difference, and what is missing or infinite is in the sum then; only
   // huge values are there too.
   const bool clean = n >= 8 && std::isfinite(sums[base ? 0 : 2]) ? true : all_finite(z, n);
-  if (base && !clean) {
-    for (std::size_t i = 0; i < n; ++i)
-      if (std::isinf(z[i])) return sanitized(index, z, n);
-    missing +=
-        static_cast<std::uint64_t>(std::count_if(z, z + n, [](double v) { return std::isnan(v); }));
-  }
-  if (base && std::isnan(origin))
-    for (std::size_t i = 0; i < n && std::isnan(origin); ++i) origin = z[i];
+  if (base && !clean) return holed_base(z, n);
+  if (base && std::isnan(origin)) origin = z[0];
   Level& level = at(index);
-  across(level, base, z, n);
+  across(level, index, z, nullptr, n);
   within(level, base, z, n, clean ? sums : nullptr);
-  if (n == kBlock) {
-    std::copy_n(z + n - kTail, kTail, level.tail.begin());
-    level.started = true;
-  }
-  hand_up(index, z, n, base && !std::isnan(origin) ? origin : 0.0);
+  if (n == kBlock) keep_tail(level, z, nullptr);
+  hand_up(index, z, nullptr, n, base ? origin : 0.0);
 }
 
-/// An infinite sample is a missing one.
-void AllanPyramid::State::sanitized(std::size_t index, const double* z, std::size_t n) {
-  std::vector<double> copy(z, z + n);
-  for (double& v : copy)
-    if (std::isinf(v)) v = kMissing;
-  finish_block(index, copy.data(), n);
+/// Where something is missing: `z` as it stands in the tail, `sum` and `absent` as the terms and the level above need it.
+void AllanPyramid::State::holed_block(
+    std::size_t index, const double* z, const double* sum, const double* absent, std::size_t n) {
+  const double size = std::ldexp(1.0, static_cast<int>(index));
+  Level& level = at(index);
+  across(level, index, z, absent, n);
+  const double scale = block_scale(sum, n);
+  for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k)
+    add_present({sum, absent, size}, n, std::size_t{1} << k, scale, level.tally[k]);
+  if (n == kBlock) keep_tail(level, z, absent);
+  hand_up(index, sum, absent, n, 0);
 }
+
+/// Samples of which some are missing; an infinite one is.
+void AllanPyramid::State::holed_base(const double* x, std::size_t n) {
+  std::vector<double> values(x, x + n), sum(n), absent(n);
+  for (double& v : values) {
+    if (std::isinf(v)) v = kMissing;
+    if (std::isnan(v)) ++missing;
+    if (std::isnan(origin)) origin = v;
+  }
+  split(values.data(), n, origin, sum.data(), absent.data());
+  holed_block(0, values.data(), sum.data(), absent.data(), n);
+}
+
+/// The blocks that are not full are looked at too; no more samples come.
+void AllanPyramid::State::close() {
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const std::size_t held = std::exchange(levels[l].held, 0);
+    const std::vector<double> rest = levels[l].block, absent = levels[l].absent;
+    if (held > 0) finish_block(l, rest.data(), absent.empty() ? nullptr : absent.data(), held);
+  }
+}
+
+namespace {
+
+void add_point(std::uint64_t m,
+               const Tally& tally,
+               MissingSamples& missing,
+               std::vector<std::uint64_t>& without,
+               AllanCurve& curve) {
+  if (2 * m > curve.samples) return;
+  const long double factor = static_cast<long double>(m);
+  AllanPoint point;
+  point.m = m;
+  point.tau_s = static_cast<double>(factor) * curve.dt_s;
+  point.terms = tally.terms;
+  if (curve.missing == 0 && tally.terms > 0) {
+    point.deviation = static_cast<double>(
+        std::sqrt(tally.squares / (2.0L * static_cast<long double>(tally.terms))) / factor);
+    return curve.points.push_back(point);
+  }
+  Tally means = tally;
+  means.squares /= factor * factor;
+  const double dof =
+      tally.terms == 0
+          ? 1
+          : equivalent_dof(curve.type, {1}, m, tally.terms, stride_of(curve, point), curve.dt_s);
+  const auto found = missing.corrected(static_cast<double>(m), means, 2, dof);
+  missing.add_octave(static_cast<double>(m), means, found.variance);
+  if (found.variance < 0) return without.push_back(m);
+  point.deviation = static_cast<double>(std::sqrt(found.variance));
+  point.inflation = found.inflation;
+  point.added = found.added;
+  curve.points.push_back(point);
+}
+
+}  // namespace
 
 void AllanPyramid::StateDeleter::operator()(State* state) const {
   delete state;
@@ -226,40 +384,18 @@ void AllanPyramid::push(std::span<const double> samples) {
 
 AllanCurve AllanPyramid::finish(double dt_s) const {
   State state = *state_;  // the open blocks are closed in a copy: more samples may still come
-  for (std::size_t l = 0; l < state.levels.size(); ++l) {
-    const std::vector<double> rest(
-        state.levels[l].block.begin(),
-        state.levels[l].block.begin() + static_cast<std::ptrdiff_t>(state.levels[l].held));
-    state.levels[l].held = 0;
-    if (!rest.empty()) state.finish_block(l, rest.data(), rest.size());
-  }
+  state.close();
   AllanCurve curve;
   curve.dt_s = dt_s;
   curve.samples = state.samples;
   curve.missing = state.missing;
   curve.stride_divisor = 4;
-  std::uint64_t without_terms = 0;
-  const auto add = [&](std::uint64_t m, const Tally& tally) {
-    if (2 * m > state.samples) return;
-    if (tally.terms == 0) {
-      ++without_terms;
-      return;
-    }
-    AllanPoint point;
-    point.m = m;
-    point.tau_s = static_cast<double>(m) * dt_s;
-    point.terms = tally.terms;
-    const long double factor = static_cast<long double>(m);
-    point.deviation = static_cast<double>(
-        std::sqrt(tally.sum / (2.0L * static_cast<long double>(tally.terms))) / factor);
-    curve.points.push_back(point);
-  };
+  std::vector<std::uint64_t> without;
+  MissingSamples missing;
   for (std::size_t l = 0; l < state.levels.size(); ++l)
     for (std::size_t k = l == 0 ? 0 : 2; k < 3; ++k)
-      add(std::uint64_t{1} << (l + k), state.levels[l].tally[k]);
-  if (without_terms > 0)
-    curve.notes.push_back("gaps leave no term at the " + std::to_string(without_terms) +
-                          " longest averaging times");
+      add_point(std::uint64_t{1} << (l + k), state.levels[l].tally[k], missing, without, curve);
+  note_missing(without, curve);
   if (curve.points.empty())
     throw Error(
         {ErrorKind::numeric,

@@ -2,6 +2,8 @@
 
 #include "libchar/allan/confidence.hpp"
 
+#include <algorithm>
+
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/core/chi_square.hpp"
@@ -31,8 +33,11 @@ void note_total_bias(AllanCurve& curve, const Mixture& theta) {
 
 void add_intervals(AllanCurve& curve, const Mixture& theta) {
   for (AllanPoint& point : curve.points) {
+    Mixture with_added = theta;
+    with_added[static_cast<std::size_t>(Term::white)] += point.added * point.tau_s;
     point.edf = equivalent_dof(
-        curve.type, theta, point.m, point.terms, stride_of(curve, point), curve.dt_s);
+        curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s);
+    point.edf = std::max(1.0, point.edf / (point.inflation * point.inflation));
     point.ci68 = chi_square_interval(point.deviation, point.edf, kOneSigma);
     point.ci95 = chi_square_interval(point.deviation, point.edf, kTwoSided);
     point.reliable = point.edf >= kReliableDof;

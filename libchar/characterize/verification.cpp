@@ -179,7 +179,8 @@ bool verify(Characterization& recorded,
             const VerifyOptions& how,
             Progress& progress) {
   const std::uint64_t bytes = recorded.log.samples * sizeof(double);
-  const bool kept = bytes * 2 <= options.memory_bytes;
+  // What needs all samples has had those of the recording, and a simulated channel has no more.
+  const bool kept = !what_needs_all_samples(options).empty() || bytes * 2 <= options.memory_bytes;
   CharacterizeWorkspace workspace;
   auto& channels = recorded.channels;
   const std::size_t group =

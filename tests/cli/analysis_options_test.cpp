@@ -1,5 +1,6 @@
 // The same words mean the same in every verb that analyses, and no table carries a formula.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -91,4 +92,31 @@ TEST_CASE("every window of the library is offered by psd and by characterize") {
   for (const char* verb : {"psd", "characterize"})
     CHECK_THAT(test::run({verb, "--help"}).out,
                Contains("hann|rectangular|blackman_harris|flat_top|hann_nonzero"));
+}
+
+TEST_CASE(
+    "allan says which deviation a row is, and what a log beyond the memory allowed would take") {
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto table = test::run({"allan", log, "-c", "gyro_z", "--type", "mdev", "--taus", "1s"});
+  CHECK_THAT(
+      table.out,
+      Contains("edf,terms,curve\n") && Catch::EndsWith(",mdev\n") && Contains("\ngyro_z,deg/s,1,"));
+  for (const char* verb : {"allan", "characterize"}) {
+    const test::TemporaryFolder folder;
+    std::vector<std::string> words = {
+        verb, log, "-c", "gyro_z", "--memory", "100KiB", "--taus", "1s,10s", "--segment", "5s"};
+    if (verb == std::string("allan"))
+      words.resize(words.size() - 2);
+    else
+      words.insert(words.end(), {"-o", (folder / "out").string()});
+    const auto refused = test::run(words);
+    CAPTURE(verb);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err,
+               Contains("error E0701: a curve at other times than octaves takes all samples at "
+                        "once: 391 KiB, and 100 KiB are allowed") &&
+                   Contains("give --memory 391KiB, or read less with --channel, --from, --to"));
+    *(std::find(words.begin(), words.end(), "--memory") + 1) = "391KiB";
+    CHECK(test::run(words).code == 0);
+  }
 }

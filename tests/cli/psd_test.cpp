@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include "libchar/core/json.hpp"
@@ -154,4 +155,36 @@ TEST_CASE("psd writes whole files, keeps old ones, and refuses what cannot be") 
         std::string::npos);
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "30000"}).code == 4);
   CHECK(test::run({"psd", (folder / "absent.csv").string(), "--rate", "100"}).code == 3);
+}
+
+TEST_CASE("every option of psd means the same of a record in memory and of one that streams") {
+  const test::TemporaryFolder folder;
+  const std::string log = write_log(folder);
+  const std::vector<std::vector<std::string>> options = {{},
+                                                         {"--sides", "two"},
+                                                         {"--scaling", "ls"},
+                                                         {"--overlap", "0.75"},
+                                                         {"--window", "blackman_harris"},
+                                                         {"--detrend", "none"},
+                                                         {"--detrend", "linear"},
+                                                         {"--log-bins", "30"},
+                                                         {"--lines"},
+                                                         {"--json"},
+                                                         {"--from", "10s"}};
+  std::set<std::string> outputs;
+  for (const auto& option : options) {
+    const std::string segment = option.empty() || option[0] != "--from" ? "5000" : "4750";
+    std::vector<std::string> words = {"psd", log, "--rate", "100"};
+    words.insert(words.end(), option.begin(), option.end());
+    const test::Ran whole = test::run(words);
+    words.insert(words.end(), {"--segment", segment});
+    const test::Ran streamed = test::run(words);
+    CAPTURE(words);
+    REQUIRE(whole.code == 0);
+    const auto body = [](const std::string& out) {
+      return out.starts_with("{") ? parse_json(out, "out").at("channels").dump() : out;
+    };
+    CHECK(body(whole.out) == body(streamed.out));
+    CHECK(outputs.insert(whole.out).second);  // each changes something
+  }
 }

@@ -26,10 +26,10 @@ struct AllanVerb {
 };
 
 std::string as_csv(const Characterization& result) {
-  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms\n";
+  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n";
   for (const ChannelResult& c : result.channels)
     for (const AllanPoint& p : c.allan.points)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
                           csv_cell(c.channel.name),
                           csv_cell(c.channel.unit),
                           shortest(p.tau_s),
@@ -39,7 +39,8 @@ std::string as_csv(const Characterization& result) {
                           shortest(p.ci95.low),
                           shortest(p.ci95.high),
                           shortest(p.edf),
-                          p.terms);
+                          p.terms,
+                          name_of(c.allan.type));
   return text;
 }
 

@@ -24,19 +24,6 @@ double finite_or(double value, double instead) {
   return std::isfinite(value) ? value : instead;
 }
 
-/// A power of two that brings the largest deviation from the first sample near 1, so that squares
-/// neither overflow nor vanish; being a power of two it changes no bit of the result.
-double balancing_scale(std::span<const double> record) {
-  double largest = 0, first = std::numeric_limits<double>::quiet_NaN();
-  for (const double value : record) {
-    if (!std::isfinite(value)) continue;
-    if (std::isnan(first)) first = value / 2;
-    largest = std::max(largest, std::fabs(value / 2 - first));
-  }
-  if (largest == 0) return 1;
-  return std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1022, 1023));
-}
-
 AnchoredPhase empty_phase(std::uint64_t points, double scale, bool summed) {
   AnchoredPhase phase;
   phase.points = points;
@@ -106,6 +93,17 @@ Polynomial polynomial(const AnchoredPhase& phase, std::uint64_t position, bool o
 constexpr double kWeights[2][4] = {{1, -2, 1, 0}, {-1, 3, -3, 1}};
 
 }  // namespace
+
+double balancing_scale(std::span<const double> record) {
+  double largest = 0, first = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : record) {
+    if (!std::isfinite(value)) continue;
+    if (std::isnan(first)) first = value / 2;
+    largest = std::max(largest, std::fabs(value / 2 - first));
+  }
+  if (largest == 0) return 1;
+  return std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1022, 1023));
+}
 
 DoubleDouble operator+(DoubleDouble a, DoubleDouble b) {
   const DoubleDouble high = two_sum(a.high, b.high);

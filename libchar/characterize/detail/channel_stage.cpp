@@ -36,6 +36,11 @@ void add_spectrum(ChannelResult& result, const Spectrum& spectrum, const Quantiz
   result.spectrum = log_binned(spectrum, kPlottedBins);
 }
 
+// Octaves of the overlapping deviation: what the streaming form gives.
+bool octaves_only(const AllanOptions& allan) {
+  return allan.type == DeviationType::oadev && allan.grid == TauGrid::octave;
+}
+
 // A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
 template <class Step>
 void attempt(ChannelResult& result, const char* what, Step&& step) {
@@ -48,6 +53,15 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
 }
 
 }  // namespace
+
+std::string what_needs_all_samples(const CharacterizeOptions& options) {
+  if (options.data == SampleKind::phase) return "phase data";
+  if (!options.wanted.allan) return "";
+  if (options.allan.type != DeviationType::oadev)
+    return fmt::format("the deviation {}", name_of(options.allan.type));
+  if (options.allan.grid != TauGrid::octave) return "a curve at other times than octaves";
+  return options.full_overlap ? "a curve with full overlap" : "";
+}
 
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
@@ -77,7 +91,7 @@ void ChannelStage::stream(std::span<const double> samples) {
     kept_.insert(kept_.end(), samples.begin(), samples.end());
     return;
   }
-  if (options_->wanted.allan) streams_->allan.push(samples);
+  if (wants_fit()) streams_->allan.push(samples);
   if (options_->fit.remedies && wants_fit()) streams_->spikes.push(samples);
   if (streams_->blocks) return streams_->spectrum->push(samples, *streams_->blocks);
   if (options_->wanted.spectrum) streams_->spectrum->push(samples);
@@ -94,13 +108,6 @@ void ChannelStage::reserve(std::size_t samples) {
 
 void ChannelStage::stop_keeping() {
   if (!keeping_) return;
-  if (options_->data == SampleKind::phase)
-    throw Error({ErrorKind::usage,
-                 "E0701",
-                 "",
-                 "phase data longer than the memory budget cannot be streamed",
-                 "",
-                 "raise `memory_bytes`"});
   keeping_ = false;
   streams_ = std::make_unique<ChannelStreams>();
   const std::uint64_t segment = options_->spectrum.segment;
@@ -137,21 +144,22 @@ bool ChannelStage::wants_fit() const {
   return options_->wanted.fit || options_->wanted.allan;
 }
 
-// Octaves of the overlapping deviation: what the streaming form gives.
-bool ChannelStage::wants_octaves() const {
-  return options_->allan.type == DeviationType::oadev && options_->allan.grid == TauGrid::octave;
-}
-
-AllanCurve ChannelStage::allan_of_kept(double rate_hz) const {
-  const bool exact = kept_.size() <= options_->exact_samples;
-  if (exact || options_->full_overlap || !wants_octaves()) {
-    AllanOptions allan = options_->allan;
-    allan.data = DataKind::rate;  // `as_rate` has differenced phase data
-    return allan_deviation(kept_, 1 / rate_hz, allan);
-  }
+// The curve that the fit checks itself with, whatever is plotted.
+AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
+  AllanOptions octaves;
+  octaves.threads = options_->allan.threads;
+  if (kept_.size() <= options_->exact_samples) return allan_deviation(kept_, 1 / rate_hz, octaves);
   AllanPyramid pyramid;
   pyramid.push(kept_);
   return pyramid.finish(1 / rate_hz);
+}
+
+AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
+  const bool exact = kept_.size() <= options_->exact_samples || !options_->full_overlap;
+  if (octaves_only(options_->allan) && exact) return limited(octaves, options_->allan);
+  AllanOptions allan = options_->allan;
+  allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+  return allan_deviation(kept_, 1 / rate_hz, allan);
 }
 
 // Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
@@ -167,8 +175,8 @@ void ChannelStage::difference_kept(double rate_hz) {
   difference(kept_);
 }
 
-NoiseFit ChannelStage::fit_of_kept(const AllanCurve& allan, double rate_hz) const {
-  const bool opinion = wants_octaves() && !allan.points.empty();
+NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves, double rate_hz) const {
+  const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;
   if (cleaned && opinion) {
@@ -178,29 +186,29 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& allan, double rate_hz) cons
   }
   NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
                             rate_hz,
-                            opinion ? cleaned ? &own : &allan : nullptr,
+                            opinion ? cleaned ? &own : &octaves : nullptr,
                             options_->fit,
                             &workspace_->fit);
   add_spike_answer(despiked_.answer, fit);
   return fit;
 }
 
-NoiseFit ChannelStage::fit_of_streams(const AllanCurve& allan, double rate_hz) {
+NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz) {
   SpikeAnswer answer;
-  AllanCurve cleaned_allan;
+  AllanCurve cleaned_octaves;
   if (streams_->cleaner) {
     push_cleaned(streams_->cleaner->finish());
     answer = spike_answer(
         found_.difference_kurtosis, spike_alarm(found_.samples), streams_->cleaner->count());
-    cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
+    cleaned_octaves = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,
-                            allan.points.empty() ? nullptr
-                            : cleaned            ? &cleaned_allan
-                                                 : &allan,
+                            octaves.points.empty() ? nullptr
+                            : cleaned              ? &cleaned_octaves
+                                                   : &octaves,
                             options_->fit,
                             &workspace_->fit);
   add_spike_answer(answer, fit);
@@ -223,27 +231,40 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
   if (wants_fit())
-    attempt(result, "Allan deviation", [&] { result.allan = allan_of_kept(rate_hz); });
+    attempt(result, "Allan deviation", [&] {
+      octaves = octaves_of_kept(rate_hz);
+      result.allan = wanted_of_kept(octaves, rate_hz);
+    });
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
       add_spectrum(
           result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
   if (is_noise(result))
-    attempt(result, "noise fit", [&] { result.fit = fit_of_kept(result.allan, rate_hz); });
+    attempt(result, "noise fit", [&] { result.fit = fit_of_kept(octaves, rate_hz); });
 }
 
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
   if (wants_fit())
-    attempt(result, "Allan deviation", [&] { result.allan = streams_->allan.finish(1 / rate_hz); });
+    attempt(result, "Allan deviation", [&] {
+      octaves = streams_->allan.finish(1 / rate_hz);
+      result.allan = limited(octaves, options_->allan);
+    });
   if (streams_->blocks) streams_->spectrum->end(*streams_->blocks);
   if (options_->wanted.spectrum)
     attempt(result, "spectrum", [&] {
       add_spectrum(result, streams_->spectrum->finish(rate_hz), quantization());
+      if (options_->spectrum.segment == 0)
+        result.spectrum.notes.push_back(
+            fmt::format("segments of {} samples instead of a quarter of the record, which does "
+                        "not fit into the memory allowed",
+                        kStreamedSegment));
     });
   if (is_noise(result))
-    attempt(result, "noise fit", [&] { result.fit = fit_of_streams(result.allan, rate_hz); });
+    attempt(result, "noise fit", [&] { result.fit = fit_of_streams(octaves, rate_hz); });
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.

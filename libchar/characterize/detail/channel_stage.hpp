@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libchar/allan/allan_pyramid.hpp"
@@ -38,6 +39,9 @@ struct CharacterizeWorkspace {
   WelchWorkspace welch;
 };
 
+/// What of these options needs every sample at once ("phase data"); empty: the log may be streamed.
+std::string what_needs_all_samples(const CharacterizeOptions& options);
+
 class ChannelStage {
  public:
   /// Both must live as long.
@@ -46,8 +50,10 @@ class ChannelStage {
 
   /// Takes samples as the log has them.
   void push(std::span<const double> samples);
-  /// Moves what is kept into the streaming stages and keeps nothing from now on.
+  /// Moves what is kept into the streaming stages and keeps nothing from now on. Only where nothing needs all samples.
   void stop_keeping();
+  /// Lets go of what is kept; nothing is computed any more.
+  void drop() { kept_ = {}; }
   std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
   /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
   void reserve(std::size_t samples);
@@ -66,11 +72,11 @@ class ChannelStage {
   void stream(std::span<const double> samples);
   void push_cleaned(std::span<const double> samples);
   bool wants_fit() const;
-  bool wants_octaves() const;
-  AllanCurve allan_of_kept(double rate_hz) const;
+  AllanCurve octaves_of_kept(double rate_hz) const;
+  AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
   void difference_kept(double rate_hz);
-  NoiseFit fit_of_kept(const AllanCurve& allan, double rate_hz) const;
-  NoiseFit fit_of_streams(const AllanCurve& allan, double rate_hz);
+  NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz) const;
+  NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
   bool is_noise(ChannelResult& result) const;
   void finish_kept(ChannelResult& result, double rate_hz);

@@ -1,8 +1,11 @@
 #include "libchar/characterize/detail/channel_stages.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+
+#include "libchar/core/error.hpp"
 
 namespace libchar {
 namespace {
@@ -16,7 +19,7 @@ constexpr std::size_t kFittedAtOnce = 2;
 std::uint64_t budget_of(const CharacterizeOptions& options) {
   const bool whole_record_needed =
       options.wanted.spectrum && options.spectrum.segment == 0 && !(options.segment_s > 0);
-  return whole_record_needed || options.full_overlap
+  return whole_record_needed || !what_needs_all_samples(options).empty()
              ? options.memory_bytes
              : std::min(options.memory_bytes, kSmallLogBytes);
 }
@@ -24,7 +27,10 @@ std::uint64_t budget_of(const CharacterizeOptions& options) {
 }  // namespace
 
 ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
-    : options_(options), workspace_(workspace), budget_(budget_of(options)) {}
+    : options_(options),
+      workspace_(workspace),
+      budget_(budget_of(options)),
+      needs_all_samples_(what_needs_all_samples(options)) {}
 
 void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t channels = so_far.channels.size();
@@ -32,10 +38,8 @@ void ChannelStages::begin(const LogInfo& so_far) {
     options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
   for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_, workspace_);
   arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
-  if (surely_too_long(so_far)) {
-    for (ChannelStage& stage : stages_) stage.stop_keeping();
-    return;
-  }
+  too_long_ = needs_all_samples_.empty() && surely_too_long(so_far);
+  if (too_long_) return;
   // No value takes less than a byte of the file, and no more than the budget is kept.
   const std::uint64_t most =
       std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
@@ -43,11 +47,12 @@ void ChannelStages::begin(const LogInfo& so_far) {
 }
 
 void ChannelStages::block(const SampleBlock& samples) {
-  kept_bytes_ += samples.rows * samples.channels.size() * sizeof(double);
-  const bool too_much = kept_bytes_ > budget_;
+  bytes_ += samples.rows * samples.channels.size() * sizeof(double);
+  if (bytes_ > budget_) too_long_ = true;
+  if (refused()) return drop_all();
   arena_.execute([&] {
     tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
-      if (too_much) stages_[c].stop_keeping();
+      if (too_long_) stages_[c].stop_keeping();
       stages_[c].push({samples.channels[c], samples.rows});
     });
   });
@@ -60,7 +65,37 @@ std::vector<std::size_t> ChannelStages::need_second_pass() const {
   return out;
 }
 
+bool ChannelStages::refused() const {
+  return too_long_ && !needs_all_samples_.empty();
+}
+
+void ChannelStages::drop_all() {
+  for (ChannelStage& stage : stages_) stage.drop();
+}
+
+// The log was read to its end for this sentence: only then is it known how much memory would do.
+void ChannelStages::refuse(const LogInfo& log) const {
+  const std::uint64_t unit = budget_ < (1U << 20U) ? 1U << 10U : 1U << 20U;
+  const std::string_view name = budget_ < (1U << 20U) ? "KiB" : "MiB";
+  const std::uint64_t needed = (bytes_ + unit - 1) / unit;
+  throw Error({ErrorKind::usage,
+               "E0701",
+               log.file,
+               fmt::format("{} takes all samples at once: {} {}, and {} {} are allowed",
+                           needs_all_samples_,
+                           needed,
+                           name,
+                           budget_ / unit,
+                           name),
+               "",
+               fmt::format("give `memory_bytes` {}{}, or read less with `channels`, `from_s`, "
+                           "`to_s`",
+                           needed,
+                           name)});
+}
+
 std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& progress) {
+  if (refused()) refuse(log);
   std::vector<ChannelResult> results(stages_.size());
   for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
     progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");
@@ -79,8 +114,7 @@ bool ChannelStages::surely_too_long(const LogInfo& so_far) const {
   const bool window = options_.reading.from_s || options_.reading.to_s;
   const double bytes = static_cast<double>(so_far.rows) *
                        static_cast<double>(so_far.channels.size()) * sizeof(double);
-  return !window && options_.data != SampleKind::phase &&
-         bytes > kDoubt * static_cast<double>(budget_);
+  return !window && bytes > kDoubt * static_cast<double>(budget_);
 }
 
 SecondPass::SecondPass(ChannelStages& first, std::vector<std::size_t> channels, int threads)

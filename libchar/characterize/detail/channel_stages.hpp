@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <string>
 #include <vector>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
@@ -24,15 +25,22 @@ class ChannelStages final : public BlockSink {
   std::vector<std::size_t> need_second_pass() const;
   std::vector<ChannelStage>& stages() { return stages_; }
 
-  /// Curves and fits, two channels at a time: memory stays bounded however many there are.
+  /// Curves and fits, two channels at a time: memory stays bounded however many there are. Throws Error(usage) where an option
+  /// needs all samples and they do not fit.
   std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress);
 
  private:
   bool surely_too_long(const LogInfo& so_far) const;
+  bool refused() const;
+  void drop_all();
+  [[noreturn]] void refuse(const LogInfo& log) const;
 
   CharacterizeOptions options_;  ///< with the segment in samples, once the rate is known
   CharacterizeWorkspace& workspace_;
-  std::uint64_t budget_ = 0, kept_bytes_ = 0;
+  std::uint64_t budget_ = 0;
+  std::uint64_t bytes_ = 0;        ///< of all samples so far, kept or not
+  std::string needs_all_samples_;  ///< what does, if anything
+  bool too_long_ = false;          ///< to be kept: streamed, or refused and only counted
   tbb::task_arena arena_;
   std::vector<ChannelStage> stages_;
 };
