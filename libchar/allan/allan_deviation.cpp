@@ -12,9 +12,9 @@
 //   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
 //                 ends by reflection about the end point; that is, the rate is mirrored
 //
-// Where samples of a rate are missing the first two lines take means over what is present (detail/missing_samples.cpp); the others drop
-// each term that touches a missing sample, as all of them do for phase. Sums run over fixed pieces of 65536 starts,
-// added in order, so that the result does not depend on the number of threads.
+// Where samples of a rate are missing all but TOTDEV take means over what is present (detail/missing_samples.cpp); of phase each term
+// that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts, added in order, so that the result does not
+// depend on the number of threads.
 
 #include "libchar/allan/allan_deviation.hpp"
 

@@ -60,7 +60,7 @@ struct AllanOptions {
 };
 
 /// Deviations of a record with full overlap. NaN = missing: means are over what is present of a window, more than half
-/// (detail/missing_samples.cpp); modified deviations and phase drop every term that touches a missing one.
+/// (detail/missing_samples.cpp); phase drops every term that touches a missing one.
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
 /// needed; Error(usage) for a bad tau.

@@ -358,7 +358,8 @@ void add_point(std::uint64_t m,
       tally.terms == 0
           ? 1
           : equivalent_dof(curve.type, {1}, m, tally.terms, stride_of(curve, point), curve.dt_s);
-  const auto found = missing.corrected(static_cast<double>(m), means, 2, dof);
+  const auto found =
+      missing.corrected(static_cast<double>(m), means, 2, 1 / static_cast<double>(m), dof);
   missing.add_octave(static_cast<double>(m), means, found.variance);
   if (found.variance < 0) return without.push_back(m);
   point.deviation = static_cast<double>(std::sqrt(found.variance));

@@ -300,40 +300,57 @@ TEST_CASE("means are over what is present of a window that is more than half the
   }
 }
 
-TEST_CASE("modified deviations drop exactly the terms that touch a missing sample") {
+TEST_CASE("modified deviations average the terms of means over what is present") {
+  auto y = white(1500, 14, 50);
+  std::mt19937_64 engine(15);
+  for (const int missing : {1, 200}) {
+    for (int i = 0; i < missing; ++i) y[engine() % y.size()] = std::nan("");
+    const test::PresentReference reference(y, [](std::uint64_t) { return 1; });
+    const AllanCurve curve = curve_of(y, DeviationType::mdev),
+                     time = curve_of(y, DeviationType::tdev);
+    REQUIRE(time.points.size() == curve.points.size());
+    CHECK(curve.points.back().m == 256);
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      const AllanPoint& p = curve.points[k];
+      INFO("m " << p.m);
+      const auto t = reference.modified(p.m);
+      CHECK(p.terms == t.terms);
+      CHECK(p.deviation == Approx(std::sqrt(static_cast<double>(t.variance))).epsilon(1e-12));
+      CHECK(p.inflation == Approx(static_cast<double>(t.inflation)).epsilon(1e-12));
+      CHECK(time.points[k].deviation ==
+            Approx(p.deviation * p.tau_s / std::sqrt(3.0)).epsilon(1e-14));
+    }
+  }
+}
+
+TEST_CASE(
+    "phase data drop exactly the terms that touch a missing point; total deviation takes a "
+    "stretch") {
   const std::size_t n = 6000;
   auto y = white(n, 10, 50);
   for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 3000UL, 3001UL, 3002UL, 5999UL})
     y[gap] = std::nan("");
   y[2500] = std::numeric_limits<double>::infinity();
-  const AllanCurve curve = curve_of(y, DeviationType::mdev);
-  CHECK(curve.missing == 9);
-  for (const auto& p : curve.points) {
-    if (p.m > 64) break;  // the direct sum is quadratic
-    const std::size_t span = 3 * p.m - 1;
+  AllanOptions phase;
+  phase.data = DataKind::phase;
+  for (const auto& p : allan_deviation(y, 1, phase).points) {
     std::uint64_t terms = 0;
     long double sum = 0;
-    for (std::size_t i = 0; i + span <= n; ++i) {
+    for (std::size_t i = 0; i + 2 * p.m < n; ++i) {
       const auto first = y.begin() + static_cast<std::ptrdiff_t>(i);
-      if (!std::all_of(first, first + static_cast<std::ptrdiff_t>(span), [](double v) {
+      if (!std::all_of(first, first + static_cast<std::ptrdiff_t>(2 * p.m + 1), [](double v) {
             return std::isfinite(v);
           }))
         continue;
-      long double d = 0;
-      for (std::size_t j = 0; j < span; ++j)
-        for (std::size_t s = 0; s < p.m; ++s)  // every phase difference averaged over m starts
-          if (j >= s && j < s + 2 * p.m)
-            d += static_cast<long double>(j < s + p.m ? -y[i + j] : y[i + j]) /
-                 static_cast<long double>(p.m);
+      const auto d = static_cast<long double>((y[i + 2 * p.m] - y[i + p.m]) - (y[i + p.m] - y[i]));
       ++terms;
       sum += d * d;
     }
+    const auto count = 2 * static_cast<long double>(terms);
     INFO("m " << p.m);
     CHECK(p.terms == terms);
-    const long double m = static_cast<long double>(p.m);
-    CHECK(p.deviation == Approx(std::sqrt(static_cast<double>(
-                                    sum / (2 * m * m * static_cast<long double>(terms)))))
-                             .epsilon(1e-12));
+    CHECK(p.deviation * p.tau_s ==
+          Approx(std::sqrt(static_cast<double>(sum / count))).epsilon(1e-12));
   }
   const AllanCurve total = curve_of(y, DeviationType::totdev);
   REQUIRE_FALSE(total.notes.empty());

@@ -60,7 +60,45 @@ class PresentReference {
     const long double count = (order == 2 ? 2.0L : 6.0L) * static_cast<long double>(truth.terms);
     const auto octave = static_cast<std::size_t>(std::log2(static_cast<double>(m)) + 1e-9);
     const long double spread = octave == 0 ? 0 : spread_[octave - 1];
-    correct(truth, squares / count, short_of / count, spread, m, order, stride);
+    const auto type =
+        stride == m ? (order == 2 ? libchar::DeviationType::adev : libchar::DeviationType::hdev)
+                    : (order == 2 ? libchar::DeviationType::oadev : libchar::DeviationType::ohdev);
+    correct(truth,
+            squares / count,
+            short_of / count,
+            spread,
+            1 / static_cast<double>(m),
+            white_dof(type, m, truth.terms, stride));
+    return truth;
+  }
+
+  /// Modified: the mean of the Allan terms at m starts in a row, all of which there must be.
+  PresentTruth modified(std::uint64_t m) const {
+    PresentTruth truth;
+    const auto wide = static_cast<long double>(m);
+    long double squares = 0, short_of = 0;
+    for (std::uint64_t i = 0; i + 3 * m <= y_.size() + 1; ++i) {
+      long double sum = 0, less = 0;
+      bool whole = true;
+      for (std::uint64_t k = i; k < i + m && whole; ++k) {
+        const auto [low, a] = window(k, m);
+        const auto [high, b] = window(k + m, m);
+        whole = 2 * a > m && 2 * b > m;
+        sum += high - low;
+        less += 1.0L / static_cast<long double>(a) + 1.0L / static_cast<long double>(b) - 2 / wide;
+      }
+      if (!whole) continue;
+      ++truth.terms;
+      squares += sum / wide * (sum / wide);
+      short_of += less / wide * (wide * wide + 1) / (2 * wide * wide);
+    }
+    if (truth.terms == 0) return truth;
+    const auto count = 2 * static_cast<long double>(truth.terms);
+    const auto octave = static_cast<std::size_t>(std::log2(static_cast<double>(m)) + 1e-9);
+    const double unit = static_cast<double>((wide * wide + 1) / (2 * wide * wide * wide)),
+                 dof = white_dof(libchar::DeviationType::mdev, m, truth.terms, 1);
+    correct(
+        truth, squares / count, short_of / count, octave == 0 ? 0 : spread_[octave - 1], unit, dof);
     return truth;
   }
 
@@ -82,13 +120,13 @@ class PresentReference {
   }
 
   /// Degrees of freedom of the terms in white noise, by the library.
-  static double white_dof(std::uint64_t m, int order, std::uint64_t terms, std::uint64_t stride) {
+  static double white_dof(libchar::DeviationType type,
+                          std::uint64_t m,
+                          std::uint64_t terms,
+                          std::uint64_t stride) {
     libchar::AllanCurve curve;
-    curve.type = order == 2 ? libchar::DeviationType::oadev : libchar::DeviationType::ohdev;
-    if (stride == m)
-      curve.type = order == 2 ? libchar::DeviationType::adev : libchar::DeviationType::hdev;
-    else if (stride > 1)
-      curve.stride_divisor = m / stride;
+    curve.type = type;
+    if (stride > 1 && stride < m) curve.stride_divisor = m / stride;
     curve.points.resize(1);
     curve.points[0].m = m;
     curve.points[0].tau_s = static_cast<double>(m);
@@ -102,14 +140,13 @@ class PresentReference {
                       long double before,
                       long double c,
                       long double spread,
-                      std::uint64_t m,
-                      int order,
-                      std::uint64_t stride) {
+                      double of_white,
+                      double dof) {
     truth.variance = before;
     if (c < 1e-15L) return;
-    const double dof = white_dof(m, order, truth.terms, stride), unit = 2 / (9 * dof);
-    const long double white = 1 + c * static_cast<long double>(m);
-    const long double ratio = before / (spread * (1 / static_cast<long double>(m) + c));
+    const double unit = 2 / (9 * dof);
+    const long double white = 1 + c / static_cast<long double>(of_white);
+    const long double ratio = before / (spread * white * static_cast<long double>(of_white));
     const long double z = (std::cbrt(ratio) - (1 - unit)) / std::sqrt(unit);
     const long double w = 1 / (1 + z * z * z * z / 16);
     const long double less = before - c * spread, rest = less > 0 ? 1 - w : 0;

@@ -1,4 +1,4 @@
-// Missing samples and the Allan deviation: `allan_gaps_bench [records, default 200] [log10 of samples, default 4.2]`. White, flicker and
+// Missing samples and the Allan deviation: `allan_gaps_bench [records, default 200] [log10 of samples, default 4.2] [type, default oadev]`. White, flicker and
 // walk with samples missing at random and in gaps of random length; per octave the bias of the deviation against the same records
 // whole (per cent) and the share of 95 % intervals that hold the truth, full overlap and one pass.
 
@@ -66,8 +66,10 @@ void add(const AllanCurve& holed,
     const auto k = static_cast<std::size_t>(std::lround(std::log2(static_cast<double>(p.m))));
     if (columns.size() <= k) columns.resize(k + 1);
     Column& c = columns[k];
-    const double truth = std::sqrt(allan_variance(theta, static_cast<double>(p.m), 1)),
-                 full = whole.points[k].deviation;
+    const double full = whole.points[k].deviation;
+    const double truth = deviation_row(curve.type).is_allan()
+                             ? std::sqrt(allan_variance(theta, static_cast<double>(p.m), 1))
+                             : full;
     c.sum += p.deviation * p.deviation;
     c.whole += full * full;
     ++c.points;
@@ -96,6 +98,9 @@ void show(const Scene& scene,
 
 int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 200;
+  AllanOptions options;
+  options.type = argc > 3 ? deviation_type(argv[3]).value_or(options.type) : options.type;
+  const bool octaves = options.type == DeviationType::oadev;
   const auto n = static_cast<std::size_t>(std::pow(10, argc > 2 ? std::atof(argv[2]) : 4.2));
   for (const Scene& scene :
        {Scene{"white", 1, 0, 0}, Scene{"flicker", 0, 1, 0}, Scene{"walk", 0, 0, 1}})
@@ -114,12 +119,12 @@ int main(int argc, char** argv) {
       std::vector<Column> exact, streamed;
       for (int r = 0; r < records; ++r) {
         std::vector<double> y = source.record(scene.q, scene.b, scene.k);
-        const AllanCurve whole = allan_deviation(y, 1), passed = one_pass(y);
+        const AllanCurve whole = allan_deviation(y, 1, options), passed = one_pass(y);
         punch(y, gaps, source.gauss());
-        add(allan_deviation(y, 1), whole, theta, exact);
-        add(one_pass(y), passed, theta, streamed);
+        add(allan_deviation(y, 1, options), whole, theta, exact);
+        if (octaves) add(one_pass(y), passed, theta, streamed);
       }
       show(scene, gaps, "overlap", exact);
-      show(scene, gaps, "stream", streamed);
+      if (octaves) show(scene, gaps, "stream", streamed);
     }
 }

@@ -11,10 +11,11 @@
 //
 // white noise has 2^j sigma^2(2^j) = its variance at every octave, so it is exact for white noise and any gaps; samples missing
 // independently have A ~ 2^-j, which is the sum above. Between octaves S^2 is interpolated as a power of m.
-// Third differences: weights 1, -2, 1 of the windows, so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n).
+// Third differences: weights 1, -2, 1 of the windows, so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n). Modified: d is the mean of the
+// Allan terms at m starts in a row, all of which there must be, and c that of theirs times (m^2+1)/(2 m^2), as white noise has it.
 //
 // v = sum d^2 / (2 n) - c S^2 has the scatter of the whole for what is left, and few degrees of freedom may leave less than nothing.
-// In white noise v / (1 + c m) is as good and does neither. So both are weighted: w for the latter, 1 - w for the former,
+// In white noise sum d^2 / (2 n) / (1 + c m) is as good and does neither. So both are weighted: w for the latter, 1 - w for the former,
 // w = 1 / (1 + (z/2)^4), z the distance in standard deviations from what white noise of this S^2 would give (Wilson & Hilferty 1931).
 // Noise bluer than white (z < -4) of which c S^2 leaves less than two standard deviations is hidden, and so it is at longer times.
 
@@ -52,18 +53,16 @@ double deviate(double ratio, double dof) {
 
 }  // namespace
 
-MissingSamples::Corrected MissingSamples::corrected(double m,
-                                                    const PresentTerms& terms,
-                                                    double divisor,
-                                                    double dof) const {
+MissingSamples::Corrected MissingSamples::corrected(
+    double m, const PresentTerms& terms, double divisor, double unit, double dof) const {
   if (terms.terms == 0) return {};
   const long double count =
       static_cast<long double>(divisor) * static_cast<long double>(terms.terms);
   const long double before = terms.squares / count, c = terms.shortfall / count;
-  const long double spread_here = spread(m), white = 1 + c * static_cast<long double>(m);
+  const long double spread_here = spread(m), white = 1 + c / static_cast<long double>(unit);
   const long double less = before - c * spread_here;
   if (c == 0 || before == 0 || !(spread_here > 0)) return {before / white, 1, 0};
-  const long double expected = spread_here * white / static_cast<long double>(m);
+  const long double expected = spread_here * white * static_cast<long double>(unit);
   const double z = deviate(static_cast<double>(before / expected), dof);
   constexpr double kBluer = -4, kToldApart = 2;
   const bool bluer = z < kBluer || m > hidden_from_;

@@ -31,8 +31,10 @@ class MissingSamples {
     double inflation = 1;  ///< of the relative standard deviation
     double added = 0;      ///< what was taken off
   };
-  /// `divisor` 2 for Allan terms, 6 for Hadamard's; `dof` of the terms in white noise.
-  Corrected corrected(double m, const PresentTerms& terms, double divisor, double dof) const;
+  /// `divisor` 2 for Allan terms, 6 for Hadamard's; `unit`: the variance of white noise of variance 1, none missing; `dof` of the terms
+  /// in white noise.
+  Corrected corrected(
+      double m, const PresentTerms& terms, double divisor, double unit, double dof) const;
   /// The Allan terms of the next octave, m = 1, 2, 4 …, and the variance that was found for it; not positive: none.
   void add_octave(double m, const PresentTerms& terms, long double variance);
 

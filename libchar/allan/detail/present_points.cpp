@@ -36,13 +36,20 @@ double white_dof(DeviationType type, std::uint64_t m, std::uint64_t terms, std::
   return terms == 0 ? 1 : equivalent_dof(type, {1}, m, terms, stride, 1);
 }
 
+/// Variance of white noise of variance 1.
+double white_unit(const DeviationRow& row, std::uint64_t m) {
+  const auto factor = static_cast<double>(m);
+  return row.of_sum ? (factor * factor + 1) / (2 * factor * factor * factor) : 1 / factor;
+}
+
 MissingSamples octaves_below(const PresentSums& sums, std::uint64_t largest) {
   MissingSamples missing;
   for (std::uint64_t m = 1; m < largest; m *= 2) {
     const PresentTerms terms = all_terms(sums, 1, m, 1);
     const auto factor = static_cast<double>(m);
     const double dof = white_dof(DeviationType::oadev, m, terms.terms, 1);
-    missing.add_octave(factor, terms, missing.corrected(factor, terms, 2, dof).variance);
+    missing.add_octave(
+        factor, terms, missing.corrected(factor, terms, 2, 1 / factor, dof).variance);
   }
   return missing;
 }
@@ -50,7 +57,7 @@ MissingSamples octaves_below(const PresentSums& sums, std::uint64_t largest) {
 }  // namespace
 
 bool of_window_means(const DeviationRow& row) {
-  return !row.of_sum && !row.reflected;
+  return !row.reflected;
 }
 
 std::vector<AllanPoint> points_of_present(std::span<const double> rate,
@@ -63,10 +70,12 @@ std::vector<AllanPoint> points_of_present(std::span<const double> rate,
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     const std::uint64_t stride = row.overlapping ? 1 : m;
-    const PresentTerms terms = all_terms(sums, row.order - 1, m, stride);
+    const PresentTerms terms =
+        row.of_sum ? modified_terms(sums, m) : all_terms(sums, row.order - 1, m, stride);
     if (terms.terms == 0) return;
     const double dof = white_dof(row.type, m, terms.terms, stride);
-    const auto found = missing.corrected(static_cast<double>(m), terms, row.divisor, dof);
+    const auto found =
+        missing.corrected(static_cast<double>(m), terms, row.divisor, white_unit(row, m), dof);
     if (found.variance < 0) return;
     AllanPoint& point = points[k];
     point.m = m;

@@ -76,4 +76,42 @@ PresentTerms present_terms(const PresentSums& sums,
   return total;
 }
 
+PresentTerms modified_terms(const PresentSums& sums, std::uint64_t m) {
+  const std::uint64_t samples = sums.present.size() - 1;
+  if (3 * m > samples + 1) return {};
+  const auto factor = static_cast<double>(m);
+  const double of_white = (factor * factor + 1) / (2 * factor * factor);
+  // Running sums over the last m starts, from the first where all are there: u, and what it lacks.
+  std::vector<double> d(samples - 2 * m + 1), less(d.size());
+  std::uint64_t in_a_row = 0;
+  long double sum = 0, lacks = 0, squares = 0, shortfall = 0;
+  PresentTerms total;
+  for (std::uint64_t k = 0; k < d.size(); ++k) {
+    const Window a = window(sums, k, m), b = window(sums, k + m, m);
+    if (!has_mean(a.present, factor) || !has_mean(b.present, factor)) {
+      in_a_row = 0;
+      sum = lacks = 0;
+      continue;
+    }
+    d[k] = b.mean - a.mean;
+    less[k] = 1 / a.present + 1 / b.present - 2 / factor;
+    sum += static_cast<long double>(d[k]);
+    lacks += static_cast<long double>(less[k]);
+    if (in_a_row == m) {
+      sum -= static_cast<long double>(d[k - m]);
+      lacks -= static_cast<long double>(less[k - m]);
+    } else {
+      ++in_a_row;
+    }
+    if (in_a_row < m) continue;
+    squares += sum * sum;
+    shortfall += lacks;
+    ++total.terms;
+  }
+  const auto wide = static_cast<long double>(factor);
+  total.squares = squares / wide / wide;
+  total.shortfall = shortfall / wide * static_cast<long double>(of_white);
+  return total;
+}
+
 }  // namespace libchar

@@ -27,4 +27,7 @@ PresentTerms present_terms(const PresentSums& sums,
                            std::uint64_t last,
                            std::uint64_t stride);
 
+/// Every term of the modified variance: the mean of the Allan terms at m starts in a row, all of which there must be.
+PresentTerms modified_terms(const PresentSums& sums, std::uint64_t m);
+
 }  // namespace libchar
