@@ -1,0 +1,30 @@
+#pragma once
+// The score of a step at every place of a series at once.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/fit/events/regression.hpp"
+
+namespace libchar {
+
+struct StepScan {
+  std::vector<double>
+      score;  ///< [t]: of a step between points t-1 and t; 0 where none is looked for
+  std::vector<double>
+      distance;  ///< standard deviations of neighbouring scores' differences, for rough_threshold
+  std::uint64_t best = 0;  ///< where |score| is largest
+  double best_score() const { return score[best]; }
+};
+
+/// Scores beside what a regression already holds; no step is looked for in the first and last `margin` points.
+StepScan scan_steps(const Regression& beside,
+                    std::span<const double> weight,
+                    std::uint64_t points,
+                    std::uint64_t margin);
+
+/// Where the best step is with 95 %: the places whose score squared is at most 7.35 below the best one's.
+Interval step_place(const StepScan& scan, std::uint64_t margin);
+
+}  // namespace libchar
