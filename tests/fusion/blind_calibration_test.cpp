@@ -10,15 +10,6 @@
 
 using namespace libchar::fusion;
 
-namespace {
-
-Eigen::VectorXd vector(const nlohmann::json& list) {
-  const std::vector<double> values = list;
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-}  // namespace
-
 TEST_CASE("blind calibration on the Gram matrix: two gauges") {
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd u = inputs.block("u", 5);
@@ -37,9 +28,11 @@ TEST_CASE("blind calibration on the Gram matrix: two gauges") {
     for (Eigen::Index k = 0; k < u.cols(); ++k) blind.step(Sample(u.col(k).data(), 5));
     blind.solve();
     CHECK(test::worst(
-              blind.inverse_gain(), vector(answer["inverse_gain"]), c.absolute, c.relative) <= 1);
+              blind.inverse_gain(), test::vector(answer["inverse_gain"]), c.absolute, c.relative) <=
+          1);
     CHECK(test::worst(
-              blind.offset(), vector(answer["beta"]), c.offset_absolute, c.offset_relative) <= 1);
+              blind.offset(), test::vector(answer["beta"]), c.offset_absolute, c.offset_relative) <=
+          1);
   }
 }
 

@@ -13,11 +13,6 @@ using namespace libchar::fusion;
 
 namespace {
 
-Eigen::VectorXd vector(const nlohmann::json& list) {
-  const std::vector<double> values = list;
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 double rms_501_2000(const std::string& name,
                     const test::Values& options,
                     const Eigen::MatrixXd& y,
@@ -44,20 +39,20 @@ TEST_CASE("least squares: calibration and weights of the known answers") {
     of_c.add(Sample(c.col(k).data(), 5), x[k]);
   }
   const LearntWeights corrected = of_u.weights({.calibrate = true, .sum_to_one = false});
-  CHECK(test::worst(corrected.gain, vector(answer["a"]), 1.11e-15, 1.19e-15) <= 1);
-  CHECK(test::worst(corrected.bias, vector(answer["b"]), 5.55e-17, 1.64e-16) <= 1);
-  CHECK(test::worst(corrected.weights, vector(answer["w_uncal_corrected"]), 6.84e-16, 1.44e-13) <=
-        1);
+  CHECK(test::worst(corrected.gain, test::vector(answer["a"]), 1.11e-15, 1.19e-15) <= 1);
+  CHECK(test::worst(corrected.bias, test::vector(answer["b"]), 5.55e-17, 1.64e-16) <= 1);
+  CHECK(test::worst(
+            corrected.weights, test::vector(answer["w_uncal_corrected"]), 6.84e-16, 1.44e-13) <= 1);
   CHECK(test::worst(of_c.weights({.sum_to_one = false}).weights,
-                    vector(answer["w_cal"]),
+                    test::vector(answer["w_cal"]),
                     4.44e-16,
                     1.04e-13) <= 1);
   CHECK(test::worst(of_c.weights({.sum_to_one = true}).weights,
-                    vector(answer["w_cal_sum1"]),
+                    test::vector(answer["w_cal_sum1"]),
                     4.44e-16,
                     1.69e-15) <= 1);
   const LearntWeights affine = of_u.weights({.sum_to_one = false, .constant = true});
-  const Eigen::VectorXd expected = vector(answer["w_affine_uncal_then_const"]);
+  const Eigen::VectorXd expected = test::vector(answer["w_affine_uncal_then_const"]);
   CHECK(test::worst(affine.weights, expected.head(5), 6.84e-16, 1.44e-13) <= 1);
   CHECK(affine.constant == Approx(expected[5]).epsilon(1e-12));
 

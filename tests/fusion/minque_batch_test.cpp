@@ -13,15 +13,11 @@ using namespace libchar::fusion;
 
 namespace {
 
-Eigen::VectorXd vector(const nlohmann::json& list) {
-  const std::vector<double> values = list;
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 Eigen::MatrixXd matrix(const nlohmann::json& rows) {
   Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()),
                     static_cast<Eigen::Index>(rows[0].size()));
   for (Eigen::Index i = 0; i < m.rows(); ++i)
-    m.row(i) = vector(rows[static_cast<std::size_t>(i)]).transpose();
+    m.row(i) = test::vector(rows[static_cast<std::size_t>(i)]).transpose();
   return m;
 }
 Eigen::MatrixXd covariance(const Eigen::MatrixXd& y) {
@@ -36,16 +32,17 @@ TEST_CASE("MINQUE and REML of a record") {
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(5, 1),
                         c = covariance(residuals(inputs.block("c", 5), one));
-  CHECK(test::worst(c.diagonal(), vector(answers["minque_batch"]["varPY"]), 4.44e-16, 1.2e-15) <=
-        1);
-  CHECK(test::worst(minque(c, one), vector(answers["minque_batch"]["sigma2"]), 4.44e-16, 1.2e-15) <=
+  CHECK(test::worst(
+            c.diagonal(), test::vector(answers["minque_batch"]["varPY"]), 4.44e-16, 1.2e-15) <= 1);
+  CHECK(test::worst(
+            minque(c, one), test::vector(answers["minque_batch"]["sigma2"]), 4.44e-16, 1.2e-15) <=
         1);
   CHECK(test::worst(minque(Eigen::VectorXd(c.diagonal())),
-                    vector(answers["minque_batch"]["sigma2"]),
+                    test::vector(answers["minque_batch"]["sigma2"]),
                     4.44e-16,
                     1.2e-15) <= 1);
-  CHECK(test::worst(reml(c, one), vector(answers["reml_batch"]["sigma2"]), 2.66e-15, 7.19e-15) <=
-        1);
+  CHECK(test::worst(
+            reml(c, one), test::vector(answers["reml_batch"]["sigma2"]), 2.66e-15, 7.19e-15) <= 1);
 }
 
 TEST_CASE("two inputs: variances, gain, estimates") {
@@ -53,7 +50,7 @@ TEST_CASE("two inputs: variances, gain, estimates") {
   const test::Vectors inputs("minque_r2_inputs.csv"), expected("minque_r2_gls.csv");
   const Eigen::MatrixXd h = matrix(answer["H"]), y = inputs.block("y", 6);
   const Eigen::VectorXd v = minque(covariance(residuals(y, h)), h);
-  CHECK(test::worst(v, vector(answer["sigma2"]), 2.6e-18, 1.25e-14) <= 1);
+  CHECK(test::worst(v, test::vector(answer["sigma2"]), 2.6e-18, 1.25e-14) <= 1);
   GeneralizedLeastSquares gls(h);
   std::vector<int> all(6);
   std::iota(all.begin(), all.end(), 0);

@@ -16,17 +16,17 @@ using namespace libchar::fusion;
 
 namespace {
 
-struct Scene {
+struct TrainingScene {
   Eigen::MatrixXd y;
   Eigen::VectorXd x;
   Array array;
 };
 
 /// Three channels of unlike gain, bias and noise; the first `learning` instants are learnt from.
-Scene scene(Eigen::Index instants, Eigen::Index learning) {
+TrainingScene scene(Eigen::Index instants, Eigen::Index learning) {
   test::Gaussian gauss(11);
   const Eigen::Array3d gain(1.01, 0.9, 1.1), bias(-0.1, 0.4, 0), deviation(0.5, 0.2, 1);
-  Scene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::array(3)};
+  TrainingScene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::array(3)};
   for (Eigen::Index k = 0; k < instants; ++k) {
     made.x[k] = 2.4 * gauss();
     for (Eigen::Index i = 0; i < 3; ++i)
@@ -36,7 +36,7 @@ Scene scene(Eigen::Index instants, Eigen::Index learning) {
   return made;
 }
 
-std::unique_ptr<Runner> trained(const Scene& s, const test::Values& values = {}) {
+std::unique_ptr<Runner> trained(const TrainingScene& s, const test::Values& values = {}) {
   auto runner = test::make("perceptron", s.array, values);
   const Eigen::Index n = s.array.learning_samples;
   runner->learn(s.y.leftCols(n), s.x.head(n).transpose());
@@ -98,7 +98,7 @@ TEST_CASE("tanh network: derivatives against differences; neurons in any order")
 }
 
 TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
-  const Scene s = scene(22000, 4000);
+  const TrainingScene s = scene(22000, 4000);
   // The best there can be: least squares with a constant, from the same window.
   Eigen::MatrixXd design(4000, 4);
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
@@ -117,7 +117,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
 }
 
 TEST_CASE("perceptron: learns a bent sensor") {
-  Scene s = scene(8000, 4000);
+  TrainingScene s = scene(8000, 4000);
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
   auto runner = trained(s, {{"starts", 1}, {"neurons", 6}});
   const double ours =
@@ -131,7 +131,7 @@ TEST_CASE("perceptron: learns a bent sensor") {
 }
 
 TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not matter") {
-  const Scene s = scene(3000, 2000);
+  const TrainingScene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
   const Eigen::MatrixXd x = test::run(*trained(s), rest).x;
   CHECK(test::run(*trained(s), rest).x == x);
@@ -145,37 +145,37 @@ TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not
 }
 
 TEST_CASE("perceptron: offset and scale cost nothing; a constant channel drops out") {
-  const Scene s = scene(3000, 2000);
+  const TrainingScene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
   const Eigen::MatrixXd x = test::run(*trained(s, {{"neurons", 3}}), rest).x;
   for (const double offset : {1e9, -1e6}) {
-    Scene moved = s;
+    TrainingScene moved = s;
     moved.y.array() += offset;
     moved.x.array() += offset;
     const Eigen::MatrixXd got =
         test::run(*trained(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
     CHECK(((got.array() - offset).matrix() - x).cwiseAbs().maxCoeff() < 1e-3);
   }
-  Scene scaled = s;
+  TrainingScene scaled = s;
   scaled.y *= 0x1p-300;
   scaled.x *= 0x1p-300;
   CHECK((test::run(*trained(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x)
             .cwiseAbs()
             .maxCoeff() < 1e-9);
-  Scene dead = s;
+  TrainingScene dead = s;
   dead.y.row(2).setConstant(0.1);
   auto runner = trained(dead);
   Eigen::MatrixXd alive = dead.y.rightCols(1000);
   const Eigen::MatrixXd before = test::run(*runner, alive).x;
   alive.row(2).setConstant(55);
   CHECK(test::run(*runner, alive).x == before);
-  Scene still = s;
+  TrainingScene still = s;
   still.x.setConstant(4);
   CHECK((test::run(*trained(still), rest).x.array() - 4).abs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE("perceptron: a long window is thinned evenly, missing samples give no estimate") {
-  const Scene s = scene(9000, 8000);
+  const TrainingScene s = scene(9000, 8000);
   auto runner = trained(s, {{"most_samples", 2000}, {"neurons", 3}});
   Eigen::MatrixXd rest = s.y.rightCols(1000);
   rest(1, 5) = std::nan("");
@@ -198,7 +198,7 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
 }
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
-  Scene s = scene(3000, 120);
+  TrainingScene s = scene(3000, 120);
   CHECK(code_of([&] { trained(s); }) == "E0860");
   CHECK(code_of([&] { trained(s, {{"neurons", 1}}); }) == "");
   // The engine keeps such samples away; the algorithm itself does not trust it.

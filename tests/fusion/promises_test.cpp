@@ -63,13 +63,6 @@ test::Run run(const Entry& entry, const test::FusionScene& scene) {
   return test::run(*runner, scene.y);
 }
 
-bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  for (Eigen::Index k = 0; k < a.size(); ++k)
-    if (!(a.data()[k] == b.data()[k] || (std::isnan(a.data()[k]) && std::isnan(b.data()[k]))))
-      return false;
-  return a.size() == b.size();
-}
-
 test::FusionScene scaled(test::FusionScene scene, double factor) {
   scene.y *= factor;
   scene.truth *= factor;
@@ -128,7 +121,7 @@ TEST_CASE("promises: a power of two is a unit like any other") {
       const Eigen::MatrixXd plain = run(entry, scene).x;
       const Eigen::MatrixXd moved = run(entry, scaled(scene, factor)).x / factor;
       if (row->second.scale == 0)
-        CHECK(same_bits(moved, plain));
+        CHECK(test::same_values(moved, plain));
       else
         CHECK((moved - plain).cwiseAbs().maxCoeff() <
               row->second.scale * plain.cwiseAbs().maxCoeff());

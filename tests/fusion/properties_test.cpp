@@ -12,7 +12,7 @@ using namespace libchar::fusion;
 
 namespace {
 
-struct Scene {
+struct LearnedScene {
   Array array;
   Eigen::MatrixXd learning_y, learning_truth;  // learning window
   Eigen::MatrixXd y, truth;                    // run
@@ -21,7 +21,9 @@ struct Scene {
 constexpr Eigen::Index kInstants = 1500;
 
 /// Channels of these noise deviations on one moving input.
-Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64_t seed = 5) {
+LearnedScene scene_of(const Eigen::VectorXd& deviations,
+                      double offset = 0,
+                      std::uint64_t seed = 5) {
   test::Gaussian gauss(seed);
   const Eigen::Index n = deviations.size();
   const auto record = [&](Eigen::MatrixXd& y, Eigen::MatrixXd& truth, Eigen::Index instants) {
@@ -32,7 +34,7 @@ Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64
       for (Eigen::Index i = 0; i < n; ++i) y(i, k) = truth(0, k) + deviations[i] * gauss();
     }
   };
-  Scene scene;
+  LearnedScene scene;
   record(scene.learning_y, scene.learning_truth, 600);
   record(scene.y, scene.truth, kInstants);
   scene.array.channels = n;
@@ -45,11 +47,11 @@ Scene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64
   return scene;
 }
 
-Scene scene_of(Eigen::Index n) {
+LearnedScene scene_of(Eigen::Index n) {
   return scene_of(Eigen::VectorXd::LinSpaced(n, 0.1, 0.3));
 }
 
-std::unique_ptr<Runner> trained(const Entry& entry, const Scene& scene) {
+std::unique_ptr<Runner> trained(const Entry& entry, const LearnedScene& scene) {
   auto runner = entry.make(scene.array, Settings(entry.options));
   if (entry.description->needs.reference) runner->learn(scene.learning_y, scene.learning_truth);
   if (entry.description->needs.reference_throughout) runner->learn(scene.y, scene.truth);
@@ -57,13 +59,13 @@ std::unique_ptr<Runner> trained(const Entry& entry, const Scene& scene) {
   return runner;
 }
 
-test::Run run_of(const Entry& entry, const Scene& scene, Eigen::Index block = kInstants) {
+test::Run run_of(const Entry& entry, const LearnedScene& scene, Eigen::Index block = kInstants) {
   return test::run(*trained(entry, scene), scene.y, scene.array.inputs(), block);
 }
 
 /// Every algorithm that these scenes have the data for.
 template <class Check>
-void for_each(const Scene& scene, Check check) {
+void for_each(const LearnedScene& scene, Check check) {
   int ran = 0;
   for (const Entry& entry : algorithms()) {
     if (!why_not(*entry.description, scene.array).empty()) continue;
@@ -89,13 +91,6 @@ const std::set<std::string_view> kNotShifted{"least-squares-published",
                                              "random-weighting-published",
                                              "kalman-takens-published"};
 
-bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  for (Eigen::Index i = 0; i < a.size(); ++i)
-    if (!(a.data()[i] == b.data()[i] || (std::isnan(a.data()[i]) && std::isnan(b.data()[i]))))
-      return false;
-  return a.size() == b.size();
-}
-
 double apart(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
@@ -109,19 +104,19 @@ bool sane_variance(const Eigen::MatrixXd& variance) {
 }  // namespace
 
 TEST_CASE("blocks of any size give the same bits") {
-  Scene scene = scene_of(6);
+  LearnedScene scene = scene_of(6);
   scene.y.row(2).segment(900, 200).array() += 3;  // a fault, so that the sets change on the way
   for_each(scene, [&](const Entry& entry) {
     const test::Run whole = run_of(entry, scene);
     for (const Eigen::Index block : {1, 7, 64, 1499})
-      CHECK(same_bits(run_of(entry, scene, block).x, whole.x));
+      CHECK(test::same_values(run_of(entry, scene, block).x, whole.x));
   });
 }
 
 TEST_CASE("an input moved by 10, 1e4 or 1e8 moves the estimate alike") {
-  const Scene plain = scene_of(6);
+  const LearnedScene plain = scene_of(6);
   for (const double offset : {10.0, 1e4, 1e8}) {
-    const Scene moved = scene_of(Eigen::VectorXd::LinSpaced(6, 0.1, 0.3), offset);
+    const LearnedScene moved = scene_of(Eigen::VectorXd::LinSpaced(6, 0.1, 0.3), offset);
     for_each(plain, [&](const Entry& entry) {
       if (named(entry, kNotShifted)) return;
       INFO(offset);
@@ -135,9 +130,9 @@ TEST_CASE("an input moved by 10, 1e4 or 1e8 moves the estimate alike") {
 }
 
 TEST_CASE("units: everything scaled, the estimate scales") {
-  const Scene plain = scene_of(6);
+  const LearnedScene plain = scene_of(6);
   for (const double factor : {0x1p-60, 0x1p40}) {
-    Scene scaled = plain;
+    LearnedScene scaled = plain;
     scaled.y *= factor;
     scaled.truth *= factor;
     scaled.learning_y *= factor;
@@ -152,11 +147,11 @@ TEST_CASE("units: everything scaled, the estimate scales") {
 }
 
 TEST_CASE("the order of the channels does not matter") {
-  const Scene plain = scene_of(6);
+  const LearnedScene plain = scene_of(6);
   // Channels 1 and 2 stay: the published forms take them for reference.
   Eigen::PermutationMatrix<Eigen::Dynamic> order(6);
   order.indices() << 0, 1, 5, 3, 2, 4;
-  Scene mixed = plain;
+  LearnedScene mixed = plain;
   mixed.y = order * plain.y;
   mixed.learning_y = order * plain.learning_y;
   mixed.array.noise_levels = order * plain.array.noise_levels;
@@ -171,7 +166,7 @@ TEST_CASE("the order of the channels does not matter") {
 
 TEST_CASE("weights sum to one; variances are never negative") {
   for (const Eigen::Index n : {2, 3, 6, 200}) {
-    const Scene scene = scene_of(n);
+    const LearnedScene scene = scene_of(n);
     for_each(scene, [&](const Entry& entry) {
       INFO(n);
       auto runner = trained(entry, scene);
@@ -190,11 +185,11 @@ TEST_CASE("weights sum to one; variances are never negative") {
 }
 
 TEST_CASE("identical, constant and dead channels") {
-  const Scene plain = scene_of(6);
+  const LearnedScene plain = scene_of(6);
   for (const std::string what :
        {"identical", "two identical", "constant", "one dead", "half dead", "all zero"}) {
     INFO(what);
-    Scene scene = plain;
+    LearnedScene scene = plain;
     const auto spoil = [&](Eigen::MatrixXd& y) {
       if (what == "identical") y = y.row(0).replicate(6, 1).eval();
       if (what == "two identical") y.row(1) = y.row(0);
@@ -220,7 +215,7 @@ TEST_CASE("identical, constant and dead channels") {
 }
 
 TEST_CASE("minque finds three dead channels of six only as far as the others can say so") {
-  Scene scene = scene_of(6);
+  LearnedScene scene = scene_of(6);
   scene.y.row(4).tail(700).setZero();
   auto minque = test::make("minque", scene.array);
   test::run(*minque, scene.y);
@@ -232,7 +227,7 @@ TEST_CASE("noise of very different size") {
   for (const double ratio : {1e3, 1e6, 1e12}) {
     Eigen::VectorXd deviations(6);
     deviations << 1, 1.5, 2, 0.1 * ratio, 0.3 * ratio, ratio;
-    const Scene scene = scene_of(deviations);
+    const LearnedScene scene = scene_of(deviations);
     for_each(scene, [&](const Entry& entry) {
       INFO(ratio);
       auto runner = trained(entry, scene);
@@ -251,8 +246,8 @@ TEST_CASE("noise of very different size") {
 
 TEST_CASE("missing samples") {
   const double gap = std::nan("");
-  Scene scene = scene_of(6);
-  const Scene whole = scene;
+  LearnedScene scene = scene_of(6);
+  const LearnedScene whole = scene;
   scene.y(2, 100) = gap;
   scene.y.block(0, 300, 3, 40).setConstant(gap);
   scene.y.col(500).setConstant(gap);
@@ -290,7 +285,7 @@ TEST_CASE("minque: no negative variance and no NaN for any memory") {
         three << 1, 2, 3;
         for (const Eigen::VectorXd& deviations : {unequal, two, three}) {
           INFO(gamma << " " << damping << " " << offset << " " << deviations.transpose());
-          const Scene scene = scene_of(deviations, offset);
+          const LearnedScene scene = scene_of(deviations, offset);
           auto minque = test::make(
               "minque", test::array(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
           bool good = true;
@@ -306,13 +301,13 @@ TEST_CASE("minque: no negative variance and no NaN for any memory") {
 
 TEST_CASE("step makes no trip to the heap") {
   if (!test::kHeapCounted) return;
-  Scene scene = scene_of(6);
+  LearnedScene scene = scene_of(6);
   scene.y.row(2).segment(900, 200).array() += 3;
   scene.y(3, 1000) = std::nan("");
-  Scene two = scene;
+  LearnedScene two = scene;
   two.array.observation_matrix =
       (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
-  for (const Scene* fed : {&scene, &two})
+  for (const LearnedScene* fed : {&scene, &two})
     for_each(*fed, [&](const Entry& entry) {
       if (entry.description->needs.reference_throughout && fed == &two) return;
       auto runner = trained(entry, *fed);

@@ -46,6 +46,20 @@ inline nlohmann::json answers() {
   return nlohmann::json::parse(slurp(known("fusion/kat.json")));
 }
 
+inline Eigen::VectorXd vector(const nlohmann::json& list) {
+  const std::vector<double> values = list;
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// NaN equals NaN.
+inline bool same_values(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    if (!(a.data()[i] == b.data()[i] || (std::isnan(a.data()[i]) && std::isnan(b.data()[i]))))
+      return false;
+  return true;
+}
+
 struct Run {
   Eigen::MatrixXd x, variance;
 };

@@ -1,4 +1,4 @@
-// CSV as a source of rows: chunks of whole lines, parsed by workers ahead of the caller (chunk_workers.hpp) or, with one
+// CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller (chunk_pipeline.hpp) or, with one
 // thread, inside next(); here they become rows with warnings, and every byte and cell is accounted for.
 
 #include "libchar/log/write/csv.hpp"
@@ -12,8 +12,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
-#include "libchar/log/csv/chunk_workers.hpp"
 #include "libchar/log/csv/dialect.hpp"
 #include "libchar/log/csv/header.hpp"
 #include "libchar/log/csv/plan.hpp"
@@ -46,8 +46,8 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
-    if (threads > 1 && !small) workers_ = std::make_unique<ChunkWorkers>(chunks_, plan_, threads);
-    info_.read_ahead = workers_ != nullptr;
+    if (threads > 1 && !small) pipeline_ = std::make_unique<ChunkPipeline>(chunks_, plan_, threads);
+    info_.read_ahead = pipeline_ != nullptr;
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;
@@ -71,7 +71,7 @@ class CsvSource final : public RowSource {
   void finish(Warnings& warnings) override {
     if (finished_) return;
     finished_ = true;
-    if (workers_) workers_->stop();
+    if (pipeline_) pipeline_->stop();
     if (reached_end_) check_account();
     for (std::size_t c = 0; c < plan_.channels; ++c)
       if (rows_ > 0 && words_per_channel_[c] == rows_)
@@ -130,7 +130,7 @@ class CsvSource final : public RowSource {
   std::uint64_t bytes_total() const override { return chunks_.size(); }
 
   std::string sha256() override {
-    if (workers_) workers_->finish_hash();
+    if (pipeline_) pipeline_->stop();
     return chunks_.finish_hash();
   }
 
@@ -220,7 +220,7 @@ class CsvSource final : public RowSource {
   }
 
   bool take(ParsedChunk& chunk) {
-    return workers_ ? workers_->next(chunk, current_offset_) : take_inline(chunk);
+    return pipeline_ ? pipeline_->next(chunk, current_offset_) : take_inline(chunk);
   }
 
   bool take_inline(ParsedChunk& chunk) {
@@ -252,7 +252,7 @@ class CsvSource final : public RowSource {
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
                 inexact_ = 0;
   bool cr_noted_ = false, finished_ = false, reached_end_ = false;
-  std::unique_ptr<ChunkWorkers> workers_;  // ends before what it reads
+  std::unique_ptr<ChunkPipeline> pipeline_;  // ends before what it reads
 };
 
 std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& options) {

@@ -1,0 +1,121 @@
+#include "libchar/log/csv/chunk_pipeline.hpp"
+
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "libchar/core/sha256_blocks.hpp"
+
+namespace libchar::csv {
+
+ChunkPipeline::ChunkPipeline(ChunkReader& chunks, const Plan& plan, int threads)
+    : chunks_(chunks), plan_(plan), items_(static_cast<std::size_t>(threads) + 2) {
+  for (Item& item : items_) free_.push(&item);
+  driver_ = std::thread([this, threads] { drive(threads); });
+}
+
+bool ChunkPipeline::next(ParsedChunk& chunk, std::uint64_t& offset) {
+  if (ended_) return false;
+  Item* item = nullptr;
+  done_.pop(item);
+  ended_ = item == nullptr || item->last;
+  if (item == nullptr) std::rethrow_exception(failure_);
+  if (item->failure) std::rethrow_exception(item->failure);
+  if (item->last) return false;
+  std::swap(chunk, item->chunk);
+  offset = item->raw.offset;
+  free_.push(item);
+  return true;
+}
+
+void ChunkPipeline::stop() {
+  ended_ = true;
+  if (!driver_.joinable()) return;
+  stop_ = true;
+  free_.push(nullptr);  // wakes the reader where no item is free
+  driver_.join();
+}
+
+void ChunkPipeline::drive(int threads) {
+  try {
+    // TBB warns on stderr of more threads than there are cores.
+    tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute([this] { run(); });
+  } catch (...) {  // no memory for a task
+    failure_ = std::current_exception();
+    done_.push(nullptr);
+  }
+}
+
+void ChunkPipeline::run() {
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(
+      items_.size(),
+      tbb::make_filter<void, Item*>(filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
+        return read(flow);
+      }) & tbb::make_filter<Item*, Item*>(filter_mode::serial_in_order, [&](Item* item) {
+        parse_while_hashing(*item);
+        return item;
+      }) & tbb::make_filter<Item*, Item*>(filter_mode::parallel, [&](Item* item) {
+        if (!item->parsed) parse(*item, nullptr);
+        return item;
+      }) & tbb::make_filter<Item*, void>(filter_mode::serial_in_order, [&](Item* item) {
+        hand_out(*item);
+      }));
+}
+
+// The next chunk, as soon as an item is free: so neither the parsed chunks nor those that wait for their hash pile up.
+ChunkPipeline::Item* ChunkPipeline::read(tbb::flow_control& flow) {
+  Item* item = nullptr;
+  if (!stop_) free_.pop(item);
+  if (item == nullptr || stop_) {
+    flow.stop();
+    return nullptr;
+  }
+  item->sequence = read_++;
+  item->parsed = item->hashed = false;
+  try {
+    item->last = !chunks_.next(item->raw);
+  } catch (...) {
+    item->failure = std::current_exception();
+    item->last = true;
+  }
+  stop_ = stop_ || item->last;
+  return item;
+}
+
+// Where the processor hashes beside other work, the hash is nearly free inside the parsing; that takes one chunk after the other,
+// and pays only while their rows are parsed that way. Otherwise the chunk goes on to be parsed beside others.
+void ChunkPipeline::parse_while_hashing(Item& item) {
+  if (!chunks_.interleaves_hash() || hashed_ != item.sequence) return;
+  if (!std::exchange(usual_, true)) return;
+  Sha256Blocks* const hash = chunks_.begin_hash(item.raw);
+  parse(item, hash);
+  usual_ = 2 * (hash->end - hash->next) <= static_cast<std::ptrdiff_t>(item.raw.size);
+  chunks_.end_hash(item.raw);
+  item.hashed = true;
+  ++hashed_;
+}
+
+void ChunkPipeline::parse(Item& item, Sha256Blocks* hash) const {
+  item.parsed = true;
+  if (item.last) return;
+  try {
+    parse_rows(item.raw.text(), plan_, item.chunk, hash);
+  } catch (...) {
+    item.failure = std::current_exception();
+    item.last = true;
+  }
+}
+
+void ChunkPipeline::hand_out(Item& item) {
+  if (!item.hashed) {
+    chunks_.hash(item.raw);
+    ++hashed_;
+  }
+  item.raw.hash_from = item.raw.hash_to = item.raw.nuls_after = 0;
+  done_.push(&item);
+}
+
+}  // namespace libchar::csv

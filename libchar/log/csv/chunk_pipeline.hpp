@@ -1,0 +1,64 @@
+#pragma once
+// Chunks of a CSV file parsed side by side and handed out in file order, with the hash of the file taken in order beside the
+// parsing: a pipeline of TBB that a thread drives ahead of the caller.
+
+#include <tbb/concurrent_queue.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include "libchar/log/csv/chunk_reader.hpp"
+#include "libchar/log/csv/plan.hpp"
+#include "libchar/log/csv/rows.hpp"
+
+namespace libchar::csv {
+
+/// `chunks` and `plan` must outlive it.
+class ChunkPipeline {
+ public:
+  ChunkPipeline(ChunkReader& chunks, const Plan& plan, int threads);
+  ChunkPipeline(const ChunkPipeline&) = delete;
+  ChunkPipeline& operator=(const ChunkPipeline&) = delete;
+  ~ChunkPipeline() { stop(); }
+
+  /// The next chunk and its offset in the file; false behind the last. What reading or parsing threw is thrown here, in the
+  /// chunk's turn.
+  bool next(ParsedChunk& chunk, std::uint64_t& offset);
+  /// Ends the pipeline; what was read is hashed, and no chunk comes after that.
+  void stop();
+
+ private:
+  struct Item {
+    RawChunk raw;
+    ParsedChunk chunk;
+    std::uint64_t sequence = 0;
+    bool last = false;  // nothing stands behind it: the end of the file, or a failure
+    bool parsed = false;
+    bool hashed = false;
+    std::exception_ptr failure;
+  };
+  void drive(int threads);
+  void run();
+  Item* read(tbb::flow_control& flow);
+  void parse_while_hashing(Item& item);
+  void parse(Item& item, Sha256Blocks* hash) const;
+  void hand_out(Item& item);
+
+  ChunkReader& chunks_;
+  const Plan& plan_;
+  std::vector<Item> items_;  // as many as may be under way or wait for the caller
+  tbb::concurrent_bounded_queue<Item*> free_, done_;  // nullptr in free_: the end is asked for
+  std::uint64_t read_ = 0;
+  std::atomic<std::uint64_t> hashed_ = 0;
+  std::atomic<bool> stop_ = false;
+  bool usual_ = true;  // the chunk before was mostly hashed between the steps of its parsing
+  bool ended_ = false;
+  std::exception_ptr failure_;  // of the pipeline itself
+  std::thread driver_;          // the last: it uses all of the above
+};
+
+}  // namespace libchar::csv
