@@ -33,6 +33,7 @@
 #include "libchar/export/exports.hpp"
 #include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/events.hpp"
+#include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/formats.hpp"
