@@ -32,6 +32,7 @@
 #include "libchar/export/consumers.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/fit/curve_fit.hpp"
+#include "libchar/fit/digital.hpp"
 #include "libchar/fit/events.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"

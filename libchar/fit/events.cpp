@@ -20,6 +20,7 @@
 #include "libchar/fit/events/series_powers.hpp"
 #include "libchar/fit/events/shapes.hpp"
 #include "libchar/fit/events/step_scan.hpp"
+#include "libchar/fit/events/telegraph.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -216,12 +217,23 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now) {
   return std::move(*best);
 }
 
-/// Steps placed once more, each beside all others: one found first may have leaned on one found later.
+/// Whether shape i may have leaned on what the newest shape explains: of steps only the nearest on either side.
+bool beside_newest(const std::vector<EventShape>& shapes, std::size_t i) {
+  const EventShape &newest = shapes.back(), &shape = shapes[i];
+  if (shape.kind != EventKind::step || newest.kind != EventKind::step) return true;
+  return std::none_of(shapes.begin(), shapes.end() - 1, [&](const EventShape& other) {
+    const bool same_side = (other.at - newest.at) * (shape.at - newest.at) > 0;
+    return other.kind == EventKind::step && same_side &&
+           std::abs(other.at - newest.at) < std::abs(shape.at - newest.at);
+  });
+}
+
+/// What was found before is placed once more beside the newest, and that beside them.
 void place_again(const Search& search, Hypothesis& now) {
   if (now.fit.shape.size() < 2) return;
   std::vector<EventShape> shapes = now.fit.shape;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (shapes[i].kind == EventKind::ramp) continue;
+    if (shapes[i].kind == EventKind::ramp || !beside_newest(shapes, i)) continue;
     std::vector<EventShape> others = shapes;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const Regression beside = regress(others, search.grid, search.coefficients, now.weight);
@@ -326,6 +338,46 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
   return event;
 }
 
+/// Where beside the events the scores of steps still pass their threshold: stretches between changes of sign count as one.
+int further_steps(const Search& search, const Hypothesis& now) {
+  const StepScan scan = scan_steps(now.fit, now.weight, search.grid.points, search.margin);
+  const double limit = rough_threshold(scan.distance, search.options.false_alarm / 2);
+  int places = 0;
+  double last = 0;
+  for (const double score : scan.score) {
+    if (std::abs(score) < limit) continue;
+    places += score * last <= 0 ? 1 : 0;
+    last = score;
+  }
+  return places;
+}
+
+/// What many steps are.
+void judge_many(const Search& search,
+                const Hypothesis& now,
+                std::string_view unit,
+                EventSearch& found) {
+  if (!found.more && found.events.size() < 6) return;
+  const double duration_s = static_cast<double>(search.grid.points) * search.series.step_s;
+  found.telegraph =
+      telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
+  if (found.telegraph) {
+    const Telegraph& telegraph = *found.telegraph;
+    found.sentences.push_back(
+        fmt::format("The record jumps between two levels {}{}{} apart, {} times at least: random "
+                    "telegraph noise. What is said of "
+                    "slow noise is about these jumps.",
+                    number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
+                    unit.empty() ? "" : " ",
+                    unit,
+                    telegraph.jumps));
+  } else if (found.more) {
+    found.sentences.push_back(fmt::format(
+        "There are more than {} steps and drifts: the record is no noise with a few of them.",
+        search.options.most));
+  }
+}
+
 }  // namespace
 
 std::string_view event_name(EventKind kind) {
@@ -367,6 +419,7 @@ EventSearch find_events(const EventSeries& series,
     found.sentences.push_back(event_sentence(found.events.back(), unit));
     found.spent += now.fit.shape[i].kind == EventKind::ramp ? 1 : 2;
   }
+  judge_many(search, now, unit, found);
   found.power = std::move(now.power);
   return found;
 }

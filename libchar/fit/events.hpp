@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,12 +69,20 @@ struct EventOptions {
   bool steps = true, warm_up = true, ramp = true;
 };
 
+/// Jumps between two levels, over and over: random telegraph noise, of which the steps found are a few.
+struct Telegraph {
+  double size = 0, sd = 0;  ///< between the levels
+  int jumps = 0;            ///< at least
+  double dwell_s = 0;       ///< mean time at a level, at most
+};
+
 struct EventSearch {
   std::vector<Event> events;  ///< in the order in which they were found
   std::vector<double>
-      power;          ///< the noise they were found against: E c_k^2 of the series without them
-  int spent = 0;      ///< degrees of freedom that the events took from the noise
-  bool more = false;  ///< stopped at `most` with more to find
+      power;  ///< the noise they were found against: E c_k^2 of the series without them
+  std::optional<Telegraph> telegraph;
+  int spent = 0;                       ///< degrees of freedom that the events took from the noise
+  bool more = false;                   ///< stopped at `most` with more to find
   std::vector<std::string> sentences;  ///< one an event, in the unit given
 };
 

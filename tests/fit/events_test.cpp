@@ -270,6 +270,28 @@ TEST_CASE("events: humps that the noise does not describe are no events") {
   CHECK(alarms <= 1);
 }
 
+TEST_CASE("events: jumps between two levels are telegraph noise, steps of unlike sizes are not") {
+  test::NoiseSource source(kSamples, kRate, 27);
+  std::vector<double> y = source.record(kQ, kB, kK), unlike = source.record(kQ, kB, kK);
+  int jumps = 0;
+  for (std::size_t t = 1; t < y.size(); ++t) {
+    jumps += source.gauss().uniform() < 1 / (30 * kRate) ? 1 : 0;
+    y[t] += jumps % 2 * 2 * kSigma;
+  }
+  const EventSearch found = search(y);
+  REQUIRE(found.telegraph.has_value());
+  CHECK(found.telegraph->size == Approx(2 * kSigma).epsilon(0.15));
+  CHECK(found.telegraph->jumps >= 6);
+  CHECK(found.telegraph->jumps <= jumps);
+  CHECK(found.telegraph->dwell_s > 20);
+  CHECK(found.sentences.back().find("random telegraph noise") != std::string::npos);
+  for (int i = 1; i <= 7; ++i)
+    add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kSigma);
+  const EventSearch steps = search(unlike);
+  CHECK(steps.events.size() >= 6);
+  CHECK_FALSE(steps.telegraph.has_value());
+}
+
 TEST_CASE("events: too short a record is refused in a sentence") {
   const std::vector<double> y(40, 1.0);
   CHECK_THROWS_AS(event_series(y, kRate), Error);
