@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "libchar/core/readable.hpp"
@@ -23,16 +24,23 @@ constexpr std::uint64_t kFewestRuns = 64, kLongestRun = 1024;
 constexpr double kFewestAtRail = 8;
 
 std::optional<Rail> rail_of(std::span<const double> record, double at, double inside, bool high) {
-  double count = 0, near = 0, present = 0;
+  double count = 0;
+  for (const double x : record) count += x == at ? 1 : 0;
+  if (count < kFewestAtRail) return std::nullopt;
+  double near = 0, present = 0;
   for (const double x : record) {
-    if (!std::isfinite(x)) continue;
-    present += 1;
     const double distance = high ? at - x : x - at;
-    count += distance == 0 ? 1 : 0;
     near += distance > 0 && distance <= inside ? 1 : 0;
+    present += std::isnan(x) ? 0 : 1;
   }
-  if (count < kFewestAtRail || count <= 2 * near + kFewestAtRail) return std::nullopt;
+  if (count <= 2 * near + kFewestAtRail) return std::nullopt;
   return Rail{at, high, count / present};
+}
+
+bool repeats_enough(std::span<const double> record) {
+  std::uint64_t repeats = 0;
+  for (std::size_t t = 1; t < record.size(); ++t) repeats += record[t] == record[t - 1] ? 1 : 0;
+  return repeats >= kFewestRuns;
 }
 
 /// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
@@ -146,18 +154,17 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   std::optional<double> step,
                                   std::string_view unit) {
   DigitalFaults faults;
-  double low = 0, high = 0;
-  bool any = false;
-  for (const double x : record) {
-    if (!std::isfinite(x)) continue;
-    low = any ? std::min(low, x) : x;
-    high = any ? std::max(high, x) : x;
-    any = true;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double x : record) {  // no comparison holds of a missing one
+    low = x < low ? x : low;
+    high = x > high ? x : high;
   }
-  if (!any || low == high) return faults;
-  const Runs runs = runs_of_values(record);
-  faults.held = held_values(runs, rate_hz);
-  if (step && !faults.held) faults.staircase = staircase(runs, *step);
+  if (!(low < high)) return faults;
+  if (repeats_enough(record)) {
+    const Runs runs = runs_of_values(record);
+    faults.held = held_values(runs, rate_hz);
+    if (step && !faults.held) faults.staircase = staircase(runs, *step);
+  }
   // A staircase may stand on its last step for long.
   if (!faults.staircase) {
     const double inside = std::max(1.5 * step.value_or(0), (high - low) / 1000);

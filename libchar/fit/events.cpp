@@ -129,7 +129,7 @@ Candidate best_step(const Search& search,
   const StepScan scan = scan_steps(beside, weight, search.grid.points, search.margin);
   Candidate best{{EventKind::step, static_cast<double>(scan.best)},
                  scan.best_score(),
-                 rough_threshold(scan.distance, search.options.false_alarm / 2)};
+                 rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery)};
   std::vector<double> column(search.grid.points - 1);
   for (const EventShape& gap : search.gaps) {
     fill_column(gap, search.grid, column);
@@ -341,7 +341,8 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
 /// Where beside the events the scores of steps still pass their threshold: stretches between changes of sign count as one.
 int further_steps(const Search& search, const Hypothesis& now) {
   const StepScan scan = scan_steps(now.fit, now.weight, search.grid.points, search.margin);
-  const double limit = rough_threshold(scan.distance, search.options.false_alarm / 2);
+  const double limit =
+      rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery);
   int places = 0;
   double last = 0;
   for (const double score : scan.score) {
@@ -363,14 +364,14 @@ void judge_many(const Search& search,
       telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
   if (found.telegraph) {
     const Telegraph& telegraph = *found.telegraph;
-    found.sentences.push_back(
-        fmt::format("The record jumps between two levels {}{}{} apart, {} times at least: random "
-                    "telegraph noise. What is said of "
-                    "slow noise is about these jumps.",
-                    number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
-                    unit.empty() ? "" : " ",
-                    unit,
-                    telegraph.jumps));
+    found.sentences.push_back(fmt::format(
+        "The record jumps between two levels about {}{}{} apart, {} times at least: random "
+        "telegraph noise. What is said of "
+        "slow noise is about these jumps.",
+        number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
+        unit.empty() ? "" : " ",
+        unit,
+        telegraph.jumps));
   } else if (found.more) {
     found.sentences.push_back(fmt::format(
         "There are more than {} steps and drifts: the record is no noise with a few of them.",

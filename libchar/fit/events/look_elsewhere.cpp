@@ -61,14 +61,14 @@ double normal_density(double u) {
   return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
 }
 
-double rough_threshold(std::span<const double> distance, double alpha) {
+double rough_threshold(std::span<const double> distance, double alpha, double each) {
   const DistanceClasses classes(distance);
   const auto exceedance = [&](double u) {
     double sum = 0;
     for (std::size_t i = 0; i < classes.count.size(); ++i) {
       if (classes.count[i] == 0) continue;
       const double d = DistanceClasses::distance_of(i);
-      sum += classes.count[i] * d * d / 2 * overshoot(u * d);
+      sum += each * classes.count[i] * d * d / 2 * overshoot(u * d);
     }
     return 2 * (normal_tail(u) + u * normal_density(u) * sum);
   };

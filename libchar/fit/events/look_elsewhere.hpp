@@ -12,9 +12,9 @@ double normal_density(double u);
 
 /// The u that the largest |score| of a chain of standard normal scores passes with probability `alpha`. `distance[i]` is the
 /// standard deviation of score i+1 less score i.
-///   rough:  the scores move like a random walk from one to the next (places of a step)
+///   rough:  the scores move like a random walk from one to the next (places of a step); every distance stands for `each`
 ///   smooth: they lie on a smooth curve (time constants of a drift)
-double rough_threshold(std::span<const double> distance, double alpha);
+double rough_threshold(std::span<const double> distance, double alpha, double each = 1);
 double smooth_threshold(std::span<const double> distance, double alpha);
 
 }  // namespace libchar

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/fit/events/turning.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -24,8 +25,11 @@ constexpr double kPlaceDrop = 7.35;
 /// 1 / (2 sin(pi k / 2n)) for k = 1..n-1 at [k-1].
 std::vector<double> half_cosecants(std::uint64_t n) {
   std::vector<double> cosecant(n - 1);
-  for (std::uint64_t k = 1; k < n; ++k)
-    cosecant[k - 1] = 0.5 / std::sin(pi * static_cast<double>(k) / (2 * static_cast<double>(n)));
+  Turning half(pi / (2 * static_cast<double>(n)));
+  for (double& value : cosecant) {
+    half.next();
+    value = 0.5 / half.sine;
+  }
   return cosecant;
 }
 
@@ -87,7 +91,7 @@ StepScan scan_steps(const Regression& beside,
   double step = 0;
   for (const double w : weight) step += w / static_cast<double>(points);
   StepScan scan;
-  for (std::uint64_t t = margin; t + 1 + margin < points; ++t) {
+  for (std::uint64_t t = margin; t + 1 + margin < points; t += StepScan::kEvery) {
     const double both = std::sqrt(information[t] * information[t + 1]);
     const double shared = 0.5 * (information[t] + information[t + 1] - step);
     scan.distance.push_back(std::sqrt(std::max(0.0, 2 - 2 * shared / both)));

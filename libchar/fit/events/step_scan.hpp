@@ -10,10 +10,11 @@
 namespace libchar {
 
 struct StepScan {
+  static constexpr std::uint64_t kEvery = 8;
   std::vector<double>
       score;  ///< [t]: of a step between points t-1 and t; 0 where none is looked for
-  std::vector<double>
-      distance;  ///< standard deviations of neighbouring scores' differences, for rough_threshold
+  /// standard deviations of neighbouring scores' differences at every kEvery-th place, for rough_threshold
+  std::vector<double> distance;
   std::uint64_t best = 0;  ///< where |score| is largest
   double best_score() const { return score[best]; }
 };
