@@ -1,5 +1,5 @@
 // Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it. A rail has eight samples and twice
-// as many as the neighbourhood (a thousandth of the range, or a step and a half of the converter).
+// as many as the neighbourhood (a thousandth of the range, or one and a half times the distance to the next value).
 // Held values: runs of one value. Polled at r times the sensor's rate, runs are floor(r) or ceil(r) long; repeats of coarsely rounded
 // noise come by chance, runs of one among them. Where r < 2, single values are there as well, and the repeats come evenly.
 // Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
@@ -22,16 +22,23 @@ namespace {
 
 constexpr std::uint64_t kFewestRuns = 64, kLongestRun = 1024;
 constexpr double kFewestAtRail = 8;
+constexpr double kMostAtRail =
+    0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
-std::optional<Rail> rail_of(std::span<const double> record, double at, double inside, bool high) {
-  double count = 0;
-  for (const double x : record) count += x == at ? 1 : 0;
-  if (count < kFewestAtRail) return std::nullopt;
-  double near = 0, present = 0;
+std::optional<Rail> rail_of(std::span<const double> record, double at, double range, bool high) {
+  double count = 0, present = 0, next = range;
+  for (const double x : record) {
+    const double distance = high ? at - x : x - at;
+    count += distance == 0 ? 1 : 0;
+    present += std::isnan(x) ? 0 : 1;
+    next = distance > 0 && distance < next ? distance : next;
+  }
+  if (count < kFewestAtRail || count > kMostAtRail * present) return std::nullopt;
+  const double inside = std::max(1.5 * next, range / 1000);
+  double near = 0;
   for (const double x : record) {
     const double distance = high ? at - x : x - at;
     near += distance > 0 && distance <= inside ? 1 : 0;
-    present += std::isnan(x) ? 0 : 1;
   }
   if (count <= 2 * near + kFewestAtRail) return std::nullopt;
   return Rail{at, high, count / present};
@@ -167,9 +174,8 @@ DigitalFaults find_digital_faults(std::span<const double> record,
   }
   // A staircase may stand on its last step for long.
   if (!faults.staircase) {
-    const double inside = std::max(1.5 * step.value_or(0), (high - low) / 1000);
     for (const bool top : {false, true})
-      if (const auto rail = rail_of(record, top ? high : low, inside, top))
+      if (const auto rail = rail_of(record, top ? high : low, high - low, top))
         faults.rails.push_back(*rail);
   }
   describe_faults(faults, rate_hz, unit);

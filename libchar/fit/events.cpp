@@ -163,7 +163,7 @@ Candidate best_of(EventKind kind,
 struct Trial {
   Candidate candidate;
   Hypothesis with;
-  double gain = 0;  ///< LR
+  double gain = 0;  ///< LR, at most the score squared
   double worth() const { return gain - candidate.threshold * candidate.threshold; }
 };
 
@@ -177,7 +177,10 @@ Trial try_candidate(const Search& search, const Hypothesis& now, Candidate candi
   trial.candidate = best_of(candidate.shape.kind, search, others, trial.with.weight);
   shapes.back() = trial.candidate.shape;
   fit_both(search, shapes, trial.with);
-  trial.gain = now.deviance - trial.with.deviance;
+  // What the refitted noise alone would gain is no event.
+  const double score =
+      trial.with.fit.size(trial.with.fit.size.size() - 1) / trial.with.fit.sd(shapes.size() - 1);
+  trial.gain = std::min(now.deviance - trial.with.deviance, score * score);
   return trial;
 }
 
@@ -293,8 +296,8 @@ void bound_tau(const Search& search,
 std::vector<EventShape> gaps_of(const EventSeries& series) {
   std::vector<EventShape> gaps;
   for (const Interval& gap : series.unseen_s) {
-    const double from = std::round(gap.low / series.step_s),
-                 to = std::round(gap.high / series.step_s);
+    const double from = std::round((gap.low - series.start_s) / series.step_s),
+                 to = std::round((gap.high - series.start_s) / series.step_s);
     if (from > 0 && to < static_cast<double>(series.value.size()) && to - from >= 2)
       gaps.push_back({EventKind::step, from, to - from});
   }
@@ -321,11 +324,13 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
       regress(std::move(others), search.grid, search.coefficients, now.weight);
   if (shape.kind == EventKind::step) {
     const Interval place = step_interval(search, beside, now, shape);
-    event.at_s = (shape.bridged > 0 ? place.high : shape.at) * step_s;
-    event.at_ci95 = {place.low * step_s, place.high * step_s};
+    const double start_s = search.series.start_s;
+    event.at_s = start_s + (shape.bridged > 0 ? place.high : shape.at) * step_s;
+    event.at_ci95 = {start_s + place.low * step_s, start_s + place.high * step_s};
     event.in_gap = shape.bridged > 0;
   }
   if (shape.kind == EventKind::warm_up) {
+    event.from_s = search.series.start_s;
     event.tau_s = shape.tau * step_s;
     bound_tau(search, beside, now, event);
   }
@@ -432,7 +437,8 @@ void subtract_events(std::span<const Event> events, double rate_hz, std::span<do
       const double t = static_cast<double>(i) / rate_hz;
       if (event.kind == EventKind::step)
         record[i] -= static_cast<double>(i) >= first ? event.size : 0;
-      if (event.kind == EventKind::warm_up) record[i] -= event.size * std::exp(-t / event.tau_s);
+      if (event.kind == EventKind::warm_up)
+        record[i] -= event.size * std::exp(-std::max(0.0, t - event.from_s) / event.tau_s);
       if (event.kind == EventKind::ramp) record[i] -= event.slope * t;
     }
   }

@@ -28,6 +28,7 @@ struct Event {
   /// step: after less before; warm-up: at the first sample; ramp: last sample less first
   double size = 0;
   double sd = 0;         ///< of `size`
+  double from_s = 0;     ///< warm-up: the first sample that is present
   double tau_s = 0;      ///< warm-up: time constant
   Interval tau_ci95;     ///< upper end 0: the record sets none
   double slope = 0;      ///< ramp: per s
@@ -39,6 +40,7 @@ struct Event {
 /// A record as the search sees it: evenly spaced values, each the mean of `per_point` samples; without missing ones.
 struct EventSeries {
   std::vector<double> value;
+  double start_s = 0;                ///< of the first value: the record may begin with missing ones
   double step_s = 0;                 ///< between values
   std::uint64_t per_point = 1;       ///< samples averaged in a value
   std::vector<Interval> unseen_s{};  ///< stretches that were missing, filled by straight lines

@@ -221,8 +221,13 @@ std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
 /// Steps and drifts of the logarithms of what does not move.
 std::vector<StrengthChange> changes_of(const Activity& activity,
                                        const std::vector<char>& moving,
+                                       double start_s,
                                        double block_s) {
-  EventSeries logarithms{activity.fine, block_s, 1, {}};
+  // Without scatter there is nothing to judge a change by: a counter, a signal from a formula.
+  std::vector<double> sorted = activity.fine;
+  std::sort(sorted.begin(), sorted.end());
+  if (shortest_half(sorted, 0.5, 1.349).spread < 1e-6) return {};
+  EventSeries logarithms{activity.fine, start_s, block_s, 1, {}};
   for (const Run& run : runs_of(moving, 1)) {
     const double before =
         run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % moving.size()];
@@ -230,8 +235,8 @@ std::vector<StrengthChange> changes_of(const Activity& activity,
     for (std::size_t b = run.from; b < run.to; ++b)
       logarithms.value[b] = before + (after - before) * static_cast<double>(b - run.from + 1) /
                                          static_cast<double>(run.length() + 1);
-    logarithms.unseen_s.push_back(
-        {static_cast<double>(run.from) * block_s, static_cast<double>(run.to) * block_s});
+    logarithms.unseen_s.push_back({start_s + static_cast<double>(run.from) * block_s,
+                                   start_s + static_cast<double>(run.to) * block_s});
   }
   std::vector<StrengthChange> changes;
   for (const Event& event : find_events(logarithms, fitted_powers()).events)
@@ -289,17 +294,20 @@ void describe(Motion& motion, double duration_s) {
     motion.sentences.push_back(change_sentence(change));
 }
 
+/// The longest run that is still, on the record's clock.
 std::optional<Interval> longest_of(const std::vector<Run>& still,
                                    std::size_t blocks,
-                                   double block_s,
-                                   double duration_s) {
+                                   const EventSeries& series,
+                                   double block_s) {
   const auto longest = std::max_element(still.begin(), still.end(), [](const Run& a, const Run& b) {
     return a.length() < b.length();
   });
   if (longest == still.end()) return std::nullopt;
-  const double end =
-      longest->to == blocks ? duration_s : static_cast<double>(longest->to) * block_s;
-  return Interval{static_cast<double>(longest->from) * block_s, end};
+  const double end = longest->to == blocks
+                         ? static_cast<double>(series.value.size()) * series.step_s
+                         : static_cast<double>(longest->to) * block_s;
+  return Interval{series.start_s + static_cast<double>(longest->from) * block_s,
+                  series.start_s + end};
 }
 
 }  // namespace
@@ -316,11 +324,11 @@ Motion find_motion(const EventSeries& series) {
   motion.whole = !moving;
   if (moving) {
     for (const Run& run : runs_of(*moving, 1))
-      motion.moving_s.push_back(
-          {static_cast<double>(run.from) * block_s, static_cast<double>(run.to) * block_s});
-    motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), block_s, duration_s);
+      motion.moving_s.push_back({series.start_s + static_cast<double>(run.from) * block_s,
+                                 series.start_s + static_cast<double>(run.to) * block_s});
+    motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), series, block_s);
     if (std::count(moving->begin(), moving->end(), 0) >= static_cast<std::ptrdiff_t>(kFewestBlocks))
-      motion.changes = changes_of(activity, *moving, block_s);
+      motion.changes = changes_of(activity, *moving, series.start_s, block_s);
   }
   describe(motion, duration_s);
   return motion;

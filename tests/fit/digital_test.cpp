@@ -40,6 +40,18 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
   }
 }
 
+TEST_CASE("digital: two levels, a counter and a lone spike have no rails") {
+  std::vector<double> square(kSamples), counter(kSamples), spike(kSamples, 1.0);
+  for (std::size_t t = 0; t < kSamples; ++t) {
+    square[t] = t / 500 % 2 == 0 ? 1 : -1;
+    counter[t] = static_cast<double>(t % 256);
+  }
+  spike[777] = 5;
+  CHECK(find_digital_faults(square, kRate).rails.empty());
+  CHECK(find_digital_faults(counter, kRate).rails.empty());
+  CHECK(find_digital_faults(spike, kRate).rails.empty());
+}
+
 TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   std::vector<double> y = noise(40);
   for (double& value : y) value = std::clamp(value, -1.9 * kSigma, 2.2 * kSigma);

@@ -254,6 +254,43 @@ TEST_CASE("events: a step while nothing was recorded is somewhere in the gap") {
   CHECK(found.events[0].at_ci95.high >= 439.9);
 }
 
+TEST_CASE("events: missing samples are no events, at the ends and in the middle") {
+  test::NoiseSource source(kSamples, kRate, 28);
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  int alarms = 0;
+  for (int r = 0; r < 10; ++r) {
+    for (const auto& [from, to] : {std::pair{0, 50'000}, {90'000, 100'000}, {30'000, 60'000}}) {
+      std::vector<double> y = source.record(kQ, r % 2 * kB, r % 2 * kK);
+      std::fill(y.begin() + from, y.begin() + to, kMissing);
+      for (double& value : y)
+        if (source.gauss().uniform() < 0.1) value = kMissing;
+      alarms += search(y).events.empty() ? 0 : 1;
+    }
+  }
+  CHECK(alarms <= 1);
+}
+
+TEST_CASE("events: times are those of the record, also when it begins with missing samples") {
+  test::NoiseSource source(kSamples, kRate, 29);
+  std::vector<double> y = source.record(kQ, kB, kK);
+  const std::vector<double> clean = y;
+  add_step(y, 600, 5 * kSigma);
+  for (std::size_t t = 20'000; t < y.size(); ++t)
+    y[t] += 10 * kSigma * std::exp(-(static_cast<double>(t) / kRate - 200) / 50);
+  std::fill(y.begin(), y.begin() + 20'000, std::numeric_limits<double>::quiet_NaN());
+  const EventSearch found = search(y);
+  REQUIRE(found.events.size() == 2);
+  const bool step_first = found.events[0].kind == EventKind::step;
+  CHECK(found.events[step_first ? 0 : 1].at_s == Approx(600).margin(0.5));
+  CHECK(found.events[step_first ? 1 : 0].from_s == Approx(200));
+  subtract_events(found.events, kRate, y);
+  double sum = 0;
+  for (std::size_t t = 20'000; t < 25'000; ++t) sum += y[t] - clean[t];
+  double later = 0;
+  for (std::size_t t = 65'000; t < 70'000; ++t) later += y[t] - clean[t];
+  CHECK(sum / 5000 == Approx(later / 5000).margin(1.5 * kSigma));
+}
+
 TEST_CASE("events: humps that the noise does not describe are no events") {
   test::NoiseSource source(kSamples, kRate, 26);
   int alarms = 0;

@@ -119,6 +119,16 @@ TEST_CASE("motion: a recording in motion throughout is called one") {
   REQUIRE(motion.sentences.size() == 1);
 }
 
+TEST_CASE("motion: signals from formulas are judged without a fit that cannot be") {
+  std::vector<double> ramp(kSamples), turns(kSamples);
+  for (std::size_t t = 0; t < kSamples; ++t) {
+    ramp[t] = static_cast<double>(t);
+    turns[t] = t % 2 == 0 ? 1 : -1;
+  }
+  CHECK(motion_of(ramp).changes.empty());
+  CHECK(motion_of(turns).changes.empty());
+}
+
 TEST_CASE("motion: a staircase and a short record are not judged") {
   test::NoiseSource source(kSamples, kRate, 35);
   std::vector<double> y = source.record(kQ, kB, kK);
