@@ -270,7 +270,7 @@ Interval step_interval(const Search& search,
   // Nobody can say where in a missing stretch, or in a mean, it was.
   if (step.bridged > 0) return {step.at, step.at + step.bridged};
   const StepScan scan = scan_steps(others, now.weight, search.grid.points, search.margin);
-  const Interval place = step_place(scan, search.margin);
+  const Interval place = step_place(scan, step.at, search.margin);
   const double within = search.grid.per_point > 1 ? 1 : 0;
   return {std::min(place.low - within, step.at), std::max(place.high + within, step.at)};
 }

@@ -61,8 +61,8 @@ std::vector<double> mixture_powers(const Mixture& theta,
                                    double rate_hz,
                                    const std::function<double(double)>& shape = {});
 
-/// The mixture of white noise, flicker and walk that fits a series, remedies off: what `find_events` uses where the caller has no
-/// better.
+/// The mixture of white noise, flicker and walk that fits a series from its slowest coefficients up, as far as it describes them:
+/// what `find_events` uses where the caller has no better.
 NoisePowers fitted_powers();
 
 struct EventOptions {

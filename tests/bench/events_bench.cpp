@@ -74,6 +74,7 @@ const std::vector<Case> kCases = {{"step .5 sd", step(.5, 1000), 1000},
                                   {"ramp 50 sd", ramp(50)}};
 
 struct Tally {
+  double untreated = 0;  ///< K with the event in the record, over the truth, summed
   int records = 0, alarmed = 0;
   std::map<std::string, int> kinds;
   double ms = 0, size = 0, score = 0, furthest_s = 0;
@@ -117,9 +118,11 @@ void print(const std::string& scene, const std::string& name, const Tally& tally
              tally.size / found,
              tally.furthest_s);
   if (tally.clean2 > 0)
-    fmt::print("  K: rms error {:.2f} of the clean fit's, moved by {:.2f} of it",
-               std::sqrt(tally.after2 / tally.clean2),
-               std::sqrt(tally.moved2 / tally.clean2));
+    fmt::print(
+        "  K: untreated x {:.2f}, then rms error {:.2f} of the clean fit's, moved by {:.2f} of it",
+        tally.untreated / count,
+        std::sqrt(tally.after2 / tally.clean2),
+        std::sqrt(tally.moved2 / tally.clean2));
   fmt::print("  {:.1f} ms {}\n", tally.ms / count, kinds);
   std::fflush(stdout);
 }
@@ -131,7 +134,10 @@ Tally run(
   for (int r = 0; r < records; ++r) {
     std::vector<double> y = source.record(scene.q, scene.b, scene.k);
     const double clean = one.truth ? walk_of(y) - scene.k : 0;
-    if (one.truth) one.truth(y, scene.q * std::sqrt(kRate));
+    if (one.truth) {
+      one.truth(y, scene.q * std::sqrt(kRate));
+      tally.untreated += walk_of(y) / scene.k;
+    }
     const auto begin = std::chrono::steady_clock::now();
     const EventSearch found = find_events(event_series(y, kRate, points), fitted_powers());
     const auto end = std::chrono::steady_clock::now();

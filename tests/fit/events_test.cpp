@@ -202,6 +202,7 @@ TEST_CASE("events: two steps, up and down") {
   std::sort(events.begin(), events.end(), [](auto& a, auto& b) { return a.at_s < b.at_s; });
   CHECK(events[0].at_s == Approx(300).margin(1.0));
   CHECK(events[1].at_s == Approx(600).margin(1.0));
+  for (const Event& event : events) CHECK(event.at_ci95.high - event.at_ci95.low < 2);
   CHECK(events[0].size == Approx(2 * kSigma).margin(4 * events[0].sd));
   CHECK(events[1].size == Approx(-2 * kSigma).margin(4 * events[1].sd));
 }
@@ -289,6 +290,35 @@ TEST_CASE("events: times are those of the record, also when it begins with missi
   double later = 0;
   for (std::size_t t = 65'000; t < 70'000; ++t) later += y[t] - clean[t];
   CHECK(sum / 5000 == Approx(later / 5000).margin(1.5 * kSigma));
+}
+
+TEST_CASE("events: a filter's slope is no event, and a step behind a filter is one") {
+  // A fit of white noise, flicker and walk to the whole of such a spectrum alarmed in one record of eight.
+  constexpr std::size_t kLong = 200'000, kBefore = 1000;
+  test::NoiseSource source(kLong + kBefore, kRate, 30);
+  int alarms = 0, found = 0;
+  constexpr int kRecords = 20;
+  for (int r = 0; r < kRecords; ++r) {
+    const std::vector<double> raw = source.record(kQ, kB, kK);
+    for (const double size : {0.0, 3 * kSigma}) {
+      std::vector<double> y(kLong);
+      double state = raw[0];
+      for (std::size_t t = 0; t < raw.size(); ++t) {
+        state += 0.25 * (raw[t] + (t >= 80'000 + kBefore ? size : 0) - state);
+        if (t >= kBefore) y[t - kBefore] = state;
+      }
+      const EventSearch search_result = search(y);
+      if (size == 0)
+        alarms += search_result.events.empty() ? 0 : 1;
+      else
+        found +=
+            search_result.events.size() == 1 && std::abs(search_result.events[0].at_s - 800) < 1
+                ? 1
+                : 0;
+    }
+  }
+  CHECK(alarms <= 1);
+  CHECK(found >= kRecords - 1);
 }
 
 TEST_CASE("events: humps that the noise does not describe are no events") {

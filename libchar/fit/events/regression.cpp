@@ -73,17 +73,4 @@ Score score_of(const Regression& beside,
   return score;
 }
 
-double deviance_of(std::span<const double> coefficients, std::span<const double> power) {
-  double sum = 0, product = 1;
-  for (std::size_t k = 0; k < coefficients.size(); ++k) {
-    sum += coefficients[k] * coefficients[k] / power[k];
-    product *= power[k] / power.back();
-    if (product > 1e-100 && product < 1e100) continue;
-    sum += std::log(product);
-    product = 1;
-  }
-  return sum + std::log(product) +
-         static_cast<double>(coefficients.size()) * std::log(power.back());
-}
-
 }  // namespace libchar

@@ -41,7 +41,4 @@ Score score_of(const Regression& beside,
                std::span<const double> column,
                std::span<const double> weight);
 
-/// -2 ln L of coefficients that are normal with mean zero and these expected squares, but for a constant.
-double deviance_of(std::span<const double> coefficients, std::span<const double> power);
-
 }  // namespace libchar

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/chi_square.hpp"
 #include "libchar/fit/detail/bin_likelihood.hpp"
 #include "libchar/fit/detail/dct_means.hpp"
+#include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/events.hpp"
 #include "libchar/spectrum/fft.hpp"
@@ -81,17 +83,47 @@ std::vector<double> at_every_k(std::uint64_t n, const std::function<double(doubl
   return all;
 }
 
+std::vector<LevelStretch> level_stretches(std::size_t coefficients) {
+  constexpr std::size_t kFirst = 256, kFew = 64;
+  std::vector<LevelStretch> stretches;
+  for (std::size_t from = kFirst; from < coefficients;) {
+    std::size_t to = std::min(coefficients, from + std::max(kFew, from / 6));
+    if (coefficients - to < kFew) to = coefficients;
+    stretches.push_back({from, to});
+    from = to;
+  }
+  return stretches;
+}
+
+double deviance_of(std::span<const double> coefficients, std::span<const double> power) {
+  // A free level l of n coefficients has -2 ln L = n ln l + sum ln E + n at l = mean of c^2 / E.
+  double sum = 0;
+  const std::vector<LevelStretch> stretches = level_stretches(power.size());
+  const std::size_t first = stretches.empty() ? power.size() : stretches[0].from;
+  for (std::size_t k = 0; k < first; ++k)
+    sum += coefficients[k] * coefficients[k] / power[k] + std::log(power[k]);
+  for (const auto& [from, to] : stretches) {
+    double level = 0, product = 1;
+    for (std::size_t k = from; k < to; ++k) {
+      level += coefficients[k] * coefficients[k] / power[k];
+      product *= power[k] / power[from];  // within a stretch powers differ little
+      if (product > 1e-200 && product < 1e200) continue;
+      sum += std::log(product);
+      product = 1;
+    }
+    const double count = static_cast<double>(to - from);
+    sum += std::log(product) + count * (std::log(power[from]) + std::log(level / count) + 1);
+  }
+  return sum;
+}
+
 void raise_to_measured(std::span<const double> coefficients, std::vector<double>& power) {
-  constexpr std::size_t kFew = 64;
-  for (std::size_t from = 256; from < power.size();) {
-    std::size_t to = std::min(power.size(), from + std::max(kFew, from / 6));
-    if (power.size() - to < kFew) to = power.size();
+  for (const auto& [from, to] : level_stretches(power.size())) {
     double sum = 0;
     for (std::size_t k = from; k < to; ++k) sum += coefficients[k] * coefficients[k] / power[k];
     const double count = static_cast<double>(to - from), ratio = sum / count;
     if (ratio > 1 + 4 * std::sqrt(2 / count))
       for (std::size_t k = from; k < to; ++k) power[k] *= ratio;
-    from = to;
   }
 }
 
@@ -109,32 +141,65 @@ std::vector<double> mixture_powers(const Mixture& theta,
   });
 }
 
+namespace {
+
+/// Bins of a series for white noise, flicker and walk, slow ones first.
+std::vector<PowerBin> bins_of(const EventSeries& series) {
+  const std::uint64_t n = series.value.size();
+  const double rate_hz = static_cast<double>(series.per_point) / series.step_s;
+  Dct dct(n);
+  const std::span<const double> c = dct.transform(series.value).subspan(1);
+  std::array<std::vector<double>, kTerms> unit;
+  for (const Term term : {Term::white, Term::flicker, Term::walk}) {
+    Mixture one{};
+    one[static_cast<std::size_t>(term)] = 1;
+    unit[static_cast<std::size_t>(term)] = mixture_powers(one, n, series.per_point, rate_hz);
+  }
+  std::vector<double> square(c.size());
+  for (std::size_t k = 0; k < c.size(); ++k) square[k] = c[k] * c[k];
+  std::vector<PowerBin> bins;
+  const std::vector<std::size_t> edge = bin_edges(c.size());
+  for (std::size_t b = 0; b + 1 < edge.size(); ++b) {
+    PowerBin bin;
+    bin.energy = mean_of(square, edge[b], edge[b + 1]);
+    bin.dof = static_cast<double>(edge[b + 1] - edge[b]);
+    for (std::size_t i = 0; i < kTerms; ++i)
+      if (!unit[i].empty()) bin.unit[i] = mean_of(unit[i], edge[b], edge[b + 1]);
+    bins.push_back(bin);
+  }
+  return bins;
+}
+
+/// Does the mixture describe the bins?
+bool describes(const std::vector<PowerBin>& bins, const Mixture& theta) {
+  constexpr double kProbability = 1e-3;
+  double chi2 = 0;
+  for (const PowerBin& bin : bins) {
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) model += theta[i] * bin.unit[i];
+    const double z = normal_deviate(bin.energy / model, bin.dof);
+    chi2 += z * z;
+  }
+  return chi_square_tail(chi2, static_cast<double>(bins.size())) > kProbability;
+}
+
+}  // namespace
+
+// From the slow end up: a filter's slope at the top has ten thousand coefficients and would bend the slow noise to its own use.
 NoisePowers fitted_powers() {
   return [](const EventSeries& series) {
-    const std::uint64_t n = series.value.size();
-    const double rate_hz = static_cast<double>(series.per_point) / series.step_s;
-    Dct dct(n);
-    std::span<const double> c = dct.transform(series.value).subspan(1);
-    std::array<std::vector<double>, kTerms> unit;
-    for (const Term term : {Term::white, Term::flicker, Term::walk}) {
-      Mixture one{};
-      one[static_cast<std::size_t>(term)] = 1;
-      unit[static_cast<std::size_t>(term)] = mixture_powers(one, n, series.per_point, rate_hz);
+    constexpr std::size_t kFewestBins = 32, kHalfOctave = 4;
+    std::vector<PowerBin> bins = bins_of(series);
+    const TermSet terms = {true, true, true, false, false};
+    ScoringResult fit = score(bin_problem(bins), terms);
+    while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.theta)) {
+      bins.resize(bins.size() - kHalfOctave);
+      fit = score(bin_problem(bins), terms);
     }
-    std::vector<double> square(c.size());
-    for (std::size_t k = 0; k < c.size(); ++k) square[k] = c[k] * c[k];
-    std::vector<PowerBin> bins;
-    const std::vector<std::size_t> edge = bin_edges(c.size());
-    for (std::size_t b = 0; b + 1 < edge.size(); ++b) {
-      PowerBin bin;
-      bin.energy = mean_of(square, edge[b], edge[b + 1]);
-      bin.dof = static_cast<double>(edge[b + 1] - edge[b]);
-      for (std::size_t i = 0; i < kTerms; ++i)
-        if (!unit[i].empty()) bin.unit[i] = mean_of(unit[i], edge[b], edge[b + 1]);
-      bins.push_back(bin);
-    }
-    const ScoringResult fit = score(bin_problem(bins), {true, true, true, false, false});
-    return mixture_powers(fit.theta, n, series.per_point, rate_hz);
+    return mixture_powers(fit.theta,
+                          series.value.size(),
+                          series.per_point,
+                          static_cast<double>(series.per_point) / series.step_s);
   };
 }
 

@@ -22,8 +22,18 @@ std::array<double, kTerms> mean_unit_powers(double k,
 /// joined by straight lines.
 std::vector<double> at_every_k(std::uint64_t n, const std::function<double(double)>& power);
 
-/// The powers raised to what the coefficients show over a quarter of an octave, wherever that is more by more than chance (64 and
-/// more coefficients): a line or a hump that the noise does not describe shall not look like an event.
+/// Beyond the lowest 256 coefficients a stretch of a sixth of k, 64 and more, from..to-1 (indices k-1), has a level of its own.
+struct LevelStretch {
+  std::size_t from = 0, to = 0;
+};
+std::vector<LevelStretch> level_stretches(std::size_t coefficients);
+
+/// -2 ln L of coefficients that are normal with mean zero and these expected squares, but for a constant. The level of every stretch
+/// is free: how strong a line, a hump or a filter's slope is says nothing about events.
+double deviance_of(std::span<const double> coefficients, std::span<const double> power);
+
+/// The powers raised to what the coefficients show over a stretch, wherever that is more by more than chance: a line or a hump
+/// that the noise does not describe shall not look like an event.
 void raise_to_measured(std::span<const double> coefficients, std::vector<double>& power);
 
 }  // namespace libchar

@@ -109,15 +109,23 @@ StepScan scan_steps(const Regression& beside,
   return scan;
 }
 
-Interval step_place(const StepScan& scan, std::uint64_t margin) {
-  const double best = scan.best_score(), limit = best * best - kPlaceDrop;
-  std::uint64_t low = scan.best, high = scan.best;
-  // Far away another step may stand: only what is joined to the best place, but for short dips.
-  const std::uint64_t reach = std::max<std::uint64_t>(margin, 8);
-  for (std::uint64_t t = scan.best; t > 0 && low - t < reach; --t)
-    if (scan.score[t] * best > 0 && scan.score[t] * scan.score[t] >= limit) low = t;
-  for (std::uint64_t t = scan.best; t < scan.score.size() && t - high < reach; ++t)
-    if (scan.score[t] * best > 0 && scan.score[t] * scan.score[t] >= limit) high = t;
+Interval step_place(const StepScan& scan, double at, std::uint64_t margin) {
+  const std::size_t last = scan.score.size() - 1;
+  const auto middle = std::min(last, static_cast<std::size_t>(at));
+  const std::size_t reach = std::max<std::size_t>(margin, 8);
+  std::size_t top = middle;
+  for (std::size_t t = middle - std::min(middle, reach); t <= std::min(last, middle + reach); ++t)
+    if (std::abs(scan.score[t]) > std::abs(scan.score[top])) top = t;
+  const double best = scan.score[top], limit = best * best - kPlaceDrop;
+  const auto in = [&](std::size_t t) {
+    return scan.score[t] * best > 0 && scan.score[t] * scan.score[t] >= limit;
+  };
+  // Far away another step may stand: only what is joined to this place, but for dips shorter than the reach.
+  std::size_t low = top, high = top;
+  for (std::size_t t = top; t > 0 && low - t < reach; --t)
+    if (in(t)) low = t;
+  for (std::size_t t = top; t <= last && t - high < reach; ++t)
+    if (in(t)) high = t;
   return {static_cast<double>(low), static_cast<double>(high)};
 }
 

@@ -25,7 +25,8 @@ StepScan scan_steps(const Regression& beside,
                     std::uint64_t points,
                     std::uint64_t margin);
 
-/// Where the best step is with 95 %: the places whose score squared is at most 7.35 below the best one's.
-Interval step_place(const StepScan& scan, std::uint64_t margin);
+/// Where the step that is best within `margin` of `at` stands with 95 %: the places beside it whose score squared is at most 7.35
+/// below its own.
+Interval step_place(const StepScan& scan, double at, std::uint64_t margin);
 
 }  // namespace libchar
