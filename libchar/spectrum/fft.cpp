@@ -377,4 +377,59 @@ std::span<const double> Dct::transform(std::span<const double> y) {
   return {c, n};
 }
 
+// FFTW's REDFT01 is c_0 + 2 sum c_k cos(...), its RODFT00 of n - 1 values 2 sum c_k sin(...).
+struct TrigonometricSums::State {
+  std::size_t n;
+  Kind kind;
+  Aligned<double> values, sums;
+  Plan plan;
+};
+
+TrigonometricSums::TrigonometricSums(std::size_t n, Kind kind) : state_(std::make_unique<State>()) {
+  const bool sines = kind == Kind::sines;
+  if (n < (sines ? 2 : 1))
+    throw Error({ErrorKind::numeric,
+                 "",
+                 "",
+                 fmt::format("trigonometric sums need at least {} values", sines ? 2 : 1),
+                 "",
+                 ""});
+  State& s = *state_;
+  s.n = n;
+  s.kind = kind;
+  s.values = aligned<double>(n + 1);
+  s.sums = aligned<double>(n + 1);
+  const fftw_iodim64 dimension = {static_cast<std::ptrdiff_t>(sines ? n - 1 : n), 1, 1};
+  const fftw_r2r_kind r2r = sines ? FFTW_RODFT00 : FFTW_REDFT01;
+  const std::size_t first = sines ? 1 : 0;
+  const std::lock_guard lock(planner());
+  s.plan.reset(fftw_plan_guru64_r2r(1,
+                                    &dimension,
+                                    0,
+                                    nullptr,
+                                    s.values.get() + first,
+                                    s.sums.get() + first,
+                                    &r2r,
+                                    FFTW_ESTIMATE | FFTW_DESTROY_INPUT));
+}
+TrigonometricSums::~TrigonometricSums() = default;
+TrigonometricSums::TrigonometricSums(TrigonometricSums&&) noexcept = default;
+TrigonometricSums& TrigonometricSums::operator=(TrigonometricSums&&) noexcept = default;
+
+std::span<double> TrigonometricSums::input() {
+  return {state_->values.get(), state_->n};
+}
+
+std::span<const double> TrigonometricSums::transform() {
+  const State& s = *state_;
+  const double n = static_cast<double>(s.n);
+  const bool sines = s.kind == Kind::sines;
+  const double scale = sines ? 0.5 : std::sqrt(0.5 / n);
+  for (std::size_t k = 1; k < s.n; ++k) s.values[k] *= scale;
+  s.values[0] = sines ? 0 : s.values[0] / std::sqrt(n);
+  fftw_execute(s.plan.get());
+  if (sines) s.sums[0] = 0;
+  return {s.sums.get(), s.n};
+}
+
 }  // namespace libchar

@@ -67,4 +67,23 @@ class Dct {
   std::unique_ptr<State> state_;
 };
 
+/// Sums that undo a cosine transform and sums of sines, both real to real and of fixed length n.
+class TrigonometricSums {
+ public:
+  enum class Kind {
+    cosines,  ///< y_t = c_0 / sqrt(n) + sqrt(2/n) sum_k c_k cos(pi k (t + 1/2) / n): Dct undone
+    sines,    ///< y_t = sum_k c_k sin(pi k t / n), t = 1..n-1; y_0 = 0, c_0 is not looked at
+  };
+  TrigonometricSums(std::size_t n, Kind kind);
+  ~TrigonometricSums();
+  TrigonometricSums(TrigonometricSums&&) noexcept;
+  TrigonometricSums& operator=(TrigonometricSums&&) noexcept;
+  std::span<double> input();            ///< c_0..c_{n-1}, to fill in before every transform
+  std::span<const double> transform();  ///< y_0..y_{n-1}, valid until the next call
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 }  // namespace libchar

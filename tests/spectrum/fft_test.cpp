@@ -211,3 +211,34 @@ TEST_CASE("a transform of nothing, or of the wrong length, is refused") {
   Dct dct(4);
   CHECK_THROWS_AS(dct.transform(std::vector<double>(5)), Error);
 }
+
+TEST_CASE("trigonometric sums: cosines undo the cosine transform") {
+  for (const std::size_t n : {1U, 2U, 7U, 64U, 1000U, 2187U}) {
+    const std::vector<double> y = gaussian(n, 5, 3);
+    Dct dct(n);
+    const auto c = dct.transform(y);
+    TrigonometricSums sums(n, TrigonometricSums::Kind::cosines);
+    for (int again = 0; again < 2; ++again) {
+      std::copy(c.begin(), c.end(), sums.input().begin());
+      const auto back = sums.transform();
+      for (std::size_t t = 0; t < n; ++t) REQUIRE(back[t] == Approx(y[t]).margin(1e-12));
+    }
+  }
+}
+
+TEST_CASE("trigonometric sums: sines are the sums they say") {
+  for (const std::size_t n : {2U, 3U, 8U, 31U, 250U}) {
+    const std::vector<double> c = gaussian(n, 6);
+    TrigonometricSums sums(n, TrigonometricSums::Kind::sines);
+    std::copy(c.begin(), c.end(), sums.input().begin());
+    const auto y = sums.transform();
+    CHECK(y[0] == 0);
+    for (std::size_t t = 1; t < n; ++t) {
+      long double wanted = 0;
+      for (std::size_t k = 1; k < n; ++k) wanted += c[k] * sine(k * t, n);
+      REQUIRE(y[t] == Approx(static_cast<double>(wanted)).margin(1e-12 * static_cast<double>(n)));
+    }
+  }
+  CHECK_THROWS_AS(TrigonometricSums(1, TrigonometricSums::Kind::sines), Error);
+  CHECK_THROWS_AS(TrigonometricSums(0, TrigonometricSums::Kind::cosines), Error);
+}

@@ -1,0 +1,185 @@
+// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it. A rail has eight samples and twice
+// as many as the neighbourhood (a thousandth of the range, or one and a half times the distance to the next value).
+// Held values: runs of one value. Polled at r times the sensor's rate, runs are floor(r) or ceil(r) long; repeats of coarsely rounded
+// noise come by chance, runs of one among them. Where r < 2, single values are there as well, and the repeats come evenly.
+// Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
+//   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
+// averaged over where between two steps the value stands, which holds while the noise moves it there (sigma > .3 step).
+#include "libchar/fit/digital.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libchar/core/readable.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kFewestRuns = 64, kLongestRun = 1024;
+constexpr double kFewestAtRail = 8;
+constexpr double kMostAtRail =
+    0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
+
+std::optional<Rail> rail_of(std::span<const double> record, double at, double range, bool high) {
+  double count = 0, present = 0, next = range;
+  for (const double x : record) {
+    const double distance = high ? at - x : x - at;
+    count += distance == 0 ? 1 : 0;
+    present += std::isnan(x) ? 0 : 1;
+    next = distance > 0 && distance < next ? distance : next;
+  }
+  if (count < kFewestAtRail || count > kMostAtRail * present) return std::nullopt;
+  const double inside = std::max(1.5 * next, range / 1000);
+  double near = 0;
+  for (const double x : record) {
+    const double distance = high ? at - x : x - at;
+    near += distance > 0 && distance <= inside ? 1 : 0;
+  }
+  if (count <= 2 * near + kFewestAtRail) return std::nullopt;
+  return Rail{at, high, count / present};
+}
+
+bool repeats_enough(std::span<const double> record) {
+  std::uint64_t repeats = 0;
+  for (std::size_t t = 1; t < record.size(); ++t) repeats += record[t] == record[t - 1] ? 1 : 0;
+  return repeats >= kFewestRuns;
+}
+
+/// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
+struct Runs {
+  std::array<double, kLongestRun + 1> of_length{};
+  double runs = 0, samples = 0;
+  double repeats = 0, spacing = 0, spacing2 = 0;
+
+  /// The length that a share of the runs does not pass.
+  std::uint64_t quantile(double share) const {
+    double sum = 0;
+    for (std::uint64_t length = 1; length <= kLongestRun; ++length)
+      if ((sum += of_length[length]) >= share * runs) return length;
+    return kLongestRun;
+  }
+  double mean_length() const { return samples / runs; }
+  /// Standard deviation over mean of the distance between repeats: near 1 by chance.
+  double unevenness() const {
+    const double mean = spacing / repeats;
+    return std::sqrt(std::max(0.0, spacing2 / repeats - mean * mean)) / mean;
+  }
+};
+
+Runs runs_of_values(std::span<const double> record) {
+  Runs runs;
+  std::uint64_t length = 1, since = 0;
+  bool first = true;
+  for (std::size_t t = 1; t < record.size(); ++t) {
+    ++since;
+    if (record[t] == record[t - 1]) {
+      ++length;
+      runs.repeats += 1;
+      runs.spacing += static_cast<double>(since);
+      runs.spacing2 += static_cast<double>(since * since);
+      since = 0;
+      continue;
+    }
+    if (!first) {
+      runs.of_length[std::min(length, kLongestRun)] += 1;
+      runs.runs += 1;
+      runs.samples += static_cast<double>(length);
+    }
+    first = false;
+    length = 1;
+  }
+  return runs;
+}
+
+std::optional<HeldValues> held_values(const Runs& runs, double rate_hz) {
+  if (static_cast<double>(kFewestRuns) > runs.runs ||
+      static_cast<double>(kFewestRuns) > runs.repeats)
+    return std::nullopt;
+  const std::uint64_t shortest = runs.quantile(0.01), longest = runs.quantile(0.99);
+  const bool every = shortest >= 2 && longest <= 2 * shortest + 1;
+  const bool some = shortest == 1 && longest <= 2 && runs.unevenness() < 0.35;
+  if (!every && !some) return std::nullopt;
+  const double times = runs.mean_length();
+  return HeldValues{times, rate_hz / times};
+}
+
+double chance_of_repeat(double noise_over_step) {
+  const double s = std::numbers::sqrt2 * noise_over_step;
+  return std::erf(1 / (s * std::numbers::sqrt2)) -
+         s * std::sqrt(2 / std::numbers::pi) * -std::expm1(-1 / (2 * s * s));
+}
+
+std::optional<Staircase> staircase(const Runs& runs, double step) {
+  const double repeats = 1 - 1 / std::max(1.0, runs.mean_length());
+  if (!(runs.runs > 0) || repeats <= chance_of_repeat(1)) return std::nullopt;
+  double low = 0.3, high = 1;
+  if (repeats >= chance_of_repeat(low)) return Staircase{step, low * step, true};
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (chance_of_repeat(middle) > repeats ? low : high) = middle;
+  }
+  return Staircase{step, low * step, false};
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  return number_text(value, 3) + (unit.empty() ? "" : " ") + std::string(unit);
+}
+
+void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view unit) {
+  for (const Rail& rail : faults.rails)
+    faults.sentences.push_back(
+        fmt::format("{:.2g} % of the samples stand at the {} value, {}: clipped, and the noise "
+                    "comes out too small.",
+                    100 * rail.share,
+                    rail.high ? "largest" : "smallest",
+                    with_unit(rail.value, unit)));
+  if (faults.held)
+    faults.sentences.push_back(
+        fmt::format("Each value is recorded {} times on average: the sensor gives {} Hz where the "
+                    "log has {} Hz.",
+                    number_text(faults.held->times, 3),
+                    number_text(faults.held->sensor_rate_hz, 4),
+                    number_text(rate_hz, 4)));
+  if (faults.staircase)
+    faults.sentences.push_back(
+        fmt::format("The noise between samples, {}{}, is below the converter's step of {}: what is "
+                    "measured is the rounding.",
+                    faults.staircase->bounded ? "at most " : "",
+                    with_unit(faults.staircase->noise, unit),
+                    with_unit(faults.staircase->step, unit)));
+}
+
+}  // namespace
+
+DigitalFaults find_digital_faults(std::span<const double> record,
+                                  double rate_hz,
+                                  std::optional<double> step,
+                                  std::string_view unit) {
+  DigitalFaults faults;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double x : record) {  // no comparison holds of a missing one
+    low = x < low ? x : low;
+    high = x > high ? x : high;
+  }
+  if (!(low < high)) return faults;
+  if (repeats_enough(record)) {
+    const Runs runs = runs_of_values(record);
+    faults.held = held_values(runs, rate_hz);
+    if (step && !faults.held) faults.staircase = staircase(runs, *step);
+  }
+  // A staircase may stand on its last step for long.
+  if (!faults.staircase) {
+    for (const bool top : {false, true})
+      if (const auto rail = rail_of(record, top ? high : low, high - low, top))
+        faults.rails.push_back(*rail);
+  }
+  describe_faults(faults, rate_hz, unit);
+  return faults;
+}
+
+}  // namespace libchar

@@ -1,0 +1,47 @@
+#pragma once
+// What the converter and the link did to the samples: rails, repeated values, steps of the converter above the noise.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+/// Samples at the largest or smallest value, more than a tail of noise puts there.
+struct Rail {
+  double value = 0;
+  bool high = true;
+  double share = 0;  ///< of the samples
+};
+
+/// Every value is recorded several times: the log is polled faster than the sensor gives values.
+struct HeldValues {
+  double times = 1;           ///< on average
+  double sensor_rate_hz = 0;  ///< rate of the log / times
+};
+
+/// The noise of a sample is less than the converter's step.
+struct Staircase {
+  double step = 0;
+  double noise = 0;  ///< standard deviation between samples; an upper bound where `bounded`
+  bool bounded = false;
+};
+
+struct DigitalFaults {
+  std::vector<Rail> rails;
+  std::optional<HeldValues> held;
+  std::optional<Staircase> staircase;
+  std::vector<std::string> sentences;
+};
+
+/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
+/// No finding in a record of noise that is sampled and rounded finely, whatever its length.
+DigitalFaults find_digital_faults(std::span<const double> record,
+                                  double rate_hz,
+                                  std::optional<double> step = {},
+                                  std::string_view unit = {});
+
+}  // namespace libchar

@@ -1,0 +1,175 @@
+#include "libchar/fit/motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/noise.hpp"
+#include "tests/support/npy.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+constexpr double kRate = 100;
+constexpr std::size_t kSamples = 100'000;
+constexpr double kQ = 5e-3, kB = 5e-3, kK = 1.5e-3, kSigma = 0.05;
+
+Motion motion_of(const std::vector<double>& y) {
+  return find_motion(event_series(y, kRate));
+}
+
+/// Student's t with five degrees of freedom, unit variance.
+double student(test::Gaussian& gauss) {
+  double chi2 = 0;
+  for (int i = 0; i < 5; ++i) {
+    const double g = gauss();
+    chi2 += g * g;
+  }
+  return gauss() / std::sqrt(chi2 / 5) * std::sqrt(0.6);
+}
+
+}  // namespace
+
+TEST_CASE("motion: records of noise have none, and none of their strength changes") {
+  const std::array<std::array<double, 3>, 4> scenes = {
+      {{kQ, 0, 0}, {kQ, kB, kK}, {kQ, 0, 20 * kK}, {0, 0, kK}}};
+  int alarms = 0;
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    test::NoiseSource source(kSamples, kRate, 200 + s);
+    for (int r = 0; r < 30; ++r) {
+      const Motion motion = motion_of(source.record(scenes[s][0], scenes[s][1], scenes[s][2]));
+      REQUIRE(motion.tested);
+      CHECK_FALSE(motion.whole);
+      CHECK(motion.moving_s.empty());
+      alarms += motion.changes.empty() ? 0 : 1;
+    }
+  }
+  CHECK(alarms <= 3);
+}
+
+TEST_CASE("motion: heavy tails, steps and spikes are neither motion nor a change") {
+  test::NoiseSource source(kSamples, kRate, 31);
+  int changes = 0;
+  for (int r = 0; r < 20; ++r) {
+    std::vector<double> y = source.record(0, kB, kK);
+    for (std::size_t t = 0; t < y.size(); ++t) {
+      y[t] += kSigma * student(source.gauss()) + (t > 61'803 ? 10 * kSigma : 0);
+      if (source.gauss().uniform() < 1e-3) y[t] += 15 * kSigma;
+    }
+    const Motion motion = motion_of(y);
+    CHECK_FALSE(motion.whole);
+    CHECK(motion.moving_s.empty());
+    changes += motion.changes.empty() ? 0 : 1;
+  }
+  CHECK(changes <= 1);
+}
+
+TEST_CASE("motion: a change of strength has its instant and its factor") {
+  test::NoiseSource source(kSamples, kRate, 32);
+  for (const double factor : {1.4, 2.0, 0.5}) {
+    std::vector<double> y = source.record(0, kB, kK);
+    for (std::size_t t = 0; t < y.size(); ++t)
+      y[t] += kSigma * source.gauss()() * (t >= 60'000 ? factor : 1);
+    const Motion motion = motion_of(y);
+    INFO("factor " << factor);
+    REQUIRE(motion.changes.size() == 1);
+    const StrengthChange& change = motion.changes[0];
+    CHECK(change.kind == EventKind::step);
+    CHECK(change.at_ci95.low < 600);
+    CHECK(change.at_ci95.high > 600);
+    CHECK(change.factor == Approx(factor).epsilon(0.08));
+    CHECK(motion.moving_s.empty());
+    CHECK(motion.sentences.size() == 1);
+  }
+}
+
+TEST_CASE("motion: a handled stretch is found, and the longest still one") {
+  test::NoiseSource source(kSamples, kRate, 33);
+  std::vector<double> y = source.record(kQ, kB, kK);
+  for (std::size_t t = 30'000; t < 34'000; ++t)
+    y[t] += 20 * kSigma * std::sin(2 * std::numbers::pi * 1.3 * static_cast<double>(t) / kRate);
+  const Motion motion = motion_of(y);
+  REQUIRE(motion.moving_s.size() == 1);
+  CHECK(motion.moving_s[0].low <= 300);
+  CHECK(motion.moving_s[0].high >= 340);
+  CHECK(motion.moving_s[0].high - motion.moving_s[0].low < 70);
+  REQUIRE(motion.still_s.has_value());
+  CHECK(motion.still_s->low == Approx(motion.moving_s[0].high));
+  CHECK(motion.still_s->high > 990);
+  CHECK(longest_still(y, kRate)->low == motion.still_s->low);
+}
+
+TEST_CASE("motion: a recording in motion throughout is called one") {
+  test::NoiseSource source(kSamples, kRate, 34);
+  std::vector<double> y = source.record(kQ, kB, kK);
+  // A hand's movement: an oscillation of 1 Hz whose logarithm of amplitude wanders.
+  double strength = 0;
+  for (std::size_t t = 0; t < y.size(); ++t) {
+    strength += -strength * 0.001 + 0.05 * source.gauss()();
+    y[t] += 20 * kSigma * std::exp(strength) *
+            std::sin(2 * std::numbers::pi * static_cast<double>(t) / kRate);
+  }
+  const Motion motion = motion_of(y);
+  CHECK(motion.whole);
+  CHECK_FALSE(motion.still_s.has_value());
+  REQUIRE(motion.sentences.size() == 1);
+}
+
+TEST_CASE("motion: signals from formulas are judged without a fit that cannot be") {
+  std::vector<double> ramp(kSamples), turns(kSamples);
+  for (std::size_t t = 0; t < kSamples; ++t) {
+    ramp[t] = static_cast<double>(t);
+    turns[t] = t % 2 == 0 ? 1 : -1;
+  }
+  CHECK(motion_of(ramp).changes.empty());
+  CHECK(motion_of(turns).changes.empty());
+}
+
+TEST_CASE("motion: a staircase and a short record are not judged") {
+  test::NoiseSource source(kSamples, kRate, 35);
+  std::vector<double> y = source.record(kQ, kB, kK);
+  for (double& value : y) value = std::round(value / (6 * kSigma)) * 6 * kSigma;
+  CHECK_FALSE(motion_of(y).tested);
+  y.resize(1000);
+  CHECK_FALSE(motion_of(y).tested);
+  CHECK_FALSE(longest_still(y, kRate).has_value());
+}
+
+TEST_CASE("motion: a gyroscope that was turned by hand lay still for 39 s before") {
+  NEEDS_SHARED("data/tilt_broad_02_undisturbed_slow_rotation_B.npy");
+  const test::Array array =
+      test::npy(test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy"));
+  const std::optional<Interval> still = longest_still(array.column(2), 2000 / 7.0);
+  REQUIRE(still.has_value());
+  CHECK(still->low == 0);
+  CHECK(still->high == Approx(39).margin(1));
+}
+
+TEST_CASE("motion: six axes at rest for three hours are at rest, but for steps that they share") {
+  NEEDS_SHARED("data/static_adis16405_run1.npy");
+  const test::Array array = test::npy(test::shared("data/static_adis16405_run1.npy"));
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    INFO("axis " << axis);
+    const EventSeries series = event_series(array.column(axis), 100);
+    const Motion motion = find_motion(series);
+    CHECK_FALSE(motion.whole);
+    CHECK(motion.moving_s.empty());
+    const EventSearch found = find_events(series, fitted_powers());
+    if (axis < 3) {
+      CHECK(found.events.empty());
+      continue;
+    }
+    // Somebody stood beside the table for 25 s.
+    const auto near = [&](double at_s) {
+      return std::any_of(found.events.begin(), found.events.end(), [&](const Event& event) {
+        return event.kind == EventKind::step && std::abs(event.at_s - at_s) < 1;
+      });
+    };
+    CHECK(near(2153.7));
+    CHECK(near(2178.4));
+  }
+}
