@@ -10,13 +10,16 @@ import sys
 
 # Words in backquotes for which there is nothing to type on the command line.
 NO_FLAGS = {
+    "frequency_hz": "key of a sensor model",
     "name": "key of a document",
     "none": "word of a scene",
     "options": "part of a fusion algorithm, in a message of the compiler",
+    "ratio": "key of a sensor model",
     "recording": "key of a scene",
     "recursive": "value of an option",
     "repeat": "key of a signal in a scene",
     "simulate": "key of a scene",
+    "taps": "key of a sensor model",
     "unit": "key of a sensor model",
     "version": "key of a document",
 }

@@ -6,25 +6,10 @@
 
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
 namespace {
-
-// Allan variance of white noise of unit two-sided density behind a sampled first-order low-pass (an
-// AR(1) sequence of lag-one correlation r and unit gain at f = 0): half the variance of the
-// difference of two adjacent means,
-//   s^2/m^2 [ m (1+r)/(1-r) - 2 r (1-r^m)/(1-r)^2 - r (1-r^m)^2/(1-r)^2 ],   s^2 = (1-r)/((1+r)
-//   dt).
-double low_passed_white_variance(double bandwidth_hz, double m, double dt_s) {
-  const double r = std::exp(-2 * std::numbers::pi * bandwidth_hz * dt_s);
-  const double q = 1 - std::pow(r, m), d = 1 - r;
-  const double variance = d / ((1 + r) * dt_s);
-  return variance / (m * m) * (m * (1 + r) / d - 2 * r * q / (d * d) - r * q * q / (d * d));
-}
-
-double square(double x) {
-  return x * x;
-}
 
 double theta_of(const NoiseFit& fit, Term term) {
   return fit.theta[static_cast<std::size_t>(term)];
@@ -32,25 +17,12 @@ double theta_of(const NoiseFit& fit, Term term) {
 
 }  // namespace
 
-double low_pass_power(double bandwidth_hz, double frequency_hz, double dt_s) {
-  const double r = std::exp(-2 * std::numbers::pi * bandwidth_hz * dt_s);
-  return square(1 - r) / (1 - 2 * r * std::cos(2 * std::numbers::pi * frequency_hz * dt_s) + r * r);
-}
-
 std::optional<double> model_deviation(const NoiseFit& fit,
                                       DeviationType type,
                                       double m,
                                       double dt_s) {
   if (!deviation_row(type).is_allan()) return std::nullopt;
-  double variance = 0;
-  if (fit.bandwidth_hz) {
-    Mixture rest = fit.theta;
-    rest[static_cast<std::size_t>(Term::white)] = 0;
-    variance = allan_variance(rest, m, dt_s) +
-               theta_of(fit, Term::white) * low_passed_white_variance(*fit.bandwidth_hz, m, dt_s);
-  } else {
-    variance = allan_variance(fit.theta, m, dt_s);
-  }
+  const double variance = shaped_allan_variance(fit, m, dt_s);
   if (!(variance > 0)) return std::nullopt;
   return std::sqrt(variance);
 }
@@ -68,10 +40,7 @@ std::optional<double> model_spectrum(const NoiseFit& fit,
                                      double frequency_hz) {
   const double f = std::fabs(frequency_hz), dt_s = 1 / shown.rate_hz;
   if (!(f > 0)) return std::nullopt;
-  double density = spectrum(fit.theta, f, dt_s);
-  if (fit.bandwidth_hz) {
-    density -= theta_of(fit, Term::white) * (1 - low_pass_power(*fit.bandwidth_hz, f, dt_s));
-  }
+  const double density = shaped_density(fit, f, dt_s);
   if (!(density > 0)) return std::nullopt;
   return scaled_density(shown, density);
 }

@@ -31,10 +31,6 @@ std::optional<double> model_spectrum(const NoiseFit& fit,
 /// A two-sided density in the sides and scaling of `spectrum`.
 double scaled_density(const Spectrum& spectrum, double two_sided_density);
 
-/// Fraction of the power of white noise at frequency f that a first-order low-pass (sampled) lets
-/// through: (1-r)^2 / (1 - 2 r cos(2 pi f dt) + r^2), r = exp(-2 pi fc dt).
-double low_pass_power(double bandwidth_hz, double frequency_hz, double dt_s);
-
 /// Point at which a coefficient is read off the Allan curve [RV Fig. 1.9].
 struct ReadOff {
   Term term = Term::white;

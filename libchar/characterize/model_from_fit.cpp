@@ -32,6 +32,7 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = fit.rate_hz;
   model.noise = fit.term;
+  model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
   model.method = fit.method;
@@ -52,6 +53,7 @@ SensorModel sensor_model_from(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
   model.noise = fit.term;
+  model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.resolution = quality.resolution;
   set_saturation(model, quality);

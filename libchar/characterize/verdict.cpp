@@ -41,6 +41,11 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
           term_title(term),
           name.letter,
           value);
+    case Status::misfit:
+      return fmt::format("{} {} = {}, but the noise terms do not describe the recording.",
+                         term_title(term),
+                         name.letter,
+                         value);
     case Status::not_detected:
       return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
     case Status::given:

@@ -32,6 +32,26 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   return model;
 }
 
+// The recording's steps, warm-up and ramp on top of simulated noise: the measured curve has them.
+class EventsAdded {
+ public:
+  EventsAdded(const std::vector<Event>& events, const ArraySimulation& simulation) {
+    if (events.empty()) return;
+    less_.assign(simulation.samples, 0.0);
+    subtract_events(events, simulation.rate_hz, less_);
+  }
+  std::span<const double> added(std::span<const double> noise) {
+    if (less_.empty()) return noise;
+    sum_.assign(noise.begin(), noise.end());
+    for (double& sample : sum_) sample -= less_[at_++];
+    return sum_;
+  }
+
+ private:
+  std::vector<double> less_, sum_;
+  std::size_t at_ = 0;
+};
+
 ChannelResult simulated_channel(const ChannelResult& recorded,
                                 const LogInfo& log,
                                 const CharacterizeOptions& options,
@@ -50,8 +70,9 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   ChannelStage stage(same, workspace);
   if (!kept) stage.stop_keeping();
   ArraySimulator simulator(simulation);
+  EventsAdded events(recorded.fit->events, simulation);
   for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
-    stage.push(columns[0]);
+    stage.push(events.added(columns[0]));
   return stage.finish(recorded.channel, log.time.rate_hz);
 }
 

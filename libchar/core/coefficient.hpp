@@ -14,14 +14,16 @@ enum class Status {
   detected,      ///< value and interval
   not_detected,  ///< likelihood ratio below the threshold: no value, only `upper95`
   undetermined,  ///< present alone or with another term, but the record cannot tell them apart: value and wide interval
-  given,         ///< not fitted but stated by somebody (models only)
-  not_fitted,    ///< the term was not part of the model that was asked for
+  misfit,  ///< fitted, but the noise terms do not describe the record: intervals are widened by the scatter
+  given,       ///< not fitted but stated by somebody (models only)
+  not_fitted,  ///< the term was not part of the model that was asked for
 };
 template <>
 inline constexpr auto enum_table<Status> =
     enum_words<Status>({{Status::detected, "detected"},
                         {Status::not_detected, "not_detected"},
                         {Status::undetermined, "undetermined"},
+                        {Status::misfit, "misfit"},
                         {Status::given, "given"},
                         {Status::not_fitted, "not_fitted"}});
 

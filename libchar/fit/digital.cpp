@@ -20,7 +20,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kFewestRuns = 64, kLongestRun = 1024;
+constexpr std::uint64_t kFewestRuns = 64, kLongestHold = 1024;
 constexpr double kFewestAtRail = 8;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
@@ -52,16 +52,16 @@ bool repeats_enough(std::span<const double> record) {
 
 /// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
 struct Runs {
-  std::array<double, kLongestRun + 1> of_length{};
+  std::array<double, kLongestHold + 1> of_length{};
   double runs = 0, samples = 0;
   double repeats = 0, spacing = 0, spacing2 = 0;
 
   /// The length that a share of the runs does not pass.
   std::uint64_t quantile(double share) const {
     double sum = 0;
-    for (std::uint64_t length = 1; length <= kLongestRun; ++length)
+    for (std::uint64_t length = 1; length <= kLongestHold; ++length)
       if ((sum += of_length[length]) >= share * runs) return length;
-    return kLongestRun;
+    return kLongestHold;
   }
   double mean_length() const { return samples / runs; }
   /// Standard deviation over mean of the distance between repeats: near 1 by chance.
@@ -86,7 +86,7 @@ Runs runs_of_values(std::span<const double> record) {
       continue;
     }
     if (!first) {
-      runs.of_length[std::min(length, kLongestRun)] += 1;
+      runs.of_length[std::min(length, kLongestHold)] += 1;
       runs.runs += 1;
       runs.samples += static_cast<double>(length);
     }

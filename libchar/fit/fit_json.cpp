@@ -32,6 +32,24 @@ Json goodness_json(const Goodness& goodness) {
           {"p", json_number(goodness.p)}};
 }
 
+Json band_json(const NoiseFit& fit) {
+  Json left_out = Json::array();
+  for (const Interval& interval : fit.band.left_out_hz) left_out.push_back(pair_of(interval));
+  return {{"top_hz", json_number(fit.band.top_hz)},
+          {"whole", fit.band.whole},
+          {"shape_coefficients", fit.band.orders},
+          {"left_out_hz", std::move(left_out)}};
+}
+
+Json shape_json(const NoiseShape& shape) {
+  Json json = {{"kind", name_of(shape.kind)}};
+  if (shape.taps > 0) json["taps"] = shape.taps;
+  if (shape.kind != NoiseShape::Kind::measured) return json;
+  json["frequency_hz"] = shape.frequency_hz;
+  json["ratio"] = shape.ratio;
+  return json;
+}
+
 Json second_json(const SecondOpinion& second) {
   Json json = {{"method", "generalised least squares on the Allan variances"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -45,10 +63,33 @@ Json second_json(const SecondOpinion& second) {
   return json;
 }
 
+Json events_json(const std::vector<Event>& events) {
+  Json list = Json::array();
+  for (const Event& event : events) {
+    Json json = {{"kind", event_name(event.kind)},
+                 {"size", json_number(event.size)},
+                 {"sd", json_number(event.sd)},
+                 {"score", json_number(event.score)},
+                 {"threshold", json_number(event.threshold)}};
+    if (event.kind == EventKind::step) {
+      json["at_s"] = json_number(event.at_s);
+      json["at_ci95"] = pair_of(event.at_ci95);
+      json["in_gap"] = event.in_gap;
+    }
+    if (event.kind == EventKind::warm_up) json["tau_s"] = json_number(event.tau_s);
+    if (event.kind == EventKind::ramp) json["slope_per_s"] = json_number(event.slope);
+    json["not_told_from"] = Json::array();
+    for (const EventKind other : event.not_told_from)
+      json["not_told_from"].push_back(event_name(other));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 // Column by column: five arrays take a third of the bytes of as many objects.
 Json residuals_json(const std::vector<FitResidual>& residuals) {
   Json json;
-  for (const char* key : {"frequency_hz", "measured", "model", "dof", "z"})
+  for (const char* key : {"frequency_hz", "measured", "model", "dof", "z", "inside"})
     json[key] = Json::array();
   for (const FitResidual& r : residuals) {
     json["frequency_hz"].push_back(json_number(r.frequency_hz));
@@ -56,6 +97,7 @@ Json residuals_json(const std::vector<FitResidual>& residuals) {
     json["model"].push_back(json_number(r.model));
     json["dof"].push_back(json_number(r.dof));
     json["z"].push_back(json_number(r.z));
+    json["inside"].push_back(r.inside);
   }
   return json;
 }
@@ -71,6 +113,8 @@ Json noise_fit_json(const std::string& name,
   json["unit"] = unit;
   for (std::size_t i = 0; i < kTerms; ++i)
     json[std::string(kTermNames[i].key)] = term_json(fit.term[i], i, unit);
+  json["band"] = band_json(fit);
+  json["shape"] = shape_json(fit.shape);
   json["bandwidth_hz"] = json_number(fit.bandwidth_hz);
   json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
@@ -82,6 +126,7 @@ Json noise_fit_json(const std::string& name,
                                 {"action", remedy.action},
                                 {"count", remedy.count}});
   }
+  json["events"] = events_json(fit.events);
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;
   json["converged"] = fit.converged;

@@ -8,17 +8,21 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/detail/allan_fit.hpp"
+#include "libchar/fit/detail/band.hpp"
+#include "libchar/fit/detail/band_report.hpp"
 #include "libchar/fit/detail/bridge.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/contradiction.hpp"
 #include "libchar/fit/detail/goodness.hpp"
-#include "libchar/fit/detail/low_pass.hpp"
+#include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/power_bins.hpp"
 #include "libchar/fit/remedies.hpp"
 
@@ -26,18 +30,18 @@ namespace libchar {
 
 namespace {
 
-constexpr double kAlarmP = 1e-4;  ///< probability of a false alarm of the residuals' ends
-constexpr double kRemedyRatio =
-    15;  ///< 2 ln L a remedy with one parameter must gain to be taken (1e-4)
+constexpr double kMisfit =
+    1e-3;  ///< probability of the residuals below which the terms do not describe them
 constexpr double kRampRatio = 5.41;  ///< the same for a ramp: passed by 0.5 % of clean records
 constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift falls into
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
 
-/// The bins of the moment, what is offered, and the fit; remedies change all three.
+/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last three.
 struct Attempt {
-  std::vector<PowerBin> bins;
+  const std::vector<PowerBin>* bins = nullptr;
+  Band band;
   FitOptions options;
   NoiseFit fit;
   double half_deviance = 0;
@@ -64,143 +68,61 @@ void require_enough(std::size_t bins, const TermSet& terms) {
        "use a longer record"});
 }
 
-Attempt attempt(std::vector<PowerBin> bins,
+BinProblem problem_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {
+  return bin_problem(bins_of(bins, band, rate_hz), band.orders, band.top_hz);
+}
+
+Attempt attempt(const std::vector<PowerBin>& bins,
+                Band band,
                 double rate_hz,
                 std::uint64_t samples,
                 const FitOptions& options) {
-  require_enough(bins.size(), options.terms);
-  const BinProblem problem = bin_problem(bins);
-  const Decision decision = decide(problem, options.terms, options.threshold);
-  NoiseFit fit;
+  Attempt out{&bins, std::move(band), options, {}, 0};
+  if (out.band.quantized) out.options.terms[kQuantization] = true;
+  const BinProblem problem = problem_of(bins, out.band, rate_hz);
+  require_enough(static_cast<std::size_t>(problem.size()), out.options.terms);
+  const Decision decision = decide(problem, out.options.terms, options.threshold);
+  NoiseFit& fit = out.fit;
   fit.rate_hz = rate_hz;
   fit.samples = samples;
   fit.duration_s = static_cast<double>(samples) / rate_hz;
-  fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", bins.size());
-  report_coefficients(problem, decision, options, fit);
+  fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
+  const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
   report_bounds(decision.kept, fit);
-  fit.residuals = residuals_of(bins, fit.theta, rate_hz);
-  fit.goodness = goodness_of(fit.residuals, count_of(only_positive(fit.theta)));
-  const double deviance = half_deviance(problem, fit.theta);
-  return {std::move(bins), options, std::move(fit), deviance};
+  describe_band(bins, out.band, problem, best, rate_hz, fit);
+  fit.goodness =
+      goodness_of(inside_of(fit.residuals),
+                  count_of(only_positive(fit.theta)) + static_cast<std::size_t>(out.band.orders));
+  out.half_deviance = half_deviance(problem, best);
+  return out;
 }
 
 /// Goodness of the residuals between two frequencies.
 Goodness goodness_between(const NoiseFit& fit, double low_hz, double high_hz) {
   std::vector<FitResidual> part;
   for (const FitResidual& residual : fit.residuals) {
-    if (residual.frequency_hz >= low_hz && residual.frequency_hz <= high_hz)
+    if (residual.inside && residual.frequency_hz >= low_hz && residual.frequency_hz <= high_hz)
       part.push_back(residual);
   }
   return goodness_of(part, 0);
 }
 
-/// Median of measured/model over bins from..to-1, +infinity when there are fewer than three.
-double median_ratio(const std::vector<FitResidual>& residual, std::size_t from, std::size_t to) {
-  if (to < from + 3) return std::numeric_limits<double>::infinity();
-  std::vector<double> ratio;
-  for (std::size_t i = from; i < to; ++i) ratio.push_back(residual[i].measured / residual[i].model);
-  const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
-  std::nth_element(ratio.begin(), middle, ratio.end());
-  return *middle;
-}
-
-/// Bins of a broad peak (vibration, a wandering line): on the scale of the model a quarter and six
-/// standard deviations above the median of the ten bins before as well as of the ten after, so that
-/// a slope or a rising end is none.
-std::vector<PowerBin> without_broad_peaks(const Attempt& now) {
-  constexpr std::size_t kReach = 10;
-  const std::vector<FitResidual>& residual = now.fit.residuals;
-  std::vector<PowerBin> kept;
-  for (std::size_t j = 0; j < now.bins.size(); ++j) {
-    const double before = median_ratio(residual, j < kReach ? 0 : j - kReach, j);
-    const double after = median_ratio(residual, j + 1, std::min(j + 1 + kReach, residual.size()));
-    const double excess = residual[j].measured / residual[j].model / std::max(before, after) - 1;
-    const double limit = std::max(0.25, 6 * std::sqrt(2 / now.bins[j].dof));
-    if (now.bins[j].dof <= 32 || excess <= limit) kept.push_back(now.bins[j]);
-  }
-  return kept;
-}
-
-/// Humps are left out before anything else is read from the residuals.
-void answer_broad_peaks(Attempt& now) {
-  if (!(now.fit.goodness.p < kAlarmP)) return;
-  std::vector<PowerBin> kept = without_broad_peaks(now);
-  const std::uint64_t count = now.bins.size() - kept.size();
-  if (count == 0 || kept.size() < now.bins.size() / 2) return;
-  now = attempt(std::move(kept), now.fit.rate_hz, now.fit.samples, now.options);
-  now.fit.remedies.push_back(
-      {"lines",
-       fmt::format("{} bin{} a quarter and six standard deviations above {} neighbours",
-                   count,
-                   count == 1 ? "" : "s",
-                   count == 1 ? "its" : "their"),
-       fmt::format("{} bin{} of broad peaks left out", count, count == 1 ? "" : "s"),
-       count});
-}
-
-/// High frequencies misfit: quantization or a low-pass, whichever explains more.
-void answer_high_frequencies(Attempt& now) {
-  const double rate_hz = now.fit.rate_hz;
-  const Goodness top = goodness_between(now.fit, rate_hz / 16, rate_hz);
-  if (!(top.p < kAlarmP)) return;
-  const std::string alarm =
-      fmt::format("chi-square of the bins above {:.3g} Hz {:.0f} for {:.0f} degrees of freedom",
-                  rate_hz / 16,
-                  top.chi2,
-                  top.dof);
-
-  FitOptions with = now.options;
-  with.terms[kQuantization] = true;
-  std::optional<Attempt> quantized;
-  if (!now.options.terms[kQuantization])
-    quantized = attempt(now.bins, rate_hz, now.fit.samples, with);
-  const std::optional<LowPassFit> low_pass = fit_low_pass(now.bins, rate_hz, now.options.terms);
-  const double gain_quantized = quantized ? 2 * (now.half_deviance - quantized->half_deviance) : 0;
-  const double gain_low_pass = low_pass ? 2 * (now.half_deviance - low_pass->half_deviance) : 0;
-  if (std::max(gain_quantized, gain_low_pass) < kRemedyRatio) return;
-
-  if (gain_quantized >= gain_low_pass) {
-    quantized->fit.remedies = now.fit.remedies;
-    now = std::move(*quantized);
-    now.fit.remedies.push_back(
-        {"quantization",
-         alarm,
-         fmt::format("quantization noise added to the model; 2 ln L rises by {:.0f}",
-                     gain_quantized),
-         1});
-    return;
-  }
-  const std::vector<Remedy> before = now.fit.remedies;
-  now = attempt(
-      low_passed(now.bins, low_pass->corner_hz, rate_hz), rate_hz, now.fit.samples, now.options);
-  now.fit.remedies = before;
-  now.fit.bandwidth_hz = low_pass->corner_hz;
-  const double spread = std::exp(1.959963984540054 * low_pass->log_sd);
-  now.fit.bandwidth_ci95 = Interval{low_pass->corner_hz / spread, low_pass->corner_hz * spread};
-  widen_for_joint_parameter(low_pass->log_theta_sd, now.fit);
-  now.fit.remedies.push_back(
-      {"bandwidth",
-       alarm,
-       fmt::format(
-           "first-order low-pass with corner {:.4g} Hz added to the model; 2 ln L rises by {:.0f}",
-           low_pass->corner_hz,
-           gain_low_pass),
-       1});
-}
-
-std::vector<PowerBin> without_lowest(const std::vector<PowerBin>& bins, double duration_s) {
-  const double from_hz = (static_cast<double>(kLowest) - 0.5) / (2 * duration_s);
-  std::vector<PowerBin> kept;
-  for (const PowerBin& bin : bins) {
-    if (bin.low_hz > from_hz * (1 - 1e-9)) kept.push_back(bin);
-  }
-  return kept;
+Band without_lowest(const Attempt& now) {
+  Band band = now.band;
+  const double from_hz = (static_cast<double>(kLowest) - 0.5) / (2 * now.fit.duration_s);
+  for (std::size_t j = 0; j < now.bins->size(); ++j)
+    if (!((*now.bins)[j].low_hz > from_hz * (1 - 1e-9))) band.inside[j] = 0;
+  return band;
 }
 
 /// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are
 /// consistent.
 double rejection(const Attempt& other, const NoiseFit& fit) {
-  return 2 * (half_deviance(bin_problem(other.bins), fit.theta) - other.half_deviance);
+  const BinProblem problem = problem_of(*other.bins, other.band, fit.rate_hz);
+  const ModelPoint at{fit.theta, {}};
+  const double value =
+      problem.shapes() == 0 ? half_deviance(problem, at) : score(problem, {}, &at).half_deviance;
+  return 2 * (value - other.half_deviance);
 }
 
 /// What `rejection` stays below in clean records. Its expectation is the information that the
@@ -209,31 +131,31 @@ double rejection(const Attempt& other, const NoiseFit& fit) {
 /// one standard deviation: not worth a remedy.
 double rejection_limit(const Attempt& now, const Attempt& dropped) {
   const TermSet terms = only_positive(now.fit.theta);
-  const TermMatrix all = fisher_information(bin_problem(now.bins), now.fit.theta, terms);
-  const TermMatrix rest = fisher_information(bin_problem(dropped.bins), now.fit.theta, terms);
+  const auto information = [&](const Band& band) {
+    const BinProblem problem = problem_of(*now.bins, band, now.fit.rate_hz);
+    const ModelPoint at{now.fit.theta, {}};
+    return fisher_information(problem, at, terms);
+  };
+  const TermMatrix all = information(now.band), rest = information(dropped.band);
   const double lost =
       static_cast<double>(count_of(terms)) - (rest * inverse_of(all, terms)).trace();
   return std::clamp(16 * lost, 1.0, 16.0);
 }
 
-void keep_remedies(NoiseFit& next, const NoiseFit& before) {
-  next.remedies = before.remedies;
-  next.bandwidth_hz = before.bandwidth_hz;
-  next.bandwidth_ci95 = before.bandwidth_ci95;
-}
-
 /// A drift falls into the first few coefficients: a ramp, or those coefficients left out.
 void answer_low_frequencies(Attempt& now) {
-  std::vector<PowerBin> rest = without_lowest(now.bins, now.fit.duration_s);
-  if (rest.size() < 2 * count_of(now.options.terms) || rest.size() == now.bins.size()) return;
-  const Attempt dropped = attempt(std::move(rest), now.fit.rate_hz, now.fit.samples, now.options);
+  const Band rest = without_lowest(now);
+  const auto left = static_cast<std::size_t>(std::count(rest.inside.begin(), rest.inside.end(), 1));
+  if (left < 2 * count_of(now.options.terms) || rest.inside == now.band.inside) return;
+  const Attempt dropped = attempt(*now.bins, rest, now.fit.rate_hz, now.fit.samples, now.options);
   const double rejects = rejection(dropped, now.fit);
   const double limit = rejection_limit(now, dropped);
   const Goodness low = goodness_between(now.fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s));
   FitOptions with = now.options;
   with.terms[kRamp] = true;
   std::optional<Attempt> ramp;
-  if (!now.options.terms[kRamp]) ramp = attempt(now.bins, now.fit.rate_hz, now.fit.samples, with);
+  if (!now.options.terms[kRamp])
+    ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
   const double gain = ramp ? 2 * (now.half_deviance - ramp->half_deviance) : 0;
   if (rejects < limit && low.p > 1e-3 && gain < kRampRatio) return;
 
@@ -246,7 +168,7 @@ void answer_low_frequencies(Attempt& now) {
       ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
       goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
   if (ramp_explains) {
-    keep_remedies(ramp->fit, now.fit);
+    ramp->fit.remedies = now.fit.remedies;
     now = std::move(*ramp);
     now.fit.remedies.push_back(
         {"ramp",
@@ -257,30 +179,72 @@ void answer_low_frequencies(Attempt& now) {
         "The record drifts; a straight line was taken out of the random walk.");
     return;
   }
-  const std::uint64_t count = now.bins.size() - dropped.bins.size();
-  NoiseFit fit = dropped.fit;
-  keep_remedies(fit, now.fit);
-  fit.remedies.push_back(
+  const auto count = static_cast<std::uint64_t>(
+      std::count(now.band.inside.begin(), now.band.inside.end(), 1) -
+      std::count(dropped.band.inside.begin(), dropped.band.inside.end(), 1));
+  const std::vector<Remedy> before = now.fit.remedies;
+  now = dropped;
+  now.fit.remedies = before;
+  now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  fit.sentences.push_back(
+  now.fit.sentences.push_back(
       "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
       "was left out of the fit.");
-  now = {dropped.bins, dropped.options, std::move(fit), dropped.half_deviance};
 }
 
-void judge(NoiseFit& fit) {
-  if (!(fit.goodness.p < 1e-3)) return;
+/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what was measured.
+double largest_possible(Term term, const AllanCurve& allan) {
+  double largest = std::numeric_limits<double>::infinity();
+  for (const AllanPoint& point : allan.points) {
+    if (!(point.deviation > 0) || !(point.ci95.high > 0)) continue;
+    const double unit =
+        std::sqrt(unit_allan_variance(term, static_cast<double>(point.m), allan.dt_s));
+    if (unit > 0) largest = std::min(largest, point.ci95.high / unit);
+  }
+  return largest;
+}
+
+/// Where the terms do not describe the record its scatter is larger than theirs: intervals by as much, and limits not below what the
+/// measured curve leaves room for.
+void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
+  AllanCurve curve = allan != nullptr ? *allan : AllanCurve{};
+  if (deviation_row(curve.type).is_allan())
+    add_intervals(curve, fit.theta);
+  else
+    curve.points.clear();
+  const double wider =
+      std::sqrt(std::max(1.0, fit.goodness.chi2 / std::max(1.0, fit.goodness.dof)));
+  for (auto& row : fit.covariance)
+    for (double& value : row) value *= wider * wider;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (term.upper95) {
+      const double possible = largest_possible(static_cast<Term>(i), curve);
+      term.upper95 = std::max(*term.upper95 * wider, std::isfinite(possible) ? possible : 0);
+      term.ci95.high = std::max(term.ci95.high, *term.upper95);
+    }
+    if (!term.value) continue;
+    term.status = Status::misfit;
+    term.relative_sd *= wider;
+    term.ci95.high = *term.value * std::pow(term.ci95.high / *term.value, wider);
+    term.ci95.low = *term.value * std::pow(std::max(term.ci95.low, 0.0) / *term.value, wider);
+  }
+}
+
+void judge(NoiseFit& fit, const AllanCurve* allan) {
+  if (!(fit.goodness.p < kMisfit)) return;
+  admit_misfit(fit, allan);
   const auto worst = std::max_element(
       fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
-        return std::abs(a.z) < std::abs(b.z);
+        return (a.inside ? std::abs(a.z) : 0) < (b.inside ? std::abs(b.z) : 0);
       });
-  fit.sentences.push_back(
-      fmt::format("The model does not describe the record within its statistical accuracy "
-                  "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {:.3g} Hz): the "
-                  "intervals are those of the model and too narrow for the sensor.",
-                  fit.goodness.chi2,
-                  fit.goodness.dof,
-                  worst->frequency_hz));
+  fit.sentences.push_back(fmt::format(
+      "The model does not describe the record within its statistical accuracy "
+      "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {:.3g} Hz), in no band: "
+      "the intervals are widened by its scatter, and no coefficient is borne out.",
+      fit.goodness.chi2,
+      fit.goodness.dof,
+      worst->frequency_hz));
 }
 
 }  // namespace
@@ -291,13 +255,17 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         const AllanCurve* allan,
                         const FitOptions& options,
                         FitWorkspace* workspace) {
-  Attempt now = attempt(bins, rate_hz, samples, options);
+  Band band;
+  if (options.remedies)
+    band = find_band(bins, rate_hz, options.terms);
+  else
+    band = whole_band(bins, rate_hz);
+  Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
   if (options.remedies) {
-    answer_broad_peaks(now);
-    answer_high_frequencies(now);
+    report_band(now.band, bins, now.fit);
     answer_low_frequencies(now);
   }
-  judge(now.fit);
+  judge(now.fit, allan);
   if (options.second_opinion && allan != nullptr)
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
@@ -315,9 +283,56 @@ NoiseFit fit_binned(const PowerBinner& binner,
   const std::vector<PowerBin> bins =
       options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
   NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options, workspace);
+  if (clipped > 0) add_lines(bins, binner.finish(rate_hz), fit);
   if (clipped > 0) fit.remedies.insert(fit.remedies.begin(), lines_remedy(clipped));
   return fit;
 }
+
+namespace {
+
+constexpr std::size_t kFewestForEvents = 1024;  ///< samples
+
+struct WithoutEvents {
+  std::vector<double> samples;  ///< empty: nothing was found
+  EventSearch search;
+};
+
+/// The record less its steps, warm-up and ramp. Where there are more than one can count, or jumps between two levels, they are part
+/// of what the sensor does all the time, and stay.
+WithoutEvents without_events(std::span<const double> record,
+                             double rate_hz,
+                             const FitOptions& options) {
+  WithoutEvents out;
+  if (!options.events || !options.remedies || record.size() < kFewestForEvents) return out;
+  const EventSeries series = event_series(record, rate_hz);
+  if (series.value.size() < 64) return out;
+  out.search = find_events(series, fitted_powers(), {}, options.unit);
+  if (out.search.events.empty() || out.search.more || out.search.telegraph) return out;
+  out.samples.assign(record.begin(), record.end());
+  subtract_events(out.search.events, rate_hz, out.samples);
+  return out;
+}
+
+void report_events(const WithoutEvents& found, NoiseFit& fit) {
+  for (const std::string& sentence : found.search.sentences) fit.sentences.push_back(sentence);
+  if (found.samples.empty()) return;
+  fit.events = found.search.events;
+  for (const Event& event : fit.events)
+    fit.remedies.push_back({std::string(event_name(event.kind)),
+                            fmt::format("score {:.3g}, above {:.3g} by chance in 0.3 % of records",
+                                        event.score,
+                                        event.threshold),
+                            "taken out of the record before the noise was fitted",
+                            1});
+}
+
+AllanCurve octaves_of(std::span<const double> record, double rate_hz) {
+  AllanPyramid pyramid;
+  pyramid.push(record);
+  return pyramid.finish(1 / rate_hz);
+}
+
+}  // namespace
 
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
@@ -325,13 +340,13 @@ NoiseFit fit_record(std::span<const double> record,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
   const DespikedRecord despiked = options.remedies ? without_spikes(record) : DespikedRecord{};
-  const std::span<const double> data =
+  std::span<const double> data =
       despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
-  AllanCurve own;  // a curve of the spikes is no opinion on what is left
-  if (allan != nullptr && !despiked.samples.empty()) {
-    AllanPyramid pyramid;
-    pyramid.push(data);
-    own = pyramid.finish(1 / rate_hz);
+  const WithoutEvents events = without_events(data, rate_hz, options);
+  if (!events.samples.empty()) data = events.samples;
+  AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
+  if (allan != nullptr && data.data() != record.data()) {
+    own = octaves_of(data, rate_hz);
     allan = &own;
   }
   // One exact transform while it is cheap; a longer record goes by blocks.
@@ -343,6 +358,7 @@ NoiseFit fit_record(std::span<const double> record,
   binner.push(filled.empty() ? data : filled);
   NoiseFit fit =
       fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options, workspace);
+  report_events(events, fit);
   add_spike_answer(despiked.answer, fit);
   return fit;
 }

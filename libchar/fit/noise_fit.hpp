@@ -14,6 +14,8 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/interval.hpp"
+#include "libchar/core/noise_shape.hpp"
+#include "libchar/fit/events.hpp"
 #include "libchar/fit/power_bins.hpp"
 
 namespace libchar {
@@ -24,7 +26,8 @@ struct FitResidual {
   double measured = 0;      ///< two-sided density (or Allan deviation)
   double model = 0;
   double dof = 0;
-  double z = 0;  ///< residual as a standard normal deviate
+  double z = 0;        ///< residual as a standard normal deviate
+  bool inside = true;  ///< of the band that is fitted
 };
 
 /// Covariance-weighted fit of the Allan curve, the second opinion.
@@ -38,14 +41,27 @@ struct SecondOpinion {
 
 /// What was done to the data before the fit, because an alarm asked for it.
 struct Remedy {
-  std::string kind;    ///< "spikes", "lines", "ramp", "lowest_bins", "bandwidth", "quantization"
+  std::string
+      kind;  ///< "spikes", "lines", "ramp", "lowest_bins", "band", "shape", "bandwidth", "quantization"
   std::string alarm;   ///< the figure that asked ("kurtosis of differences 29.8 > 3.2")
   std::string action;  ///< what was done ("212 samples replaced by the mean of their neighbours")
   std::uint64_t count = 0;
 };
 
+/// Over which frequencies the noise terms, times the shape, describe the record: all coefficients come from there.
+struct FitBand {
+  double top_hz = 0;  ///< upper end; half the rate unless something is left out above
+  bool whole = true;  ///< every bin is inside
+  int orders = 0;     ///< of the polynomial of the shape inside (docs/theory/fit.md)
+  std::vector<Interval>
+      left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
+};
+
 struct NoiseFit {
-  Coefficients term;                   ///< indexed by Term
+  Coefficients term;  ///< indexed by Term
+  FitBand band;
+  NoiseShape
+      shape;  ///< what multiplies the terms' density: of a filter inside the band, of whatever was measured outside
   std::optional<double> bandwidth_hz;  ///< corner of the first-order low-pass, when it was needed
   std::optional<Interval> bandwidth_ci95;
   Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
@@ -54,6 +70,8 @@ struct NoiseFit {
   Goodness goodness;
   std::optional<SecondOpinion> second_opinion;
   std::vector<Remedy> remedies;
+  std::vector<Event>
+      events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
   std::vector<FitResidual> residuals;
   /// a sentence: "the record cannot tell bias instability from random walk…"
   std::vector<std::string> sentences;
@@ -75,6 +93,9 @@ struct FitOptions {
       false};  ///< offered from the start; quantization and ramp are added on alarm
   /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
   bool remedies = true;
+  /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
+  bool events = true;
+  std::string unit;         ///< of the samples, in sentences
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first

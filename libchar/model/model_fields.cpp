@@ -110,6 +110,20 @@ const Fields<ScaleFactor>& scale_factor_fields() {
   return rows;
 }
 
+const Fields<NoiseShape>& noise_shape_fields() {
+  static const Fields<NoiseShape> rows = {
+      field<&NoiseShape::kind>("kind", {.meaning = "of the filter", .otherwise = "`none`"}),
+      field<&NoiseShape::taps>("taps", {.meaning = "of boxcar and bartlett: samples"}),
+      field<&NoiseShape::frequency_hz>(
+          "frequency_hz", {.unit = "Hz", .meaning = "of measured: where `ratio` holds, rising"}),
+      field<&NoiseShape::ratio>(
+          "ratio",
+          {.meaning =
+               "of measured: density over that of the noise terms; of the nearest frequency"}),
+  };
+  return rows;
+}
+
 const Fields<Nonlinearity>& nonlinearity_fields() {
   static const Fields<Nonlinearity> rows = {
       field<&Nonlinearity::quadratic>("quadratic", {.unit = "1/U", .meaning = "c₁"}),
@@ -259,6 +273,13 @@ const Fields<SensorModel>& signal_path_fields() {
       field<&SensorModel::reference_temperature_degc>(
           "reference_temperature_degc",
           {.unit = "°C", .meaning = "ΔT = temperature − this", .otherwise = "25"}),
+      part<&SensorModel::noise_shape>(
+          "noise_shape",
+          noise_shape_fields(),
+          {.comment = "what the sensor's filter and surroundings make of the noise: power ratio "
+                      "over frequency",
+           .meaning = "multiplies the density of the noise, not of the signal",
+           .otherwise = "none"}),
       field<&SensorModel::bandwidth_hz>(
           "bandwidth_hz",
           {.unit = "Hz",

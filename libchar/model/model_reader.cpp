@@ -5,6 +5,28 @@
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {
+namespace {
+
+void check_shape(const SensorModel& model, const MapReader& at) {
+  const NoiseShape& shape = model.noise_shape;
+  const MapReader part = at.map("noise_shape", {"kind", "taps", "frequency_hz", "ratio"});
+  using Kind = NoiseShape::Kind;
+  if (shape.kind != Kind::none && model.noise_sampling == NoiseSampling::band_limited)
+    part.refuse("kind", "noise with a shape is made sample by sample, not band-limited");
+  if ((shape.kind == Kind::boxcar || shape.kind == Kind::bartlett) &&
+      (shape.taps < 2 || shape.taps > 4096))
+    part.refuse("kind", "a moving average needs `taps` from 2 to 4096");
+  if (shape.kind != Kind::measured) return;
+  if (shape.ratio.empty() || shape.ratio.size() != shape.frequency_hz.size())
+    part.refuse("ratio", "`frequency_hz` and `ratio` need the same number of values, at least one");
+  for (std::size_t i = 0; i < shape.ratio.size(); ++i) {
+    if (!(shape.ratio[i] > 0)) part.refuse("ratio", "every ratio must be above 0");
+    if (!(shape.frequency_hz[i] > (i == 0 ? 0 : shape.frequency_hz[i - 1])))
+      part.refuse("frequency_hz", "frequencies must be above 0 and rise");
+  }
+}
+
+}  // namespace
 
 SensorModel sensor_model_of(const Document& node,
                             const std::string& file,
@@ -15,6 +37,7 @@ SensorModel sensor_model_of(const Document& node,
   read_fields(model_fields(), at, model);
   if (model.noise_sampling == NoiseSampling::band_limited && !model.bandwidth_hz)
     at.refuse("noise_sampling", "band-limited noise needs bandwidth_hz");
+  if (at.has("noise_shape")) check_shape(model, at);
   if (model.sensitivity.gain == 0)
     at.map("sensitivity", {"gain", "unit"}).refuse("gain", "a gain of 0 leaves no output");
   return model;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/noise_shape.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
@@ -82,6 +83,7 @@ struct SensorModel {
   std::optional<double> white_hold_s;        ///< white noise renewed this often and held, as a
                                              ///< simulator's band-limited white noise block
   std::optional<double> flicker_hold_s;      ///< flicker made at this step and held, as published
+  NoiseShape noise_shape;                    ///< multiplies the density of the noise
   std::optional<double> bandwidth_hz;        ///< first-order low-pass behind the noise
   std::optional<double> saturation_low, saturation_high;  ///< in U
   Sensitivity sensitivity;

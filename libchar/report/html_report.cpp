@@ -63,7 +63,9 @@ std::string overview_cell(const ChannelView& view, Term term) {
   const bool known = habits.size() > 1;
   const double factor = known ? habits[0].factor : 1;
   const std::string unit = known ? habits[0].symbol : term_unit(key, view.unit);
-  const std::string mark = k.status == Status::undetermined ? "<span class=\"dim\"> ?</span>" : "";
+  const std::string mark = k.status == Status::undetermined || k.status == Status::misfit
+                               ? "<span class=\"dim\"> ?</span>"
+                               : "";
   const std::string whole = coefficient_text(k, factor);
   const std::string interval =
       k.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";

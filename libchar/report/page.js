@@ -167,11 +167,12 @@
     const r = report.fit.channels[index].residuals;
     // Scaled to the data; one wild bin may not flatten the rest: it is drawn on the edge, as a triangle.
     const LARGEST = 20;
-    const all_z = r.z.filter((z) => z !== null).map(Math.abs);
+    const fitted = (i) => r.z[i] !== null && !(r.inside && r.inside[i] === false);
+    const all_z = r.z.filter((z, i) => fitted(i)).map(Math.abs);
     const top = Math.min(LARGEST, Math.max(4, Math.ceil(1.05 * Math.max(0, ...all_z))));
     const dots = [], beyond = [];
     r.frequency_hz.forEach((x, i) => {
-      if (!positive(x) || r.z[i] === null) return;
+      if (!positive(x) || !fitted(i)) return;
       const inside = Math.abs(r.z[i]) <= top;
       (inside ? dots : beyond).push({ x, y: inside ? r.z[i] : Math.sign(r.z[i]) * 0.96 * top, i });
     });

@@ -62,14 +62,14 @@ double excess_over_multistart(const std::vector<PowerBin>& bins,
                               const NoiseFit& fit,
                               test::Gaussian& gauss) {
   const BinProblem problem = bin_problem(bins);
-  const double reached = half_deviance(problem, fit.theta);
+  const double reached = half_deviance(problem, {fit.theta, {}});
   TermSet kept{};
   for (std::size_t i = 0; i < kTerms; ++i) kept[i] = fit.theta[i] > 0;
   double best = reached;
   for (int i = 0; i < 8; ++i) {
-    Mixture start{};
+    ModelPoint start;
     for (std::size_t t = 0; t < kTerms; ++t)
-      start[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
+      start.theta[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
     best = std::min(best, score(problem, kept, &start, 1e-12).half_deviance);
   }
   return reached - best;

@@ -132,6 +132,11 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("scale_factor: {value: 1, sprad: 0.1}\n",
          "5:26: error E0540: unknown key in scale_factor");
   starts("bias: 3\n", "5:7: error E0541");
+  starts("noise_shape: {kind: boxcar}\n", "5:21: error E0545");
+  starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1]}\n", "5:");
+  starts("noise_shape: {kind: measured, frequency_hz: [2, 1], ratio: [1, 1]}\n", "5:");
+  starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1, -1]}\n", "5:");
+  starts("noise_shape: {kind: triangle, taps: 3}\n", "5:21: error E0544");
   CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
                 "\"g·√s\"}\n")
             .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));

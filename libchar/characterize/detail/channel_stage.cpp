@@ -8,6 +8,7 @@
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fit/motion.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 
@@ -175,7 +176,11 @@ void ChannelStage::difference_kept(double rate_hz) {
   difference(kept_);
 }
 
-NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves, double rate_hz) const {
+NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
+                                   double rate_hz,
+                                   const std::string& unit) const {
+  FitOptions options = options_->fit;
+  options.unit = unit;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;
@@ -187,7 +192,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves, double rate_hz) co
   NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
                             rate_hz,
                             opinion ? cleaned ? &own : &octaves : nullptr,
-                            options_->fit,
+                            options,
                             &workspace_->fit);
   add_spike_answer(despiked_.answer, fit);
   return fit;
@@ -195,19 +200,19 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves, double rate_hz) co
 
 NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz) {
   SpikeAnswer answer;
-  AllanCurve cleaned_octaves;
+  AllanCurve cleaned_allan;
   if (streams_->cleaner) {
     push_cleaned(streams_->cleaner->finish());
     answer = spike_answer(
         found_.difference_kurtosis, spike_alarm(found_.samples), streams_->cleaner->count());
-    cleaned_octaves = streams_->cleaned_allan.finish(1 / rate_hz);
+    cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,
                             octaves.points.empty() ? nullptr
-                            : cleaned              ? &cleaned_octaves
+                            : cleaned              ? &cleaned_allan
                                                    : &octaves,
                             options_->fit,
                             &workspace_->fit);
@@ -230,6 +235,18 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
   return false;
 }
 
+// A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves throughout, and a sentence
+// where a stretch of it does.
+bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
+  if (options_->data != SampleKind::rate || !options_->wanted.fit || !options_->fit.remedies)
+    return true;
+  const Motion motion = find_motion(event_series(kept_, rate_hz));
+  for (const std::string& sentence : motion.sentences) result.problems.push_back(sentence);
+  if (motion.whole)
+    result.problems.push_back("no noise fit: the recording holds a signal throughout");
+  return !motion.whole;
+}
+
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
   AllanCurve octaves;
   if (wants_fit())
@@ -242,8 +259,10 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
       add_spectrum(
           result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
-  if (is_noise(result))
-    attempt(result, "noise fit", [&] { result.fit = fit_of_kept(octaves, rate_hz); });
+  if (is_noise(result) && is_at_rest(result, rate_hz))
+    attempt(result, "noise fit", [&] {
+      result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
+    });
 }
 
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {

@@ -75,10 +75,11 @@ class ChannelStage {
   AllanCurve octaves_of_kept(double rate_hz) const;
   AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
   void difference_kept(double rate_hz);
-  NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz) const;
+  NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, const std::string& unit) const;
   NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
   bool is_noise(ChannelResult& result) const;
+  bool is_at_rest(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 

@@ -40,7 +40,9 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
 
 std::string said(const AxisNumber& n) {
   if (n.value)
-    return significant(*n.value, 4) + (n.status == Status::undetermined ? " (undetermined)" : "");
+    return significant(*n.value, 4) + (n.status == Status::undetermined ? " (undetermined)"
+                                       : n.status == Status::misfit     ? " (misfit)"
+                                                                        : "");
   if (n.limit) return "<= " + significant(*n.limit, 3);
   return "unknown";
 }
@@ -53,6 +55,8 @@ std::string absence(const AxisNumber& n) {
 
 Figure one_axis(const AxisNumber& n, Absent absent) {
   if (n.value) {
+    if (n.status == Status::misfit)
+      return {n.value, false, "misfit: the noise terms do not describe the recording"};
     const bool doubtful = n.status == Status::undetermined;
     return {n.value,
             false,

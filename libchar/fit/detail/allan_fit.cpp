@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
@@ -18,15 +17,15 @@
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/nonnegative.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
 namespace {
 
-/// The points that the terms can explain: below 150 time constants of a low-pass the curve is
-/// another one.
+/// The points that the terms alone can explain: where the shape counts the curve is another one.
 AllanCurve usable(const AllanCurve& curve, const NoiseFit& first) {
   AllanCurve kept = curve;
-  const double from_s = first.bandwidth_hz ? 150 / (2 * std::numbers::pi * *first.bandwidth_hz) : 0;
+  const double from_s = plain_from_s(first, curve);
   std::erase_if(kept.points, [&](const AllanPoint& point) {
     return !(point.deviation > 0) || point.terms == 0 || point.tau_s < from_s;
   });
@@ -108,10 +107,12 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
         apart,
         *term.value);
   }
-  if (second.agrees && second.goodness.p < 0.01) {
-    second.sentence = fmt::format(
-        "agrees on the coefficients, but does not describe the Allan curve itself (p = {:.2g})",
-        second.goodness.p);
+  if (second.goodness.p < 1e-3) {
+    // An opinion that does not describe the curve it was made from supports nothing.
+    second.agrees = false;
+    second.sentence += fmt::format("{}does not describe the Allan curve itself (p = {:.2g})",
+                                   second.sentence.empty() ? "" : "; ",
+                                   second.goodness.p);
   } else if (second.agrees) {
     second.sentence = "agrees";
   }

@@ -9,10 +9,20 @@
 #include "libchar/fit/power_bins.hpp"
 
 namespace libchar {
+namespace {
+
+/// Mean of f² over a bin.
+double bin_square_hz(const PowerBin& bin) {
+  return (bin.low_hz * bin.low_hz + bin.low_hz * bin.high_hz + bin.high_hz * bin.high_hz) / 3;
+}
+
+}  // namespace
 
 BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   const auto n = static_cast<Eigen::Index>(bins.size());
-  BinProblem problem{Eigen::ArrayXd(n), Eigen::ArrayXd(n), {}};
+  BinProblem problem;
+  problem.energy.resize(n);
+  problem.dof.resize(n);
   problem.unit.resize(n, static_cast<int>(kTerms));
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
@@ -34,7 +44,39 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   return problem;
 }
 
-Eigen::ArrayXd model_of(const BinProblem& problem, const Mixture& theta) {
+BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz) {
+  BinProblem problem = bin_problem(bins);
+  if (orders == 0) return problem;
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
+  Eigen::MatrixXd powers(problem.size(), orders);
+  for (Eigen::Index j = 0; j < problem.size(); ++j) {
+    const PowerBin& bin = bins[static_cast<std::size_t>(j)];
+    const double x = bin_square_hz(bin) / (band_hz * band_hz);
+    // Legendre polynomials of 2x - 1, less their value at x = 0, span the same as the powers and stay apart.
+    double before = 1, at = 2 * x - 1;
+    for (int p = 1; p <= orders; ++p) {
+      powers(j, p - 1) = root[j] * (at - (p % 2 == 0 ? 1 : -1));
+      const double next = ((2 * p + 1) * (2 * x - 1) * at - p * before) / (p + 1);
+      before = at;
+      at = next;
+    }
+  }
+  problem.shape = thin_qr(powers).q.array().colwise() / root;
+  return problem;
+}
+
+Eigen::MatrixXd whitened_shape(const BinProblem& problem) {
+  return (problem.shape.colwise() * (problem.dof / 2).sqrt()).matrix();
+}
+
+Eigen::ArrayXd shape_of(const BinProblem& problem, const ShapeCoefficients& shape) {
+  Eigen::ArrayXd log_gain = Eigen::ArrayXd::Zero(problem.size());
+  for (Eigen::Index p = 0; p < problem.shapes(); ++p)
+    log_gain += shape[static_cast<std::size_t>(p)] * problem.shape.col(p);
+  return log_gain.exp();
+}
+
+Eigen::ArrayXd mixture_of(const BinProblem& problem, const Mixture& theta) {
   Eigen::ArrayXd model = Eigen::ArrayXd::Zero(problem.size());
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (theta[i] > 0) model += theta[i] * problem.unit.col(static_cast<Eigen::Index>(i));
@@ -42,8 +84,13 @@ Eigen::ArrayXd model_of(const BinProblem& problem, const Mixture& theta) {
   return model;
 }
 
-double half_deviance(const BinProblem& problem, const Mixture& theta) {
-  const Eigen::ArrayXd model = model_of(problem, theta);
+Eigen::ArrayXd model_of(const BinProblem& problem, const ModelPoint& at) {
+  if (problem.shapes() == 0) return mixture_of(problem, at.theta);
+  return mixture_of(problem, at.theta) * shape_of(problem, at.shape);
+}
+
+double half_deviance(const BinProblem& problem, const ModelPoint& at) {
+  const Eigen::ArrayXd model = model_of(problem, at);
   double sum = 0;
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     const double excess = (problem.energy[j] - model[j]) / model[j];
@@ -53,10 +100,10 @@ double half_deviance(const BinProblem& problem, const Mixture& theta) {
 }
 
 TermMatrix fisher_information(const BinProblem& problem,
-                              const Mixture& theta,
+                              const ModelPoint& at,
                               const TermSet& terms) {
-  const Eigen::ArrayXd model = model_of(problem, theta);
-  const Eigen::ArrayXd weight = problem.dof / (2 * model * model);
+  const Eigen::ArrayXd mixture = mixture_of(problem, at.theta);
+  const Eigen::ArrayXd weight = problem.dof / (2 * mixture * mixture);
   TermMatrix information = TermMatrix::Zero();
   for (std::size_t a = 0; a < kTerms; ++a) {
     for (std::size_t b = 0; b <= a; ++b) {
@@ -66,7 +113,16 @@ TermMatrix fisher_information(const BinProblem& problem,
           (weight * problem.unit.col(i) * problem.unit.col(j)).sum();
     }
   }
-  return information;
+  if (problem.shapes() == 0) return information;
+  // ln mu = ln(A theta) + S a: a relative column of a term beside the columns of the shape, each with weight nu/2.
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
+  Eigen::MatrixXd relative = Eigen::MatrixXd::Zero(problem.size(), static_cast<int>(kTerms));
+  for (std::size_t a = 0; a < kTerms; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    if (terms[a]) relative.col(i) = (root * problem.unit.col(i) / mixture).matrix();
+  }
+  const Eigen::MatrixXd apart = without_columns_of(whitened_shape(problem), relative);
+  return apart.transpose() * apart;
 }
 
 TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms) {

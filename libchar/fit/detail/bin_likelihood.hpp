@@ -1,7 +1,7 @@
 #pragma once
-// The likelihood of power bins: independent gamma variables whose means are linear in theta.
-//   half deviance  D(theta) = sum_j nu_j/2 (u_j - 1 - ln u_j),
-//                  u_j = measured_j / mu_j,  mu = A theta,  -ln L = D + const
+// The likelihood of power bins: independent gamma variables whose means are linear in theta, times a shape of frequency.
+//   half deviance  D(theta, a) = sum_j nu_j/2 (u_j - 1 - ln u_j),
+//                  u_j = measured_j / mu_j,  mu = (A theta) exp(S a),  -ln L = D + const
 
 #include <Eigen/Core>
 #include <array>
@@ -12,26 +12,47 @@
 
 namespace libchar {
 
-struct PowerBin;
-
 using TermSet = std::array<bool, kTerms>;
 using TermMatrix = Eigen::Matrix<double, kTerms, kTerms>;
+
+/// Most coefficients of a shape (shape.hpp).
+inline constexpr int kMostShape = 8;
+using ShapeCoefficients = std::array<double, kMostShape>;
 
 struct BinProblem {
   Eigen::ArrayXd energy, dof;
   Eigen::Array<double, Eigen::Dynamic, static_cast<int>(kTerms)> unit;
+  /// S, a column a coefficient of the shape, orthonormal under the weights nu/2; no columns: no shape
+  Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic> shape;
   Eigen::Index size() const { return energy.size(); }
+  Eigen::Index shapes() const { return shape.cols(); }
 };
 
+/// Squared coefficients of the terms and coefficients of the shape.
+struct ModelPoint {
+  Mixture theta{};
+  ShapeCoefficients shape{};
+};
+
+/// Of bins without a shape. Throws Error(numeric) when they hold no noise at all.
 BinProblem bin_problem(const std::vector<PowerBin>& bins);
+/// The same with ln gain = sum a_p x^p, p = 1..orders, x = (f / band_hz)²: any filter with a real impulse response has a gain that
+/// is even and analytic about f = 0.
+BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz);
+/// sqrt(nu/2) S: orthonormal columns.
+Eigen::MatrixXd whitened_shape(const BinProblem& problem);
 
-Eigen::ArrayXd model_of(const BinProblem& problem, const Mixture& theta);
-double half_deviance(const BinProblem& problem, const Mixture& theta);
+/// exp(S a).
+Eigen::ArrayXd shape_of(const BinProblem& problem, const ShapeCoefficients& shape);
+/// A theta, without the shape.
+Eigen::ArrayXd mixture_of(const BinProblem& problem, const Mixture& theta);
+Eigen::ArrayXd model_of(const BinProblem& problem, const ModelPoint& at);
+double half_deviance(const BinProblem& problem, const ModelPoint& at);
 
-/// Expected information of theta at theta, 1/2 sum nu a a' / mu^2, for the terms of the set
-/// (others: zero rows).
+/// Expected information of theta at the point, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows); what the
+/// unknown shape takes of it is taken off.
 TermMatrix fisher_information(const BinProblem& problem,
-                              const Mixture& theta,
+                              const ModelPoint& at,
                               const TermSet& terms);
 
 /// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are

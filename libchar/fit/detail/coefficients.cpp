@@ -18,9 +18,12 @@ constexpr double kUndeterminedAbove =
 constexpr double kDoubtfulAbove = 1;
 constexpr double kNormal95 = 1.959963984540054;
 
-double sd_of_theta(const BinProblem& problem, Mixture theta, TermSet terms, std::size_t term) {
+double sd_of_theta(const BinProblem& problem,
+                   const ModelPoint& at,
+                   TermSet terms,
+                   std::size_t term) {
   terms[term] = true;
-  const TermMatrix covariance = inverse_of(fisher_information(problem, theta, terms), terms);
+  const TermMatrix covariance = inverse_of(fisher_information(problem, at, terms), terms);
   return std::sqrt(covariance(static_cast<Eigen::Index>(term), static_cast<Eigen::Index>(term)));
 }
 
@@ -28,7 +31,7 @@ Interval profile_interval(const BinProblem& problem,
                           const TermSet& terms,
                           const Optimum& best,
                           std::size_t term) {
-  const double sd = sd_of_theta(problem, best.theta, terms, term);
+  const double sd = sd_of_theta(problem, best.at, terms, term);
   return {std::sqrt(profile_lower(problem, terms, best, term, sd, kTwoSided95)),
           std::sqrt(profile_upper(problem, terms, best, term, sd, kTwoSided95))};
 }
@@ -55,7 +58,7 @@ Nuisance doubtful_terms(const BinProblem& problem,
   }
   if (nuisance.any) {
     const ScoringResult full = score(problem, nuisance.terms);
-    nuisance.best = {full.theta, full.half_deviance};
+    nuisance.best = {full.at, full.half_deviance};
   }
   return nuisance;
 }
@@ -69,8 +72,8 @@ void report_limits(const BinProblem& problem,
   terms[i] = true;
   const ScoringResult with = score(problem, terms);
   const bool better = with.half_deviance <= reported.half_deviance;
-  const Optimum best = better ? Optimum{with.theta, with.half_deviance} : reported;
-  const double sd = sd_of_theta(problem, best.theta, terms, i);
+  const Optimum best = better ? Optimum{with.at, with.half_deviance} : reported;
+  const double sd = sd_of_theta(problem, best.at, terms, i);
   term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, kOneSided95));
   term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kTwoSided95))};
   term.profile = true;
@@ -85,15 +88,15 @@ std::string long_name(Term term) {
   return fmt::format("{} {}", names[i], kTermNames[i].letter);
 }
 
-void report_coefficients(const BinProblem& problem,
-                         const Decision& decision,
-                         const FitOptions& options,
-                         NoiseFit& fit) {
-  const Polished polished = polish(problem, decision.theta);
-  fit.theta = polished.theta;
+ModelPoint report_coefficients(const BinProblem& problem,
+                               const Decision& decision,
+                               const FitOptions& options,
+                               NoiseFit& fit) {
+  const Polished polished = polish(problem, decision.at);
+  fit.theta = polished.at.theta;
   fit.converged = decision.converged && polished.converged;
   fit.iterations = decision.iterations + polished.iterations;
-  const Optimum best{polished.theta, polished.half_deviance};
+  const Optimum best{polished.at, polished.half_deviance};
   const Nuisance nuisance = doubtful_terms(problem, decision, options.terms);
   for (std::size_t i = 0; i < kTerms; ++i) {
     for (std::size_t j = 0; j < kTerms; ++j) {
@@ -122,7 +125,7 @@ void report_coefficients(const BinProblem& problem,
     term.ci95 = {*term.value / spread, *term.value * spread};
     term.profile = term.relative_sd > options.profile_above;
     if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i);
-    if (nuisance.any && nuisance.best.theta[i] > 0) {
+    if (nuisance.any && nuisance.best.at.theta[i] > 0) {
       const Interval wide = profile_interval(problem, nuisance.terms, nuisance.best, i);
       term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
       term.profile = true;
@@ -133,6 +136,7 @@ void report_coefficients(const BinProblem& problem,
         "The record shows slow noise but cannot tell bias instability from random walk: each could "
         "explain it alone. A longer record can tell.");
   }
+  return best.at;
 }
 
 void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {

@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
 namespace {
@@ -47,13 +47,11 @@ std::size_t largest_term(const Mixture& theta, double m, double dt_s) {
 std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const AllanCurve& allan) {
   AllanCurve curve = allan;
   add_intervals(curve, fit.theta);
-  // Where a low-pass colours the curve the plain model is not comparable (within 1 % only beyond 150 time constants).
-  const double from_s = fit.bandwidth_hz ? 150 / (2 * std::numbers::pi * *fit.bandwidth_hz) : 0;
   std::optional<Contradiction> worst;
   for (const AllanPoint& point : curve.points) {
-    if (point.tau_s < from_s || point.edf < kFewestDof || !(point.deviation > 0)) continue;
+    if (point.edf < kFewestDof || !(point.deviation > 0)) continue;
     const auto m = static_cast<double>(point.m);
-    const double model = std::sqrt(allan_variance(fit.theta, m, allan.dt_s));
+    const double model = std::sqrt(shaped_allan_variance(fit, m, allan.dt_s));
     const Interval interval = chi_square_interval(point.deviation, point.edf, kConfidence);
     const double ratio = model / point.deviation;
     if (model <= interval.high || ratio < kRelevant || (worst && ratio <= worst->ratio)) continue;

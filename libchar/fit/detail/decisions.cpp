@@ -83,7 +83,7 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
   }
   const ScoringResult& best = models.at(set);
   decision.kept = set;
-  decision.theta = best.theta;
+  decision.at = best.at;
   decision.half_deviance = best.half_deviance;
   decision.converged = best.converged;
   for (std::size_t i = 0; i < kTerms; ++i) {

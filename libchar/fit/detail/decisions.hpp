@@ -6,8 +6,8 @@
 namespace libchar {
 
 struct Decision {
-  TermSet kept{};   ///< terms of the reported model
-  Mixture theta{};  ///< its maximum
+  TermSet kept{};  ///< terms of the reported model
+  ModelPoint at;   ///< its maximum
   double half_deviance = 0;
   /// 2 (lnL with - lnL without): of a kept term within the model, of a dropped one when it is added
   Mixture likelihood_ratio{};

@@ -144,9 +144,9 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
   std::vector<std::size_t> terms;
   std::vector<double> x;
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (!(start.theta[i] > 0)) continue;
+    if (!(start.at.theta[i] > 0)) continue;
     terms.push_back(i);
-    x.push_back(std::log(start.theta[i]));
+    x.push_back(std::log(start.at.theta[i]));
   }
   if (terms.empty()) return std::nullopt;
   x.push_back(log_corner);

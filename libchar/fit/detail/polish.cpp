@@ -1,7 +1,7 @@
 // The gamma deviance as a genuine least-squares problem:
 //   r_j = sign(u_j - 1) sqrt(nu_j (u_j - 1 - ln u_j)),   sum r^2/2 = -ln L + const,
 //   dr/dln mu = nu (1 - u) / (2 r).
-// Parameters are ln theta of the terms that scoring left positive: no bounds, and the start is the
+// Parameters are ln theta of the terms that scoring left positive, and the shape's coefficients: no bounds, and the start is the
 // optimum to within 1e-10, so that one or two Levenberg-Marquardt steps settle the last digits.
 // (theta = c^2, or ln theta from far away, stalls at a bound or misses the optimum.)
 #include "libchar/fit/detail/polish.hpp"
@@ -21,26 +21,34 @@ class BinResiduals final : public ceres::CostFunction {
   BinResiduals(const BinProblem& problem, std::vector<Eigen::Index> terms)
       : problem_(problem), terms_(std::move(terms)) {
     set_num_residuals(static_cast<int>(problem.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size()) +
+                                               static_cast<int>(problem.shapes()));
   }
 
   bool Evaluate(double const* const* parameters,
                 double* residuals,
                 double** jacobians) const override {
     const std::size_t p = terms_.size();
+    const auto shapes = static_cast<std::size_t>(problem_.shapes());
     std::array<double, kTerms> theta{};
     for (std::size_t i = 0; i < p; ++i) theta[i] = std::exp(parameters[0][i]);
+    ShapeCoefficients shape{};
+    std::copy_n(parameters[0] + p, shapes, shape.begin());
+    const Eigen::ArrayXd gain = shape_of(problem_, shape);
     for (Eigen::Index j = 0; j < problem_.size(); ++j) {
       std::array<double, kTerms> part{};
       double model = 0;
-      for (std::size_t i = 0; i < p; ++i) model += part[i] = theta[i] * problem_.unit(j, terms_[i]);
+      for (std::size_t i = 0; i < p; ++i)
+        model += part[i] = gain[j] * theta[i] * problem_.unit(j, terms_[i]);
       if (!(model > 0) || !std::isfinite(model)) return false;
       const DevianceResidual r = deviance_residual(problem_.energy[j], model, problem_.dof[j]);
       if (!std::isfinite(r.value) || !std::isfinite(r.slope)) return false;
       residuals[j] = r.value;
       if (jacobians == nullptr || jacobians[0] == nullptr) continue;
-      for (std::size_t i = 0; i < p; ++i)
-        jacobians[0][static_cast<std::size_t>(j) * p + i] = r.slope * part[i] / model;
+      double* const row = jacobians[0] + static_cast<std::size_t>(j) * (p + shapes);
+      for (std::size_t i = 0; i < p; ++i) row[i] = r.slope * part[i] / model;
+      for (std::size_t s = 0; s < shapes; ++s)
+        row[p + s] = r.slope * problem_.shape(j, static_cast<Eigen::Index>(s));
     }
     return true;
   }
@@ -81,34 +89,40 @@ DevianceResidual deviance_residual(double energy, double model, double dof) {
   return {d * root, -dof / (2 * root)};
 }
 
-Polished polish(const BinProblem& problem, const Mixture& start) {
+Polished polish(const BinProblem& problem, const ModelPoint& start) {
   const SilentGlog silent;
   std::vector<Eigen::Index> terms;
-  std::vector<double> log_theta;
+  std::vector<double> unknown;
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (!(start[i] > 0)) continue;
+    if (!(start.theta[i] > 0)) continue;
     terms.push_back(static_cast<Eigen::Index>(i));
-    log_theta.push_back(std::log(start[i]));
+    unknown.push_back(std::log(start.theta[i]));
   }
+  const auto shapes = static_cast<std::size_t>(problem.shapes());
+  unknown.insert(unknown.end(),
+                 start.shape.begin(),
+                 start.shape.begin() + static_cast<std::ptrdiff_t>(shapes));
   Polished result;
-  result.theta = start;
+  result.at = start;
   result.half_deviance = half_deviance(problem, start);
   if (terms.empty()) return result;
 
   ceres::Problem solver_problem;
-  solver_problem.AddResidualBlock(new BinResiduals(problem, terms), nullptr, log_theta.data());
+  solver_problem.AddResidualBlock(new BinResiduals(problem, terms), nullptr, unknown.data());
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(), &solver_problem, &summary);
   result.iterations = static_cast<int>(summary.iterations.size());
-  Mixture polished{};
+  ModelPoint polished;
   for (std::size_t i = 0; i < terms.size(); ++i)
-    polished[static_cast<std::size_t>(terms[i])] = std::exp(log_theta[i]);
+    polished.theta[static_cast<std::size_t>(terms[i])] = std::exp(unknown[i]);
+  std::copy_n(
+      unknown.begin() + static_cast<std::ptrdiff_t>(terms.size()), shapes, polished.shape.begin());
   const double value = half_deviance(problem, polished);
   // Never worse than the start, up to the rounding of the sum.
   const double slack = 1e-9 + 1e-13 * result.half_deviance;
   result.converged = summary.IsSolutionUsable() && value <= result.half_deviance + slack;
   if (result.converged) {
-    result.theta = polished;
+    result.at = polished;
     result.half_deviance = value;
   }
 
@@ -117,14 +131,15 @@ Polished polish(const BinProblem& problem, const Mixture& start) {
   options.null_space_rank = -1;
   options.num_threads = 1;
   ceres::Covariance covariance(options);
-  const std::size_t p = terms.size();
-  std::vector<double> block(p * p);
+  const std::size_t p = terms.size(), all = p + shapes;
+  std::vector<double> block(all * all);
   const std::vector<std::pair<const double*, const double*>> wanted = {
-      {log_theta.data(), log_theta.data()}};
+      {unknown.data(), unknown.data()}};
   if (covariance.Compute(wanted, &solver_problem) &&
-      covariance.GetCovarianceBlock(log_theta.data(), log_theta.data(), block.data())) {
+      covariance.GetCovarianceBlock(unknown.data(), unknown.data(), block.data())) {
     for (std::size_t i = 0; i < p; ++i) {
-      for (std::size_t j = 0; j < p; ++j) result.covariance(terms[i], terms[j]) = block[i * p + j];
+      for (std::size_t j = 0; j < p; ++j)
+        result.covariance(terms[i], terms[j]) = block[i * all + j];
     }
   }
   return result;

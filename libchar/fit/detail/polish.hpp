@@ -6,15 +6,15 @@
 namespace libchar {
 
 struct Polished {
-  Mixture theta{};
+  ModelPoint at;
   double half_deviance = 0;
   TermMatrix covariance = TermMatrix::Zero();  ///< of ln theta of the positive terms
   int iterations = 0;
   bool converged = false;
 };
 
-/// Minimises the deviance over ln theta of the positive terms of `start`.
-Polished polish(const BinProblem& problem, const Mixture& start);
+/// Minimises the deviance over ln theta of the positive terms of `start` and over the shape.
+Polished polish(const BinProblem& problem, const ModelPoint& start);
 
 /// Residual of one bin, sign(u-1) sqrt(nu (u - 1 - ln u)), and its derivative with respect to ln mu
 /// (exact at u = 1 too).

@@ -14,21 +14,21 @@ namespace {
 class Profile {
  public:
   Profile(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term)
-      : problem_(problem), others_(terms), best_(best), term_(term), warm_(best.theta) {
+      : problem_(problem), others_(terms), best_(best), term_(term), warm_(best.at) {
     others_[term] = false;
   }
 
   /// sqrt of the rise of -2 lnL at theta.
   double root_rise(double theta) {
-    Mixture start = warm_;
-    start[term_] = theta;
+    ModelPoint start = warm_;
+    start.theta[term_] = theta;
     double value = 0;
-    if (count_of(others_) == 0) {
+    if (count_of(others_) == 0 && problem_.shapes() == 0) {
       value = half_deviance(problem_, start);
     } else {
       const ScoringResult result = score(problem_, others_, &start, 1e-7);
       value = result.half_deviance;
-      if (std::isfinite(value)) warm_ = result.theta;
+      if (std::isfinite(value)) warm_ = result.at;
     }
     if (!std::isfinite(value)) return 1e6;
     return std::sqrt(std::max(0.0, 2 * (value - best_.half_deviance)));
@@ -39,7 +39,7 @@ class Profile {
   TermSet others_;
   const Optimum& best_;
   std::size_t term_;
-  Mixture warm_;
+  ModelPoint warm_;
 };
 
 /// Root of f between x_in (f < 0) and x_out (f > 0).
@@ -67,7 +67,7 @@ double profile_upper(const BinProblem& problem,
                      double sd,
                      double rise) {
   Profile profile(problem, terms, best, term);
-  const double goal = std::sqrt(rise), at = best.theta[term];
+  const double goal = std::sqrt(rise), at = best.at.theta[term];
   const auto f = [&](double theta) { return profile.root_rise(theta) - goal; };
   double in = at, f_in = -goal;
   double step = goal * sd;
@@ -89,11 +89,11 @@ double profile_lower(const BinProblem& problem,
                      double sd,
                      double rise) {
   Profile profile(problem, terms, best, term);
-  const double goal = std::sqrt(rise), at = best.theta[term];
+  const double goal = std::sqrt(rise), at = best.at.theta[term];
   if (!(at > 0)) return 0;
   TermSet others = terms;
   others[term] = false;
-  if (count_of(others) > 0 && profile.root_rise(0) <= goal) return 0;
+  if ((count_of(others) > 0 || problem.shapes() > 0) && profile.root_rise(0) <= goal) return 0;
   const auto f = [&](double log_theta) { return profile.root_rise(std::exp(log_theta)) - goal; };
   double in = std::log(at), f_in = -goal;
   double step = goal * std::min(sd / at, 1.0);

@@ -10,7 +10,7 @@ inline constexpr double kOneSided95 = 2.705543454095404;
 
 /// The optimum a profile starts from.
 struct Optimum {
-  Mixture theta{};
+  ModelPoint at;
   double half_deviance = 0;
 };
 

@@ -5,16 +5,16 @@
 
 namespace libchar {
 
-/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`.
+/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`, and over the coefficients of the shape.
 struct ScoringResult {
-  Mixture theta{};
+  ModelPoint at;
   double half_deviance = 0;
   int iterations = 0;
   bool converged = false;
 };
 ScoringResult score(const BinProblem& problem,
                     const TermSet& free,
-                    const Mixture* start = nullptr,
+                    const ModelPoint* start = nullptr,
                     double tolerance = 1e-10);
 
 }  // namespace libchar

@@ -192,11 +192,11 @@ NoisePowers fitted_powers() {
     std::vector<PowerBin> bins = bins_of(series);
     const TermSet terms = {true, true, true, false, false};
     ScoringResult fit = score(bin_problem(bins), terms);
-    while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.theta)) {
+    while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.at.theta)) {
       bins.resize(bins.size() - kHalfOctave);
       fit = score(bin_problem(bins), terms);
     }
-    return mixture_powers(fit.theta,
+    return mixture_powers(fit.at.theta,
                           series.value.size(),
                           series.per_point,
                           static_cast<double>(series.per_point) / series.step_s);

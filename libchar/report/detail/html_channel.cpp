@@ -29,6 +29,8 @@ std::string status_chip(Status status) {
       return "<span class=\"chip absent\">not detected</span>";
     case Status::undetermined:
       return "<span class=\"chip unsure\">undetermined</span>";
+    case Status::misfit:
+      return "<span class=\"chip alarm\">misfit</span>";
     case Status::given:
       return "<span class=\"chip\">given</span>";
     case Status::not_fitted:
@@ -157,16 +159,17 @@ std::string trust(const ChannelView& view, std::size_t index) {
   const NoiseFit& fit = *c.fit;
   std::string out = "<div class=\"two-columns\">\n<div>\n";
   if (!fit.residuals.empty()) {
-    out +=
-        plot_figure("residuals",
-                    index,
-                    {"Residuals of the fit",
-                     "residual",
-                     "sd",
-                     "Each point: measured against model in one bin, as a standard normal deviate. "
-                     "They should scatter evenly, 95 % within "
-                     "the grey band; triangles on the edge lie beyond it."},
-                    c.channel.name);
+    out += plot_figure(
+        "residuals",
+        index,
+        {"Residuals of the fit",
+         "residual",
+         "sd",
+         "Each point: measured against model in one bin, as a standard normal deviate. "
+         "They should scatter evenly, 95 % within "
+         "the grey band; triangles on the edge lie beyond it. Bins outside the fitted band are not "
+         "shown."},
+        c.channel.name);
   }
   out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" + html_text(view.goodness) + "</p>\n";
   out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " +

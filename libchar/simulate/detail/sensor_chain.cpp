@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libchar/simulate/detail/noise_generator.hpp"
+#include "libchar/simulate/detail/shape_filter.hpp"
 
 namespace libchar {
 namespace {
@@ -82,6 +83,7 @@ struct SensorChain::State {
   DeviceDraw draw;
   NoiseGenerator noise;
   std::vector<HeldNoise> held;
+  std::optional<ShapeFilter> shaped;  ///< takes the noise through the model's shape
   double low_pass_memory = 0, low_pass_state = 0;
   bool low_pass_started = false;
   std::vector<double> after;
@@ -94,8 +96,16 @@ struct SensorChain::State {
       held.emplace_back(m, Term::white, *m.white_hold_s, o);
     if (m.flicker_hold_s && m[Term::flicker].value)
       held.emplace_back(m, Term::flicker, *m.flicker_hold_s, o);
+    if (m.noise_shape.kind != NoiseShape::Kind::none)
+      shaped.emplace(m.noise_shape, o.rate_hz, [this](std::span<double> out) { add_noise(out); });
     if (m.bandwidth_hz)
       low_pass_memory = std::exp(-2 * std::numbers::pi * *m.bandwidth_hz / o.rate_hz);
+  }
+
+  void add_noise(std::span<double> samples) {
+    if (noise.adds_after()) after.assign(samples.size(), 0.0);
+    noise.add(samples, after);
+    for (HeldNoise& one : held) one.add(samples);
   }
 
   // Blocks 1 to 3 at one temperature.
@@ -164,9 +174,10 @@ void SensorChain::run(std::span<double> samples, std::span<const double> tempera
   if (samples.empty()) return;
   s.deterministic_blocks(samples, temperature_degc);
   const double first_signal = samples[0];
-  if (s.noise.adds_after()) s.after.assign(samples.size(), 0.0);
-  s.noise.add(samples, s.after);
-  for (HeldNoise& held : s.held) held.add(samples);
+  if (s.shaped)
+    s.shaped->add(samples);
+  else
+    s.add_noise(samples);
   if (s.model.bandwidth_hz) s.low_pass(samples, first_signal);
   for (std::size_t i = 0; i < s.after.size(); ++i) samples[i] += s.after[i];
   s.output_blocks(samples);

@@ -1,0 +1,18 @@
+#pragma once
+// Curves of a fit with its shape: what the noise terms give once a filter and what lies outside the band are on top.
+
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+/// Two-sided density of the fit at a frequency, 0 < f <= 1/(2 dt).
+double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s);
+
+/// Allan variance of the fit at averaging factor m.
+double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s);
+
+/// Shortest averaging time of the curve from which on the shape changes the Allan variance by less than a hundredth: the terms alone
+/// are the whole curve there. 0 without a shape.
+double plain_from_s(const NoiseFit& fit, const AllanCurve& curve);
+
+}  // namespace libchar

@@ -1,0 +1,124 @@
+// The band: clean records keep their whole spectrum, filters are found or described, and the slow coefficients stay.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/shaped_curves.hpp"
+#include "libchar/simulate/detail/noise_generator.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+
+namespace {
+
+constexpr double kRate = 100;
+constexpr std::size_t kSamples = 200000, kBefore = 4000;
+const Mixture kTruth = {5e-3, 5e-3, 1.5e-3, 0, 0};  // Q, B, K themselves
+
+using Filter = std::function<std::vector<double>(const std::vector<double>&)>;
+
+std::vector<double> filtered_record(std::uint64_t seed, const Filter& filter) {
+  NoiseDesign design;
+  design.coefficient = kTruth;
+  design.rate_hz = kRate;
+  NoiseGenerator generator(design, seed, 0);
+  std::vector<double> u(kSamples + kBefore, 0.0);
+  generator.add(u, {});
+  std::vector<double> y = filter(u);
+  y.erase(y.begin(), y.begin() + kBefore);
+  return y;
+}
+
+std::vector<double> moving_average(const std::vector<double>& u, std::size_t m) {
+  std::vector<double> y(u.size(), 0.0);
+  for (std::size_t t = m; t < u.size(); ++t)
+    for (std::size_t i = 0; i < m; ++i) y[t] += u[t - i] / static_cast<double>(m);
+  return y;
+}
+
+// y_t = b u_t + a1 y_{t-1} + a2 y_{t-2}, of unit gain at f = 0.
+std::vector<double> two_poles(const std::vector<double>& u, double a1, double a2) {
+  std::vector<double> y(u.size(), 0.0);
+  for (std::size_t t = 2; t < u.size(); ++t)
+    y[t] = (1 - a1 - a2) * u[t] + a1 * y[t - 1] + a2 * y[t - 2];
+  return y;
+}
+
+struct Case {
+  const char* name;
+  Filter filter;
+  NoiseShape::Kind kind;
+  std::uint64_t taps;
+};
+
+const std::vector<Case>& cases() {
+  using Kind = NoiseShape::Kind;
+  static const std::vector<Case> all = {
+      {"boxcar 2", [](const auto& u) { return moving_average(u, 2); }, Kind::boxcar, 2},
+      {"boxcar 4", [](const auto& u) { return moving_average(u, 4); }, Kind::boxcar, 4},
+      {"Bartlett 4",
+       [](const auto& u) { return moving_average(moving_average(u, 4), 4); },
+       Kind::bartlett,
+       4},
+      {"boxcar 16", [](const auto& u) { return moving_average(u, 16); }, Kind::boxcar, 16},
+      {"resonance", [](const auto& u) { return two_poles(u, 1.2, -0.75); }, Kind::measured, 0},
+  };
+  return all;
+}
+
+double off_in_sd(const NoiseFit& fit, Term term) {
+  const Coefficient& c = fit[term];
+  if (!c.value) return c.upper95 && *c.upper95 < kTruth[static_cast<std::size_t>(term)] ? -9 : 0;
+  return std::log(*c.value / kTruth[static_cast<std::size_t>(term)]) / c.relative_sd;
+}
+
+}  // namespace
+
+TEST_CASE("clean records: the whole spectrum, no shape, in all but two of a hundred") {
+  int cut = 0, shaped = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    NoiseDesign design;
+    design.coefficient = kTruth;
+    design.rate_hz = kRate;
+    std::vector<double> y(20000, 0.0);
+    NoiseGenerator(design, seed, 3).add(y, {});
+    const NoiseFit fit = fit_record(y, kRate, nullptr);
+    cut += fit.band.top_hz < kRate / 2 * 0.99;
+    shaped += fit.shape.kind != NoiseShape::Kind::none;
+  }
+  CHECK(cut <= 2);
+  CHECK(shaped <= 3);
+}
+
+TEST_CASE("a filter is named or described, and Q, B and K are those of the noise in front of it") {
+  for (const Case& c : cases()) {
+    CAPTURE(c.name);
+    const NoiseFit fit = fit_record(filtered_record(7, c.filter), kRate, nullptr);
+    CHECK(fit.shape.kind == c.kind);
+    CHECK(fit.shape.taps == c.taps);
+    CHECK(fit.goodness.p > 1e-3);
+    CHECK(std::abs(off_in_sd(fit, Term::white)) < 4);
+    CHECK(std::abs(off_in_sd(fit, Term::flicker)) < 3.5);
+    CHECK(std::abs(off_in_sd(fit, Term::walk)) < 3.5);
+    CHECK(*fit[Term::white].value == Approx(kTruth[0]).epsilon(0.02));
+  }
+}
+
+TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the first point on") {
+  for (const Case& c : cases()) {
+    CAPTURE(c.name);
+    const std::vector<double> y = filtered_record(11, c.filter);
+    const NoiseFit fit = fit_record(y, kRate, nullptr);
+    const AllanCurve curve = allan_deviation(y, 1 / kRate);
+    for (const AllanPoint& point : curve.points) {
+      if (point.tau_s > 20) break;
+      const double model =
+          std::sqrt(shaped_allan_variance(fit, static_cast<double>(point.m), curve.dt_s));
+      CAPTURE(point.tau_s);
+      CHECK(model == Approx(point.deviation).epsilon(0.03 + 0.06 * std::sqrt(point.tau_s / 20)));
+    }
+    CHECK(plain_from_s(fit, curve) > 0.01);
+  }
+}
