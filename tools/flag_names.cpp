@@ -15,6 +15,7 @@ struct FlagName {
 // In the order of the alphabet. A function of the library stands for the command that calls it.
 constexpr FlagName kFlags[] = {{"algorithms", "sensorchar replay --list"},
                                {"allow_outside", "--allow-outside"},
+                               {"anyway", "--anyway"},
                                {"axes", "--axes"},
                                {"axis", "--axis"},
                                {"bias_tau_s", "--airsim-tau"},

@@ -94,7 +94,41 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
     out.push_back(fmt::format(
         "not in this file: the low-pass of {}; densities are kept, single samples scatter less",
         filtered));
+  const std::string shaped =
+      among([](const SensorModel& m) { return m.noise_shape.kind != NoiseShape::Kind::none; });
+  if (!shaped.empty() && !target.takes.status)
+    out.push_back(
+        fmt::format("not in this file: the shape of the noise of {} over frequency; "
+                    "densities are those of slow frequencies",
+                    shaped));
   return out;
+}
+
+// A consumer takes what the file says for known. What is not is refused, or goes with a sentence.
+void answer_misfit(const ExportTarget& target,
+                   const SensorGroup& group,
+                   const ExportOptions& options,
+                   std::vector<std::string>& notes) {
+  if (target.takes.status) return;
+  for (const SensorModel* m : group.all) {
+    std::string terms;
+    for (std::size_t t = 0; t < kTerms; ++t)
+      if (m->noise[t].status == Status::misfit)
+        terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
+    if (terms.empty()) continue;
+    const std::string what =
+        fmt::format("{} of {}: misfit, the noise terms do not describe the recording",
+                    terms,
+                    printable(m->channel, 40));
+    if (!options.anyway)
+      throw Error({ErrorKind::input,
+                   "E0594",
+                   "",
+                   what,
+                   "",
+                   "record again where the sensor is at rest, or export it with `anyway`"});
+    notes.push_back(what);
+  }
 }
 
 void drop_repeated(std::vector<std::string>& notes) {
@@ -140,6 +174,7 @@ Export export_models(const ExportTarget& target,
   SensorGroup group = group_sensors(models, options.axis);
   check_needs(target, group);
   group.unexpressed = unexpressed(target, group);
+  answer_misfit(target, group, options, group.unexpressed);
   Export out = target.write(group, options);
   out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
   if (options.inflate != 1 && target.takes.inflate)

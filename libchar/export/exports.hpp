@@ -43,6 +43,8 @@ struct ExportOptions {
   std::optional<double> gravity;      ///< m/s^2, for the consumers that have a key for it
   std::string topic = "/imu0";
   bool older = false;  ///< for releases before the current file formats (Basalt, ORB-SLAM3)
+  bool anyway =
+      false;  ///< also numbers of models whose noise terms do not describe their recording
   AxisOverrides axis;
 };
 
@@ -71,6 +73,7 @@ struct ExportTakes {
   bool gravity = false;
   bool topic = false;
   bool older = false;
+  bool status = false;  ///< the file says of each number how it is known
 };
 
 struct ExportTarget {

@@ -466,3 +466,23 @@ TEST_CASE("generic JSON reads back to the same model, alone and in a list") {
   std::ofstream(six) << R"({"format":"sensor-models","version":2,"models":[]})";
   CHECK_THROWS_WITH(read_model_list(six), Contains("newer"));
 }
+
+TEST_CASE("a misfit is refused, or goes with a sentence; generic JSON keeps the status itself") {
+  std::vector<SensorModel> models = test::euroc_imu();
+  models[1].noise[0].status = Status::misfit;
+  models[1].noise_shape = {NoiseShape::Kind::boxcar, 4, {}, {}};
+  for (const ExportTarget& target : export_targets()) {
+    CAPTURE(target.name);
+    const std::string name(target.name);
+    if (target.takes.status) {
+      CHECK(exported(name, models).text.find("misfit") != std::string::npos);
+      continue;
+    }
+    CHECK_THAT(refusal(name, models), Contains("misfit") && Contains(models[1].channel));
+    ExportOptions options;
+    options.anyway = true;
+    const Export made = exported(name, models, options);
+    CHECK(made.text.find("misfit") != std::string::npos);
+    CHECK(made.text.find("shape of the noise") != std::string::npos);
+  }
+}

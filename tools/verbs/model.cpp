@@ -194,6 +194,9 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
   sub.add_text(
          "--topic", options.topic, targets_that_take(&ExportTakes::topic) + ": ROS topic (/imu0)")
       .value_name("NAME");
+  sub.add_flag("--anyway",
+               options.anyway,
+               "also numbers whose status is misfit, with a sentence that says so");
   sub.add_flag("--older",
                options.older,
                "basalt: one number in place of three; orbslam3: whole rate, no File.version");

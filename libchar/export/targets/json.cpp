@@ -26,7 +26,7 @@ ExportTarget json_target() {
           "model.json",
           ExportNeeds::any_sensor,
           "QBKQzR",
-          {.inflate = false, .low_pass = true},
+          {.inflate = false, .low_pass = true, .status = true},
           write_json};
 }
 
