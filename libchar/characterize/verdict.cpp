@@ -141,8 +141,15 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
 
 std::string verdict_of(const Characterization& result) {
   const std::size_t n = result.channels.size();
-  std::vector<std::string> unfitted, doubtful, disputed;
+  std::vector<std::string> unfitted, doubtful, disputed, doubted, noted;
   for (const ChannelResult& c : result.channels) {
+    if (c.fit && std::any_of(c.fit->term.begin(), c.fit->term.end(), [](const Coefficient& term) {
+          return term.status == Status::undetermined || term.status == Status::misfit;
+        }))
+      doubted.push_back(c.channel.name);
+    const bool unlike = c.verification && !c.verification->agrees;
+    if (c.fit && (!c.problems.empty() || unlike || !c.fit->events.empty()))
+      noted.push_back(c.channel.name);
     if (!c.fit)
       unfitted.push_back(c.channel.name);
     else if (!explained(c))
@@ -170,6 +177,8 @@ std::string verdict_of(const Characterization& result) {
   if (!disputed.empty())
     out += fmt::format(" The Allan fit disagrees with the spectral fit on {}.", list_of(disputed));
   if (!unfitted.empty()) out += fmt::format(" No fit was possible for {}.", list_of(unfitted));
+  if (!doubted.empty()) out += fmt::format(" Coefficients of {} are doubtful.", list_of(doubted));
+  if (!noted.empty()) out += fmt::format(" Read what is said of {}.", list_of(noted));
   return out;
 }
 

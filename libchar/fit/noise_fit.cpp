@@ -231,7 +231,22 @@ void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
   }
 }
 
+/// A cut band says of white noise what its slow part shows; a limit below the whole spectrum above it would be a statement about
+/// frequencies that were not looked at.
+void raise_white_limit(NoiseFit& fit) {
+  constexpr double kFewestDof = 30;
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  double least = std::numeric_limits<double>::infinity();
+  for (const FitResidual& residual : fit.residuals)
+    if (!residual.inside && residual.frequency_hz > fit.band.top_hz && residual.dof > kFewestDof)
+      least = std::min(least, residual.measured);
+  if (!white.upper95 || !std::isfinite(least) || !(std::sqrt(least) > *white.upper95)) return;
+  white.upper95 = std::sqrt(least);
+  white.ci95.high = std::max(white.ci95.high, *white.upper95);
+}
+
 void judge(NoiseFit& fit, const AllanCurve* allan) {
+  raise_white_limit(fit);
   if (!(fit.goodness.p < kMisfit)) return;
   admit_misfit(fit, allan);
   const auto worst = std::max_element(
@@ -291,6 +306,7 @@ NoiseFit fit_binned(const PowerBinner& binner,
 namespace {
 
 constexpr std::size_t kFewestForEvents = 1024;  ///< samples
+constexpr std::size_t kFewestPoints = 64;       ///< of a series of means
 
 struct WithoutEvents {
   std::vector<double> samples;  ///< empty: nothing was found
@@ -304,9 +320,15 @@ WithoutEvents without_events(std::span<const double> record,
                              const FitOptions& options) {
   WithoutEvents out;
   if (!options.events || !options.remedies || record.size() < kFewestForEvents) return out;
-  const EventSeries series = event_series(record, rate_hz);
-  if (series.value.size() < 64) return out;
-  out.search = find_events(series, fitted_powers(), {}, options.unit);
+  try {
+    const EventSeries series = event_series(record, rate_hz);
+    if (series.value.size() < kFewestPoints) return out;
+    out.search = find_events(series, fitted_powers(), {}, options.unit);
+  } catch (const Error& error) {
+    // What cannot be searched is fitted as it is; the fit says itself what it cannot do.
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    return {};
+  }
   if (out.search.events.empty() || out.search.more || out.search.telegraph) return out;
   out.samples.assign(record.begin(), record.end());
   subtract_events(out.search.events, rate_hz, out.samples);
@@ -315,6 +337,10 @@ WithoutEvents without_events(std::span<const double> record,
 
 void report_events(const WithoutEvents& found, NoiseFit& fit) {
   for (const std::string& sentence : found.search.sentences) fit.sentences.push_back(sentence);
+  // What stayed in is not noise, and the coefficients hold it.
+  if (found.search.more || found.search.telegraph)
+    for (Coefficient& term : fit.term)
+      if (term.status == Status::detected) term.status = Status::undetermined;
   if (found.samples.empty()) return;
   fit.events = found.search.events;
   for (const Event& event : fit.events)

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kPlottedBins =
     400;  // enough for a log–log plot, small enough for a page of many channels
+constexpr std::size_t kFewestForMotion = 2048;
 constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
@@ -240,6 +241,9 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
 bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
   if (options_->data != SampleKind::rate || !options_->wanted.fit || !options_->fit.remedies)
     return true;
+  // Filled gaps are stiller than any sensor.
+  const std::uint64_t missing = found_.missing;
+  if (kept_.size() < kFewestForMotion || missing * 100 > kept_.size()) return true;
   const Motion motion = find_motion(event_series(kept_, rate_hz));
   for (const std::string& sentence : motion.sentences) result.problems.push_back(sentence);
   if (motion.whole)
@@ -259,10 +263,11 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
       add_spectrum(
           result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
-  if (is_noise(result) && is_at_rest(result, rate_hz))
-    attempt(result, "noise fit", [&] {
+  if (!is_noise(result)) return;
+  attempt(result, "noise fit", [&] {
+    if (is_at_rest(result, rate_hz))
       result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
-    });
+  });
 }
 
 void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
