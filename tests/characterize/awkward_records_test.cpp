@@ -1,0 +1,60 @@
+// Records that cannot be searched for motion or steps are fitted all the same.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::vector<double> white(std::size_t count, std::uint64_t seed) {
+  test::Gaussian gauss(seed);
+  std::vector<double> y(count);
+  for (double& v : y) v = 0.01 * gauss();
+  return y;
+}
+
+Characterization of(const std::vector<double>& samples) {
+  Recording recording;
+  recording.info.channels.resize(1);
+  recording.info.channels[0].name = "x";
+  recording.info.time.rate_hz = 100;
+  recording.samples = {samples};
+  return characterize(recording);
+}
+
+}  // namespace
+
+TEST_CASE("a hole of half the record, or a tenth, is no change of the noise") {
+  for (const double share : {0.1, 0.5}) {
+    std::vector<double> y = white(60000, 3);
+    for (std::size_t t = 20000; t < 20000 + static_cast<std::size_t>(share * 60000); ++t)
+      y[t] = std::numeric_limits<double>::quiet_NaN();
+    const Characterization result = of(y);
+    const ChannelResult& channel = result.channels[0];
+    CAPTURE(share);
+    CHECK(channel.problems.empty());
+    REQUIRE(channel.fit);
+    CHECK(*(*channel.fit)[Term::white].value == Approx(0.001).epsilon(0.03));
+  }
+}
+
+TEST_CASE("fifty samples are fitted, though steps cannot be looked for") {
+  const Characterization result = of(white(50, 4));
+  REQUIRE(result.channels[0].fit);
+  CHECK(result.channels[0].fit->events.empty());
+}
+
+TEST_CASE("a step that was taken out is in the verdict") {
+  std::vector<double> y = white(60000, 5);
+  for (std::size_t t = 30000; t < y.size(); ++t) y[t] += 0.02;
+  const Characterization step = of(y);
+  REQUIRE(step.channels[0].fit->events.size() == 1);
+  CHECK(step.channels[0].fit->events[0].size == Approx(0.02).epsilon(0.05));
+  CHECK(verdict_of(step).find("Read what is said of x") != std::string::npos);
+}
