@@ -1,4 +1,5 @@
 // Records that cannot be searched for motion or steps are fitted all the same.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -48,6 +49,24 @@ TEST_CASE("fifty samples are fitted, though steps cannot be looked for") {
   const Characterization result = of(white(50, 4));
   REQUIRE(result.channels[0].fit);
   CHECK(result.channels[0].fit->events.empty());
+}
+
+TEST_CASE("the quality of a clock's frequency is in fractions of it, as its noise is") {
+  std::vector<double> y = white(20000, 6);
+  for (double& v : y) v = 1e7 + 1e-2 * std::round(v * 100);  // steps of 1e-2 Hz
+  Recording recording;
+  recording.info.channels.resize(1);
+  recording.info.time.rate_hz = 1;
+  recording.samples = {y};
+  CharacterizeOptions options;
+  options.data = SampleKind::frequency;
+  options.nominal_frequency = 1e7;
+  const Characterization result = characterize(recording, options);
+  const ChannelQuality& quality = result.channels[0].quality;
+  REQUIRE(quality.resolution);
+  CHECK(*quality.resolution == Approx(1e-9).epsilon(1e-6));
+  CHECK(std::abs(quality.mean) < 1e-10);
+  CHECK(quality.maximum == Approx((*std::max_element(y.begin(), y.end()) - 1e7) / 1e7));
 }
 
 TEST_CASE("a step that was taken out is in the verdict") {

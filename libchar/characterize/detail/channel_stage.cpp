@@ -298,12 +298,29 @@ std::string ChannelStage::unit_of_rate(const std::string& unit) const {
   return options_->data == SampleKind::frequency && options_->nominal_frequency != 0 ? "1" : unit;
 }
 
+// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are those of no rate.
+ChannelQuality ChannelStage::quality_of_rate() const {
+  ChannelQuality quality = found_;
+  if (options_->data == SampleKind::phase) {
+    quality.resolution = std::nullopt;
+    quality.saturated = 0;
+  }
+  const double nominal = options_->nominal_frequency;
+  if (options_->data != SampleKind::frequency || nominal == 0) return quality;
+  for (double* value : {&quality.mean, &quality.minimum, &quality.maximum})
+    *value = (*value - nominal) / nominal;
+  for (double* value : {&quality.standard_deviation, &quality.difference_sd, &quality.float32_step})
+    *value /= std::abs(nominal);
+  if (quality.resolution) *quality.resolution /= std::abs(nominal);
+  return quality;
+}
+
 ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   ChannelResult result;
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
   found_ = quality_.finish();
-  if (options_->wanted.quality) result.quality = found_;
+  if (options_->wanted.quality) result.quality = quality_of_rate();
   if (rate_hz <= 0) {
     result.problems.push_back(
         "no curves and no fit: the sampling rate is not known (a log without time stamps needs "

@@ -78,6 +78,7 @@ class ChannelStage {
   NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, const std::string& unit) const;
   NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
+  ChannelQuality quality_of_rate() const;
   bool is_noise(ChannelResult& result) const;
   bool is_at_rest(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
