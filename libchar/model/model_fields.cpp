@@ -246,6 +246,16 @@ const Fields<SensorModel>& noise_fields() {
   return rows;
 }
 
+Row<SensorModel> noise_shape_field() {
+  return part<&SensorModel::noise_shape>(
+      "noise_shape",
+      noise_shape_fields(),
+      {.comment = "what the sensor's filter and surroundings make of the noise: power ratio "
+                  "over frequency",
+       .meaning = "multiplies the density of the noise, not of the signal",
+       .otherwise = "none"});
+}
+
 // The way of the signal, block by block.
 const Fields<SensorModel>& signal_path_fields() {
   static const Fields<SensorModel> rows = {
@@ -273,13 +283,7 @@ const Fields<SensorModel>& signal_path_fields() {
       field<&SensorModel::reference_temperature_degc>(
           "reference_temperature_degc",
           {.unit = "°C", .meaning = "ΔT = temperature − this", .otherwise = "25"}),
-      part<&SensorModel::noise_shape>(
-          "noise_shape",
-          noise_shape_fields(),
-          {.comment = "what the sensor's filter and surroundings make of the noise: power ratio "
-                      "over frequency",
-           .meaning = "multiplies the density of the noise, not of the signal",
-           .otherwise = "none"}),
+      noise_shape_field(),
       field<&SensorModel::bandwidth_hz>(
           "bandwidth_hz",
           {.unit = "Hz",
