@@ -268,11 +268,11 @@ std::vector<std::int64_t> packets(std::size_t rows,
                                   double inner,
                                   double jitter) {
   std::mt19937_64 random(5);
-  std::normal_distribution<double> noise(0, jitter);
+  std::normal_distribution<double> noise;
   std::vector<std::int64_t> t;
   for (std::size_t k = 0; t.size() < rows; ++k) {
     const std::size_t size = sizes[k % sizes.size()];
-    const double arrival = dt * static_cast<double>(t.size() + size) + noise(random);
+    const double arrival = dt * static_cast<double>(t.size() + size) + jitter * noise(random);
     for (std::size_t i = 0; i < size; ++i)
       t.push_back(static_cast<std::int64_t>(
           std::llround(arrival - inner * static_cast<double>(size - 1 - i))));
