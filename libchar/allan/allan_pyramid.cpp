@@ -409,4 +409,10 @@ AllanCurve AllanPyramid::finish(double dt_s) const {
   return curve;
 }
 
+AllanCurve pyramid_deviation(std::span<const double> record, double dt_s) {
+  AllanPyramid pyramid;
+  pyramid.push(record);
+  return pyramid.finish(dt_s);
+}
+
 }  // namespace libchar

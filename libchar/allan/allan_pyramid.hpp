@@ -28,4 +28,7 @@ class AllanPyramid {
   std::unique_ptr<State, StateDeleter> state_;
 };
 
+/// The curve of a whole record at once.
+AllanCurve pyramid_deviation(std::span<const double> record, double dt_s);
+
 }  // namespace libchar

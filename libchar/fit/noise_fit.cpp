@@ -352,12 +352,6 @@ void report_events(const WithoutEvents& found, NoiseFit& fit) {
                             1});
 }
 
-AllanCurve octaves_of(std::span<const double> record, double rate_hz) {
-  AllanPyramid pyramid;
-  pyramid.push(record);
-  return pyramid.finish(1 / rate_hz);
-}
-
 }  // namespace
 
 NoiseFit fit_record(std::span<const double> record,
@@ -372,7 +366,7 @@ NoiseFit fit_record(std::span<const double> record,
   if (!events.samples.empty()) data = events.samples;
   AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
   if (allan != nullptr && data.data() != record.data()) {
-    own = octaves_of(data, rate_hz);
+    own = pyramid_deviation(data, 1 / rate_hz);
     allan = &own;
   }
   // One exact transform while it is cheap; a longer record goes by blocks.

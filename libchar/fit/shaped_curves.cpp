@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/fit/detail/low_pass.hpp"
 
 namespace libchar {
 namespace {
@@ -19,15 +20,9 @@ constexpr double kManyPeriods = 6;
 constexpr double kVisibleRatio = 1e-4;  ///< of a shape's distance from one
 constexpr double kSameWithin = 0.01;
 
-double low_pass_ratio(double corner_hz, double frequency_hz, double rate_hz) {
-  const double a = std::exp(-2 * kPi * corner_hz / rate_hz),
-               sine = std::sin(kPi * frequency_hz / rate_hz);
-  return (1 - a) * (1 - a) / ((1 - a) * (1 - a) + 4 * a * sine * sine);
-}
-
 double ratio_at(const NoiseFit& fit, double frequency_hz, double dt_s) {
   double ratio = shape_ratio(fit.shape, frequency_hz, 1 / dt_s);
-  if (fit.bandwidth_hz) ratio *= low_pass_ratio(*fit.bandwidth_hz, frequency_hz, 1 / dt_s);
+  if (fit.bandwidth_hz) ratio *= low_pass_gain(frequency_hz, *fit.bandwidth_hz, 1 / dt_s).gain;
   return ratio;
 }
 

@@ -32,12 +32,6 @@ std::vector<double> punched(std::vector<double> y, double share, double length, 
   return y;
 }
 
-AllanCurve one_pass(const std::vector<double>& y) {
-  AllanPyramid pyramid;
-  pyramid.push(y);
-  return pyramid.finish(1);
-}
-
 struct Sums {
   double holed = 0, whole = 0;
   int points = 0, held = 0;
@@ -50,8 +44,8 @@ std::vector<Sums> sums_of(const Mixture& theta, double share, double length, boo
   for (int r = 0; r < 120; ++r) {
     const auto y = source.record(std::sqrt(theta[0]), std::sqrt(theta[1]), std::sqrt(theta[2]));
     const auto holed = punched(y, share, length, source.gauss());
-    const AllanCurve whole = streamed ? one_pass(y) : allan_deviation(y, 1);
-    AllanCurve curve = streamed ? one_pass(holed) : allan_deviation(holed, 1);
+    const AllanCurve whole = streamed ? pyramid_deviation(y, 1) : allan_deviation(y, 1);
+    AllanCurve curve = streamed ? pyramid_deviation(holed, 1) : allan_deviation(holed, 1);
     add_intervals(curve, theta);
     REQUIRE(curve.points.size() >= sums.size());
     for (std::size_t k = 0; k < sums.size(); ++k) {
@@ -75,7 +69,7 @@ TEST_CASE(
   for (const double length : {1.0, 5.0, 50.0})
     for (int r = 0; r < 20; ++r) {
       const auto y = punched(source.record(1, 0.1, 0.001), 0.1, length, source.gauss());
-      for (const AllanCurve& curve : {allan_deviation(y, 1), one_pass(y)}) {
+      for (const AllanCurve& curve : {allan_deviation(y, 1), pyramid_deviation(y, 1)}) {
         REQUIRE(curve.points.size() >= 13);
         for (std::size_t k = 0; k < 13; ++k) CHECK(curve.points[k].m == std::uint64_t{1} << k);
       }
@@ -113,7 +107,7 @@ TEST_CASE("noise that what is missing hides is left out, or its interval says so
     last = next;
   }
   const auto holed = punched(y, 0.1, 1, gauss);
-  for (AllanCurve curve : {allan_deviation(holed, 1), one_pass(holed)}) {
+  for (AllanCurve curve : {allan_deviation(holed, 1), pyramid_deviation(holed, 1)}) {
     add_intervals(curve, {0, 0, 0, 1});
     CHECK(curve.points.size() < 13);
     for (const AllanPoint& p : curve.points) {
@@ -130,9 +124,9 @@ TEST_CASE("noise that what is missing hides is left out, or its interval says so
 TEST_CASE("the way with missing samples meets the way with none") {
   test::NoiseSource source(5000, 1, 4);
   auto y = source.record(1, 1, 0.01);
-  const AllanCurve whole = allan_deviation(y, 1), passed = one_pass(y);
+  const AllanCurve whole = allan_deviation(y, 1), passed = pyramid_deviation(y, 1);
   y.push_back(kNaN);  // too much of a window of one or two
-  const AllanCurve holed = allan_deviation(y, 1), holed_pass = one_pass(y);
+  const AllanCurve holed = allan_deviation(y, 1), holed_pass = pyramid_deviation(y, 1);
   CHECK(whole.points[3].inflation == 1);
   for (std::size_t k = 0; k < 2; ++k) {
     CHECK(holed.points[k].deviation == Approx(whole.points[k].deviation).epsilon(1e-12));

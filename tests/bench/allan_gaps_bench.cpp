@@ -40,12 +40,6 @@ void punch(std::vector<double>& y, const Gaps& gaps, test::Gaussian& gauss) {
   }
 }
 
-AllanCurve one_pass(const std::vector<double>& y) {
-  AllanPyramid pyramid;
-  pyramid.push(y);
-  return pyramid.finish(1);
-}
-
 struct Column {
   double sum = 0, whole = 0;
   int points = 0, held = 0;
@@ -119,10 +113,10 @@ int main(int argc, char** argv) {
       std::vector<Column> exact, streamed;
       for (int r = 0; r < records; ++r) {
         std::vector<double> y = source.record(scene.q, scene.b, scene.k);
-        const AllanCurve whole = allan_deviation(y, 1, options), passed = one_pass(y);
+        const AllanCurve whole = allan_deviation(y, 1, options), passed = pyramid_deviation(y, 1);
         punch(y, gaps, source.gauss());
         add(allan_deviation(y, 1, options), whole, theta, exact);
-        if (octaves) add(one_pass(y), passed, theta, streamed);
+        if (octaves) add(pyramid_deviation(y, 1), passed, theta, streamed);
       }
       show(scene, gaps, "overlap", exact);
       if (octaves) show(scene, gaps, "stream", streamed);

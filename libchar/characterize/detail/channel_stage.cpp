@@ -151,9 +151,7 @@ AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
   AllanOptions octaves;
   octaves.threads = options_->allan.threads;
   if (kept_.size() <= options_->exact_samples) return allan_deviation(kept_, 1 / rate_hz, octaves);
-  AllanPyramid pyramid;
-  pyramid.push(kept_);
-  return pyramid.finish(1 / rate_hz);
+  return pyramid_deviation(kept_, 1 / rate_hz);
 }
 
 AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
@@ -185,11 +183,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;
-  if (cleaned && opinion) {
-    AllanPyramid pyramid;
-    pyramid.push(despiked_.samples);
-    own = pyramid.finish(1 / rate_hz);
-  }
+  if (cleaned && opinion) own = pyramid_deviation(despiked_.samples, 1 / rate_hz);
   NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
                             rate_hz,
                             opinion ? cleaned ? &own : &octaves : nullptr,

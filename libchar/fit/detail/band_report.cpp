@@ -107,7 +107,7 @@ void describe_band(const std::vector<PowerBin>& bins,
       band.filter.kind != NoiseShape::Kind::none ? band.filter : measured_shape(std::move(points));
   if (!band.low_pass) return;
   fit.bandwidth_hz = band.low_pass->corner_hz;
-  const double spread = std::exp(1.959963984540054 * band.low_pass->log_sd);
+  const double spread = std::exp(kNormal95 * band.low_pass->log_sd);
   fit.bandwidth_ci95 =
       Interval{band.low_pass->corner_hz / spread, band.low_pass->corner_hz * spread};
   widen_for_joint_parameter(band.low_pass->log_theta_sd, fit);

@@ -16,7 +16,6 @@ constexpr double kUndeterminedAbove =
     0.30;  ///< bound above which a term counts as not determined (docs/theory/fit.md)
 /// Likelihood ratio above which a dropped term widens the intervals of the others.
 constexpr double kDoubtfulAbove = 1;
-constexpr double kNormal95 = 1.959963984540054;
 
 double sd_of_theta(const BinProblem& problem,
                    const ModelPoint& at,

@@ -8,6 +8,8 @@
 
 namespace libchar {
 
+inline constexpr double kNormal95 = 1.959963984540054;  ///< two-sided 95 % of a standard normal
+
 /// Fills term, theta, covariance, converged, iterations and the sentences about what cannot be told
 /// apart; gives back the maximum of the likelihood.
 ModelPoint report_coefficients(const BinProblem& problem,
