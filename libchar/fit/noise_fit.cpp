@@ -245,9 +245,9 @@ void raise_white_limit(NoiseFit& fit) {
   white.ci95.high = std::max(white.ci95.high, *white.upper95);
 }
 
-void judge(NoiseFit& fit, const AllanCurve* allan) {
+void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
   raise_white_limit(fit);
-  if (!(fit.goodness.p < kMisfit)) return;
+  if (passes && !(fit.goodness.p < kMisfit)) return;
   admit_misfit(fit, allan);
   const auto worst = std::max_element(
       fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
@@ -280,7 +280,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
     report_band(now.band, bins, now.fit);
     answer_low_frequencies(now);
   }
-  judge(now.fit, allan);
+  judge(now.fit, now.band.passes, allan);
   if (options.second_opinion && allan != nullptr)
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);

@@ -122,3 +122,36 @@ TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the f
     CHECK(plain_from_s(fit, curve) > 0.01);
   }
 }
+
+TEST_CASE("where no band passes every value is a misfit, its interval as wide as the scatter") {
+  PowerBinner binner(65536);
+  binner.push(filtered_record(5, [](const auto& u) { return u; }));
+  std::vector<PowerBin> bins = binner.finish(kRate);
+  const NoiseFit clean = fit_power_bins(bins, kRate, kSamples, nullptr);
+  for (std::size_t j = 0; j < bins.size(); ++j) bins[j].energy *= j % 2 == 0 ? 20 : 0.05;
+  const NoiseFit fit = fit_power_bins(bins, kRate, kSamples, nullptr);
+  int values = 0;
+  for (const Coefficient& term : fit.term) {
+    CHECK(term.status != Status::detected);
+    values += term.status == Status::misfit;
+  }
+  CHECK(values > 0);
+  const auto width = [](const NoiseFit& f) {
+    return std::log(f[Term::white].ci95.high / f[Term::white].ci95.low);
+  };
+  CHECK(width(fit) > 5 * width(clean));
+  REQUIRE_FALSE(fit.sentences.empty());
+  CHECK(fit.sentences[0].find("no coefficient is borne out") != std::string::npos);
+}
+
+TEST_CASE("a limit of white noise is not below the spectrum above the band") {
+  // Steps of 1 sd every minute that nobody takes out: a slow spectrum that hides the white noise.
+  test::Gaussian gauss(8);
+  std::vector<double> y(60000);
+  for (std::size_t t = 0; t < y.size(); ++t) y[t] = 0.01 * gauss() + (t / 6000 % 2 == 0 ? 0.01 : 0);
+  FitOptions options;
+  options.events = false;
+  const NoiseFit fit = fit_record(y, kRate, nullptr, options);
+  const Coefficient& white = fit[Term::white];  // truth 0.001
+  CHECK((white.value ? white.ci95.high : *white.upper95) > 0.9e-3);
+}

@@ -19,7 +19,7 @@ struct Band {
   int orders = 0;                      ///< of the polynomial of the shape beyond that
   bool quantized = false;              ///< quantization noise is among the terms
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
-  bool passes = false;                 ///< the residuals are those of noise
+  bool passes = true;                  ///< the residuals are those of noise, or too few to judge
   Goodness goodness;                   ///< of the band, its slowest coefficients left out
   Goodness top;                        ///< of its top octave and a half
 };
