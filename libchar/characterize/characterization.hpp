@@ -64,6 +64,7 @@ struct CharacterizeOptions {
 };
 
 struct ChannelVerification;
+struct LimitReport;
 
 struct ChannelResult {
   Channel channel;
@@ -81,9 +82,10 @@ struct ChannelResult {
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
-  std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
-  std::vector<std::string> command;  ///< as typed
-  double seconds = 0;                ///< measured; kept apart from everything else in the outputs
+  std::vector<Entry> settings;                ///< effective settings, for provenance (settings.hpp)
+  std::vector<std::string> command;           ///< as typed
+  std::shared_ptr<const LimitReport> limits;  ///< when they were asked for (limits.hpp)
+  double seconds = 0;  ///< measured; kept apart from everything else in the outputs
 };
 
 /// Reads the log once (a second time only when a remedy asks for it) and computes what the report

@@ -21,6 +21,7 @@
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/limits_pieces.hpp"
 #include "libchar/report/json_report.hpp"
 
 namespace libchar {
@@ -175,6 +176,7 @@ std::string provenance(const Characterization& result) {
 std::string html_report(const CharacterizationView& view, const Json& without_times) {
   const Characterization& result = *view.result;
   std::string body = overview(view);
+  if (result.limits) body += limits_section(*result.limits);
   for (std::size_t i = 0; i < view.channels.size(); ++i)
     body += channel_section(view.channels[i], result.log, i);
   body += provenance(result);

@@ -11,6 +11,7 @@
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/limits_pieces.hpp"
 #include "libchar/report/detail/verification_json.hpp"
 
 namespace libchar {
@@ -110,6 +111,7 @@ Json json_without_times(const CharacterizationView& view) {
       out["verification"]["channels"].push_back(v.result->verification ? verification_json(v)
                                                                        : Json(nullptr));
   }
+  if (result.limits) out["limits"] = limits_json(*result.limits);
   return out;
 }
 
