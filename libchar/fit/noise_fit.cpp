@@ -294,12 +294,13 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
-  std::uint64_t clipped = 0;
-  const std::vector<PowerBin> bins =
-      options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
-  NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options, workspace);
-  if (clipped > 0) add_lines(bins, binner.finish(rate_hz), fit);
-  if (clipped > 0) fit.remedies.insert(fit.remedies.begin(), lines_remedy(clipped));
+  if (!options.remedies)
+    return fit_power_bins(binner.finish(rate_hz), rate_hz, samples, allan, options, workspace);
+  const ClippedBins lines = binner.finish_clipped(rate_hz);
+  NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, options, workspace);
+  if (lines.clipped == 0) return fit;
+  add_lines(lines.bins, lines.all, fit);
+  fit.remedies.insert(fit.remedies.begin(), lines_remedy(lines.clipped));
   return fit;
 }
 
