@@ -2,13 +2,14 @@
 // model's exact covariance:
 //   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
 //   fitted curve stands still
-// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: damped more
-// and more as it goes on.
+// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: each
+// round that moves no less than the one before halves the step.
 #include "libchar/fit/detail/allan_fit.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
@@ -32,7 +33,7 @@ AllanCurve usable(const AllanCurve& curve, const NoiseFit& first) {
   return kept;
 }
 
-constexpr int kMostRounds = 100, kRoundsAStep = 20;  ///< the step is halved every so many rounds
+constexpr int kMostRounds = 100;
 
 struct Solution {
   Mixture theta{};
@@ -58,6 +59,7 @@ std::optional<Solution> solve(const AllanCurve& curve,
     }
   }
   Solution solution{start, TermMatrix::Zero(), 0, false};
+  double step = 1, before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds && !solution.converged; ++round) {
     const std::optional<Eigen::MatrixXd> factor = cholesky_factor(covariance.at(solution.theta));
     if (!factor) return std::nullopt;
@@ -68,7 +70,6 @@ std::optional<Solution> solve(const AllanCurve& curve,
     Mixture right{};
     for (std::size_t i = 0; i < kTerms; ++i) right[i] = product[static_cast<Eigen::Index>(i)];
     Mixture next = nonnegative_minimum(gram, right, terms);
-    const double step = std::exp2(-round / kRoundsAStep);
     for (std::size_t i = 0; i < kTerms; ++i)
       next[i] = step * next[i] + (1 - step) * solution.theta[i];
     const auto vector = [](const Mixture& theta) {
@@ -82,6 +83,8 @@ std::optional<Solution> solve(const AllanCurve& curve,
     solution.covariance = inverse_of(gram, terms);
     solution.chi2 = (target - whitened * vector(next)).squaredNorm();
     solution.converged = moved < 1e-7 * step;
+    if (moved > 0.95 * before) step /= 2;
+    before = moved;
   }
   return solution;
 }
