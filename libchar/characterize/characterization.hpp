@@ -48,6 +48,8 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
+  /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
+  std::string temperature;
   AllanOptions allan;
   WelchOptions spectrum;
   double segment_s =
@@ -82,9 +84,10 @@ struct ChannelResult {
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
-  std::vector<Entry> settings;                ///< effective settings, for provenance (settings.hpp)
-  std::vector<std::string> command;           ///< as typed
-  std::shared_ptr<const LimitReport> limits;  ///< when they were asked for (limits.hpp)
+  std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
+  std::vector<std::string> command;  ///< as typed
+  std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
+  std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs
 };
 
