@@ -70,7 +70,7 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
       documents.push_back(json_report(view));
       continue;
     }
-    print_text(characterization_text(result));
+    print_text(characterization_text(view));
     std::string written = "\nwrote";
     for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
     print(written + "\n");
@@ -95,6 +95,7 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
 
 std::function<void()> characterize_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CharacterizeVerb>();
+  verb->analysis.options.ten_a_decade = true;
   options
       .add_texts("LOG",
                  verb->logs,
