@@ -50,6 +50,8 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
+  /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
+  std::string temperature;
   AllanOptions allan;
   WelchOptions spectrum;
   double segment_s =
@@ -90,7 +92,8 @@ struct Characterization {
   std::vector<ChannelResult> channels;
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
-  double seconds = 0;                ///< measured; kept apart from everything else in the outputs
+  std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
+  double seconds = 0;  ///< measured; kept apart from everything else in the outputs
 };
 
 /// Reads the log once (a second time only when a remedy asks for it) and computes what the report

@@ -111,6 +111,8 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
+  if (fit.temperature && fit.temperature->order > 0)
+    out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
     out.push_back(
         fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "

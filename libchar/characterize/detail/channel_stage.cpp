@@ -59,6 +59,7 @@ void attempt(ChannelResult& result, const char* what, Step&& step) {
 
 std::string what_needs_all_samples(const CharacterizeOptions& options) {
   if (options.data == SampleKind::phase) return "phase data";
+  if (!options.temperature.empty()) return "a correction for temperature";
   if (!options.wanted.allan) return "";
   if (options.allan.type != DeviationType::oadev)
     return fmt::format("the deviation {}", name_of(options.allan.type));
@@ -189,6 +190,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                                    const std::string& unit) const {
   FitOptions options = options_->fit;
   options.unit = unit;
+  options.temperature = temperature_;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;
