@@ -12,6 +12,7 @@ struct AnalysisOptions {
   libchar::CharacterizeOptions options;
   std::string type = "oadev";
   std::optional<double> nominal_frequency, tau_min_s, tau_max_s;
+  bool ten_asked = false;  ///< --taus ten
   bool no_remedies = false, no_second_opinion = false;
 };
 

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/characterize/trace.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
+#include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
@@ -36,7 +38,7 @@ inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind>({{SampleKi
 
 /// What is to be computed; nothing else is.
 struct Wanted {
-  bool quality = true;
+  bool quality = true;  ///< and the trace
   bool allan =
       true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
@@ -61,6 +63,8 @@ struct CharacterizeOptions {
   std::uint64_t exact_samples =
       std::uint64_t{1}
       << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
+  /// where `allan` asks for octaves and the samples are kept: ten averaging times a decade besides, for plots
+  bool ten_a_decade = false;
   bool full_overlap =
       false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
@@ -71,6 +75,9 @@ struct LimitReport;
 struct ChannelResult {
   Channel channel;
   ChannelQuality quality;
+  Trace trace;             ///< of the samples as they are in the log
+  std::string trace_unit;  ///< of those
+  Motion motion;           ///< stretches in which the sensor was moved, where that was looked for
   AllanCurve
       allan;  ///< with intervals for the fitted mixture; no points when the record is too short
   Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins

@@ -25,6 +25,7 @@ const Fields<Options>& allan_settings() {
       field<&Options::allan, &AllanOptions::taus_s>("taus_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_min_s>("tau_min_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_max_s>("tau_max_s", {.unit = "s"}),
+      field<&Options::ten_a_decade>("ten_a_decade"),
       field<&Options::full_overlap>("full_overlap"),
   };
   return rows;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/summary.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
@@ -13,24 +14,25 @@
 namespace libchar {
 namespace {
 
-// Below this the residuals are not what the model leads one to expect in one record of a thousand.
-constexpr double kDoubtful = 1e-3;
-
 std::string in_habitual_unit(const Coefficient& c, Term term, const std::string& unit) {
   const auto habits = habitual_units(kTermNames[static_cast<std::size_t>(term)].key, unit);
   if (habits.empty()) return "";
-  return fmt::format(" ({} {})", value_text(c, habits[0].factor), habits[0].symbol);
+  return fmt::format(" ({}{}{})",
+                     value_text(c, habits[0].factor),
+                     habits[0].symbol.empty() ? "" : " ",
+                     habits[0].symbol);
 }
 
 std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const Coefficient& c = fit[term];
   const auto& name = kTermNames[static_cast<std::size_t>(term)];
+  const std::string own = shown_term_unit(name.key, unit), title = term_title(term, unit);
   const std::string value =
-      value_text(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
+      value_text(c) + (own.empty() ? "" : " ") + own + in_habitual_unit(c, term, unit);
   switch (c.status) {
     case Status::detected:
       return fmt::format("{} {} = {}, known to {} %.",
-                         term_title(term),
+                         title,
                          name.letter,
                          value,
                          number_text(100 * c.relative_sd, 2));
@@ -38,18 +40,18 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
       return fmt::format(
           "{} {} = {}, but undetermined: the record cannot tell it from another term, or "
           "contradicts it.",
-          term_title(term),
+          title,
           name.letter,
           value);
     case Status::misfit:
       return fmt::format("{} {} = {}, but the noise terms do not describe the recording.",
-                         term_title(term),
+                         title,
                          name.letter,
                          value);
     case Status::not_detected:
-      return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
+      return fmt::format("{} {} not detected, {} (95 %).", title, name.letter, value);
     case Status::given:
-      return fmt::format("{} {} = {}, given.", term_title(term), name.letter, value);
+      return fmt::format("{} {} = {}, given.", title, name.letter, value);
     case Status::not_fitted:
       return "";
   }
@@ -69,6 +71,11 @@ std::string list_of(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+double missing_share(const ChannelQuality& quality) {
+  const std::uint64_t all = quality.samples + quality.missing;
+  return all == 0 ? 0 : static_cast<double>(quality.missing) / static_cast<double>(all);
+}
 
 std::string term_title(Term term) {
   switch (term) {
@@ -118,7 +125,6 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
 std::vector<std::string> cautions(const ChannelResult& channel) {
   std::vector<std::string> out = channel.problems;
   const ChannelQuality& q = channel.quality;
-  const double all = static_cast<double>(q.samples + q.missing);
   if (channel.fit) {
     const NoiseFit& fit = *channel.fit;
     if (!fit.converged) out.push_back("The fit did not converge.");
@@ -132,11 +138,9 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
     out.push_back(
         fmt::format("{} samples stand at the end of the range.", count_text(q.saturated)));
   // Fewer cost nothing worth mentioning here: terms that touch them are left out.
-  if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
-    out.push_back(fmt::format("{} samples ({} %) are missing.",
-                              count_text(q.missing),
-                              number_text(100 * static_cast<double>(q.missing) / all, 2)));
-  }
+  if (const double share = missing_share(q); share > 0.01)
+    out.push_back(fmt::format(
+        "{} samples ({} %) are missing.", count_text(q.missing), number_text(100 * share, 2)));
   out.insert(out.end(), q.suggestions.begin(), q.suggestions.end());
   return out;
 }

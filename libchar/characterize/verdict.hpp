@@ -11,7 +11,13 @@ namespace libchar {
 /// One paragraph for the whole recording.
 std::string verdict_of(const Characterization& result);
 
-/// Title of a term: "white noise", "bias instability"…
+/// Below this the residuals are not what the model leads one to expect in one record of a thousand.
+inline constexpr double kDoubtful = 1e-3;
+
+/// Of all samples, those that are missing.
+double missing_share(const ChannelQuality& quality);
+
+/// Title of a term: "White noise", "Bias instability"…; summary.hpp has the field's names.
 std::string term_title(Term term);
 
 /// What a fit found, in sentences with numbers in `unit`.

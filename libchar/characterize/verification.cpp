@@ -70,6 +70,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   CharacterizeOptions same = options;
   same.data = SampleKind::rate;  // phase and frequency have become rates before the fit
   same.wanted.quality = false;
+  same.ten_a_decade = false;  // octaves are compared
   ChannelStage stage(same, workspace);
   if (!kept) stage.stop_keeping();
   if (recorded.fit->temperature) stage.set_temperature(temperature);

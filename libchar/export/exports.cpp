@@ -13,6 +13,9 @@ namespace {
 
 using enum ExportNeeds;
 
+// Of the targets' `terms`.
+constexpr std::string_view kLetters[kTerms] = {"Q", "B", "K", "Qz", "R"};
+
 std::string channels_of(const SensorGroup& group) {
   std::string text;
   for (const SensorModel* m : group.all)
@@ -82,7 +85,7 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
     return channels;
   };
   for (std::size_t t = 0; t < kTerms; ++t) {
-    if (target.terms.find(kTermNames[t].letter) != std::string_view::npos) continue;
+    if (target.terms.find(kLetters[t]) != std::string_view::npos) continue;
     const std::string channels =
         among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
     if (!channels.empty())

@@ -210,10 +210,10 @@ const Fields<SensorModel>& head_fields() {
 // The noise, and how a simulation makes it.
 const Fields<SensorModel>& noise_fields() {
   static const Fields<SensorModel> rows = {
-      term_row(Term::white, "Q; each term has these keys"),
+      term_row(Term::white, "N; each term has these keys"),
       term_row(Term::flicker, "B"),
       term_row(Term::walk, "K"),
-      term_row(Term::quantization, "Qz"),
+      term_row(Term::quantization, "Q"),
       term_row(Term::ramp, "R"),
       field<&SensorModel::noise_sampling>("noise_sampling",
                                           {.words = kSamplings,

@@ -9,7 +9,8 @@
 
 namespace libchar {
 
-std::string characterization_text(const Characterization& result) {
+std::string characterization_text(const CharacterizationView& view) {
+  const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
   const std::string length =
@@ -24,8 +25,11 @@ std::string characterization_text(const Characterization& result) {
                                  length,
                                  log.time.gaps,
                                  log.time.gaps == 1 ? "" : "s");
-  for (const ChannelResult& c : result.channels) {
+  for (const ChannelView& channel : view.channels) {
+    const ChannelResult& c = *channel.result;
     text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    text += fmt::format(
+        "  {}: {}\n", rating_word(channel.summary.rating), printable(channel.summary.sentence));
     if (c.verification)
       for (const std::string& sentence : c.verification->sentences)
         text += fmt::format("  {}\n", printable(sentence));

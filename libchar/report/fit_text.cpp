@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "libchar/characterize/summary.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
@@ -34,6 +35,14 @@ std::string in_habitual_units(const Coefficient& term, std::size_t i, const std:
   return text;
 }
 
+// "N angle random walk": the letter of IEEE 952 and the field's name.
+std::string named(Term term, const std::string& unit) {
+  std::string title = term_title(term, unit);
+  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
+    title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return fmt::format("{} {}", kTermNames[static_cast<std::size_t>(term)].letter, title);
+}
+
 std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const std::string& unit) {
   const std::string value = term.value     ? significant(*term.value, 5)
                             : term.upper95 ? "≤ " + significant(*term.upper95, 3)
@@ -44,10 +53,10 @@ std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const st
           : "";
   std::string status(name_of(term.status));
   std::replace(status.begin(), status.end(), '_', ' ');
-  return {fmt::format("{} {}", kTermNames[i].key, kTermNames[i].letter),
+  return {named(static_cast<Term>(i), unit),
           value,
           interval,
-          term_unit(kTermNames[i].key, printable(unit)),
+          shown_term_unit(kTermNames[i].key, printable(unit)),
           status,
           term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "",
           term.seconds_for_10_percent ? rounded_length(*term.seconds_for_10_percent) : "",
@@ -57,10 +66,11 @@ std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const st
 }  // namespace
 
 std::string fit_text(const Channel& channel, const NoiseFit& fit) {
-  std::string text =
-      fmt::format("{}{}\n",
-                  printable(channel.name),
-                  channel.unit.empty() ? "" : fmt::format(" [{}]", printable(channel.unit)));
+  std::string text = fmt::format("{}{}\n",
+                                 printable(channel.name),
+                                 shown_unit(channel.unit).empty() || channel.unit.empty()
+                                     ? ""
+                                     : fmt::format(" [{}]", printable(channel.unit)));
   std::vector<std::vector<std::string>> rows = {{"term",
                                                  "value",
                                                  "95 % interval",

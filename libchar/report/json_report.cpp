@@ -2,6 +2,8 @@
 
 #include "libchar/report/json_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -39,6 +41,7 @@ Json derived_json(const ChannelView& view) {
     out["allan_minimum"] = {{"deviation", lowest->deviation}, {"tau_s", lowest->tau_s}};
   }
   out["read_off_points"] = read_off_json(view.read_off);
+  out["plain_from_s"] = view.plain_from_s;
   return out;
 }
 
@@ -54,6 +57,53 @@ Json quality_json(const ChannelResult& channel) {
   out["problems"] = Json::array();
   for (const std::string& problem : channel.problems) out["problems"].push_back(json_text(problem));
   return out;
+}
+
+// Enough digits for a picture.
+Json for_drawing(const std::vector<double>& values, int digits) {
+  Json out = Json::array();
+  for (const double value : values)
+    out.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, digits)))
+                                       : Json(nullptr));
+  return out;
+}
+
+// The record in blocks, with what was found in it.
+Json trace_json(const ChannelView& view) {
+  const ChannelResult& channel = *view.result;
+  const Trace& trace = channel.trace;
+  double least = INFINITY, most = -INFINITY;
+  for (std::size_t i = 0; i < trace.low.size(); ++i) {
+    if (trace.low[i] < least) least = trace.low[i];
+    if (trace.high[i] > most) most = trace.high[i];
+  }
+  const double largest = std::max(std::fabs(least), std::fabs(most));
+  const double digits = most > least ? std::ceil(std::log10(largest / (most - least))) + 4 : 4;
+  Json out = {{"name", json_text(channel.channel.name)},
+              {"unit", json_text(channel.trace_unit)},
+              {"samples_per_block", trace.block}};
+  const int enough = std::isfinite(digits) ? static_cast<int>(std::clamp(digits, 4.0, 17.0)) : 17;
+  out["low"] = for_drawing(trace.low, enough);
+  out["high"] = for_drawing(trace.high, enough);
+  out["missing"] = Json::array();
+  for (std::size_t i = 0; i < trace.missing.size(); ++i)
+    if (trace.missing[i] > 0) out["missing"].push_back({i, trace.missing[i]});
+  out["marks"] = Json::array();
+  for (const TraceMark& mark : view.marks)
+    out["marks"].push_back({{"kind", mark.kind},
+                            {"from_s", mark.from_s},
+                            {"to_s", mark.to_s},
+                            {"label", json_text(mark.label)}});
+  return out;
+}
+
+Json summary_json(const ChannelView& view) {
+  Json spoils = Json::array();
+  for (const std::string& phrase : view.summary.spoils) spoils.push_back(json_text(phrase));
+  return {{"name", json_text(view.result->channel.name)},
+          {"rating", name_of(view.summary.rating)},
+          {"sentence", json_text(view.summary.sentence)},
+          {"spoils", std::move(spoils)}};
 }
 
 // A channel that could not be fitted keeps its place: null, with the reason in "problems".
@@ -73,6 +123,8 @@ Json json_without_times(const CharacterizationView& view) {
   Json out = document_head("characterization", result.command, {&result.log});
   out["config"] = json_of(result.settings);
   out["verdict"] = json_text(view.verdict);
+  out["summary"] = {{"rating", name_of(view.rating)}, {"channels", Json::array()}};
+  for (const ChannelView& v : view.channels) out["summary"]["channels"].push_back(summary_json(v));
 
   std::vector<ChannelQuality> qualities;
   LogInfo log = result.log;
@@ -103,6 +155,8 @@ Json json_without_times(const CharacterizationView& view) {
   out["spectrum"] = std::move(spectrum);
   out["fit"] = std::move(fit);
   out["quality"] = std::move(quality);
+  out["trace"] = {{"rate_hz", json_number(result.log.time.rate_hz)}, {"channels", Json::array()}};
+  for (const ChannelView& v : view.channels) out["trace"]["channels"].push_back(trace_json(v));
   if (std::any_of(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
         return c.verification != nullptr;
       })) {

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "libchar/allan/confidence.hpp"
+#include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -68,7 +69,10 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
-  if (!second) quality_.push(samples);
+  if (!second) {
+    quality_.push(samples);
+    if (options_->wanted.quality) trace_.push(samples);
+  }
   if (options_->data == SampleKind::frequency) {
     as_rate(samples);
     stream(fractional_);
@@ -157,7 +161,12 @@ AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
 
 AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
   const bool exact = kept_.size() <= options_->exact_samples || !options_->full_overlap;
-  if (octaves_only(options_->allan) && exact) return limited(octaves, options_->allan);
+  if (octaves_only(options_->allan) && exact) {
+    AllanCurve curve = limited(octaves, options_->allan);
+    if (options_->ten_a_decade)
+      add_ten_a_decade(kept_, options_->allan, options_->exact_samples, curve);
+    return curve;
+  }
   AllanOptions allan = options_->allan;
   allan.data = DataKind::rate;  // `as_rate` has differenced phase data
   return allan_deviation(kept_, 1 / rate_hz, allan);
@@ -240,11 +249,11 @@ bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
   // Filled gaps are stiller than any sensor.
   const std::uint64_t missing = found_.missing;
   if (kept_.size() < kFewestForMotion || missing * 100 > kept_.size()) return true;
-  const Motion motion = find_motion(event_series(kept_, rate_hz));
-  for (const std::string& sentence : motion.sentences) result.problems.push_back(sentence);
-  if (motion.whole)
+  result.motion = find_motion(event_series(kept_, rate_hz));
+  for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
+  if (result.motion.whole)
     result.problems.push_back("no noise fit: the recording holds a signal throughout");
-  return !motion.whole;
+  return !result.motion.whole;
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
@@ -316,7 +325,11 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
   found_ = quality_.finish();
-  if (options_->wanted.quality) result.quality = quality_of_rate();
+  if (options_->wanted.quality) {
+    result.quality = quality_of_rate();
+    result.trace = trace_.finish();
+    result.trace_unit = channel.unit;
+  }
   if (rate_hz <= 0) {
     result.problems.push_back(
         "no curves and no fit: the sampling rate is not known (a log without time stamps needs "

@@ -92,6 +92,7 @@ class ChannelStage {
   const CharacterizeOptions* options_;
   CharacterizeWorkspace* workspace_;
   QualityMeter quality_;
+  TraceMeter trace_;
   ChannelQuality found_;  // by quality_, at the end
   bool keeping_ = true;
   std::vector<double> kept_;
