@@ -86,7 +86,7 @@ def runs():
     yield "model", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml"]
     yield "model json", ["model", "report/gyro_z.sensor.yaml", "--json"]
     yield "model list", ["model", "--list"]
-    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim matlab px4 json".split()
+    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim pegasus kf-gins navego matlab px4 json".split()
     for target in targets:
         yield f"export {target}", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target]
         yield f"export {target} rms", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--axes", "rms",

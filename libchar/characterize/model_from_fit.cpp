@@ -1,6 +1,7 @@
 #include "libchar/characterize/model_from_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace libchar {
 namespace {
@@ -21,6 +22,14 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
   }
 }
 
+GaussMarkovNoise process_of(const NoiseFit& fit) {
+  if (!fit.gauss_markov || !fit.gauss_markov->in_model) return {};
+  const Coefficient &sigma = fit.gauss_markov->sigma, &tau = fit.gauss_markov->tau_s;
+  GaussMarkovNoise out{*sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}};
+  if (std::isfinite(tau.ci95.high)) out.tau_ci95_s.push_back(tau.ci95.high);
+  return out;
+}
+
 }  // namespace
 
 SensorModel sensor_model_from_curve(const Channel& channel,
@@ -32,6 +41,7 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = fit.rate_hz;
   model.noise = fit.term;
+  model.gauss_markov = process_of(fit);
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
@@ -53,6 +63,7 @@ SensorModel sensor_model_from(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
   model.noise = fit.term;
+  model.gauss_markov = process_of(fit);
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.resolution = quality.resolution;

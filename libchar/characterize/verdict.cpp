@@ -111,6 +111,17 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
+  if (fit.gauss_markov && fit.gauss_markov->in_model)
+    out.push_back(fmt::format(
+        "Gauss–Markov process: standard deviation σ = {} {}, correlation time τ = {}{}.",
+        value_text(fit.gauss_markov->sigma),
+        unit.empty() ? "U" : unit,
+        duration_text(*fit.gauss_markov->tau_s.value),
+        fit.gauss_markov->sigma.status == Status::detected
+            ? fmt::format(", known to {} % and {} %",
+                          number_text(100 * fit.gauss_markov->sigma.relative_sd, 2),
+                          number_text(100 * fit.gauss_markov->tau_s.relative_sd, 2))
+            : ", but the record contradicts it or the terms do not describe it"));
   if (fit.temperature && fit.temperature->order > 0)
     out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {

@@ -91,6 +91,14 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
     if (!channels.empty())
       out.push_back(fmt::format("not in this file: {} of {}", kTermNames[t].key, channels));
   }
+  const std::string process = among([](const SensorModel& m) { return m.gauss_markov.sigma > 0; });
+  if (!process.empty() && !target.takes.gauss_markov && !target.takes.status)
+    out.push_back(fmt::format(
+        "not in this file: the correlation time of the Gauss-Markov process of {}{}",
+        process,
+        target.terms.find('K') == std::string_view::npos
+            ? ""
+            : "; as a random walk of its driving density it holds for times well below that"));
   const std::string filtered = among(
       [](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
   if (!filtered.empty() && !target.takes.low_pass)

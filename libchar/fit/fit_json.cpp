@@ -26,6 +26,20 @@ Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) 
   return json;
 }
 
+Json gauss_markov_json(const GaussMarkovFit& process, const std::string& unit) {
+  const auto figure = [](const Coefficient& c) {
+    return Json{{"value", json_number(c.value)},
+                {"ci95", c.ci95.high > 0 ? pair_of(c.ci95) : Json(nullptr)},
+                {"relative_sd", c.relative_sd > 0 ? json_number(c.relative_sd) : Json(nullptr)}};
+  };
+  return {{"status", name_of(process.sigma.status)},
+          {"in_model", process.in_model},
+          {"sigma", figure(process.sigma)},
+          {"sigma_unit", unit},
+          {"tau_s", figure(process.tau_s)},
+          {"likelihood_ratio", json_number(process.sigma.likelihood_ratio)}};
+}
+
 Json goodness_json(const Goodness& goodness) {
   return {{"chi2", json_number(goodness.chi2)},
           {"dof", json_number(goodness.dof)},
@@ -146,6 +160,8 @@ Json noise_fit_json(const std::string& name,
   json["shape"] = shape_json(fit.shape);
   json["bandwidth_hz"] = json_number(fit.bandwidth_hz);
   json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
+  json["gauss_markov"] =
+      fit.gauss_markov ? gauss_markov_json(*fit.gauss_markov, unit) : Json(nullptr);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
   json["remedies"] = Json::array();

@@ -124,6 +124,22 @@ const Fields<NoiseShape>& noise_shape_fields() {
   return rows;
 }
 
+const Fields<GaussMarkovNoise>& gauss_markov_fields() {
+  static const Fields<GaussMarkovNoise> rows = {
+      field<&GaussMarkovNoise::sigma>(
+          "sigma", {.unit = "U", .range = kNotNegative, .meaning = "standard deviation"}),
+      field<&GaussMarkovNoise::tau_s>(
+          "tau_s", {.unit = "s", .range = kNotNegative, .meaning = "correlation time"}),
+      field<&GaussMarkovNoise::sigma_ci95>("sigma_ci95",
+                                           {.unit = "U", .meaning = "95 % interval of sigma"}),
+      field<&GaussMarkovNoise::tau_ci95_s>(
+          "tau_ci95_s",
+          {.unit = "s",
+           .meaning = "95 % interval of tau_s; the lower end alone: no upper end known"}),
+  };
+  return rows;
+}
+
 const Fields<Nonlinearity>& nonlinearity_fields() {
   static const Fields<Nonlinearity> rows = {
       field<&Nonlinearity::quadratic>("quadratic", {.unit = "1/U", .meaning = "c₁"}),
@@ -215,6 +231,14 @@ const Fields<SensorModel>& noise_fields() {
       term_row(Term::walk, "K"),
       term_row(Term::quantization, "Q"),
       term_row(Term::ramp, "R"),
+      part<&SensorModel::gauss_markov>(
+          "gauss_markov",
+          gauss_markov_fields(),
+          {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: density "
+                      "2 sigma^2 tau / (1 + (2 pi f tau)^2)",
+           .meaning = "first-order Gauss–Markov process, `sigma` in U, `tau_s`",
+           .otherwise = "none",
+           .form = Entry::Form::flow}),
       field<&SensorModel::noise_sampling>("noise_sampling",
                                           {.words = kSamplings,
                                            .meaning = "see below",

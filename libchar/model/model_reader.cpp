@@ -26,6 +26,16 @@ void check_shape(const SensorModel& model, const MapReader& at) {
   }
 }
 
+void check_process(const GaussMarkovNoise& process, const MapReader& at) {
+  const MapReader part = at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s"});
+  if (process.sigma > 0 && !(process.tau_s > 0))
+    part.refuse("sigma", "a Gauss-Markov process needs `tau_s`, its correlation time, above 0");
+  if (!process.sigma_ci95.empty() && process.sigma_ci95.size() != 2)
+    part.refuse("sigma_ci95", "expected [low, high]");
+  if (process.tau_ci95_s.size() > 2)
+    part.refuse("tau_ci95_s", "expected [low, high], or [low] where no upper end is known");
+}
+
 }  // namespace
 
 SensorModel sensor_model_of(const Document& node,
@@ -37,6 +47,7 @@ SensorModel sensor_model_of(const Document& node,
   read_fields(model_fields(), at, model);
   if (model.noise_sampling == NoiseSampling::band_limited && !model.bandwidth_hz)
     at.refuse("noise_sampling", "band-limited noise needs bandwidth_hz");
+  if (at.has("gauss_markov")) check_process(model.gauss_markov, at);
   if (at.has("noise_shape")) check_shape(model, at);
   if (model.sensitivity.gain == 0)
     at.map("sensitivity", {"gain", "unit"}).refuse("gain", "a gain of 0 leaves no output");

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/gauss_markov.hpp"
 #include "libchar/core/noise_shape.hpp"
 #include "libchar/core/noise_terms.hpp"
 
@@ -77,6 +78,7 @@ struct SensorModel {
   Bias bias;
   double reference_temperature_degc = 25;
   Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
+  GaussMarkovNoise gauss_markov;  ///< in U, beside the terms; sigma 0: none
   NoiseSampling noise_sampling = NoiseSampling::per_sample;
   NoiseStart noise_start = NoiseStart::stationary;
   std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "libchar/characterize/summary.hpp"
@@ -63,6 +64,22 @@ std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const st
           in_habitual_units(term, i, unit)};
 }
 
+std::vector<std::string> process_row(const Coefficient& c,
+                                     const std::string& name,
+                                     const std::string& unit) {
+  const std::string high = std::isfinite(c.ci95.high) ? significant(c.ci95.high, 4) : "no end";
+  std::string status(name_of(c.status));
+  std::replace(status.begin(), status.end(), '_', ' ');
+  return {name,
+          significant(*c.value, 5),
+          fmt::format("{} … {}", significant(c.ci95.low, 4), high),
+          unit,
+          status,
+          c.bound ? fmt::format("{} %", significant(100 * *c.bound, 2)) : "",
+          "",
+          ""};
+}
+
 }  // namespace
 
 std::string fit_text(const Channel& channel, const NoiseFit& fit) {
@@ -82,6 +99,11 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (fit.term[i].status != Status::not_fitted)
       rows.push_back(row_of(fit.term[i], i, channel.unit));
+  }
+  if (fit.gauss_markov && fit.gauss_markov->in_model) {
+    const std::string unit = channel.unit.empty() ? "U" : printable(channel.unit);
+    rows.push_back(process_row(fit.gauss_markov->sigma, "gauss_markov sigma", unit));
+    rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
   }
   text += text_table(rows, "  ", true);
   if (fit.bandwidth_hz)

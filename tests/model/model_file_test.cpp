@@ -8,6 +8,7 @@
 
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/model/model_reader.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
@@ -107,4 +108,14 @@ TEST_CASE("model file: hostile text stays text") {
   const YAML::Node file = YAML::Load(model_yaml(model_of(quoted, 0)));
   CHECK(file["channel"].as<std::string>() == "a \"b\" \\ c: #d");
   CHECK(file["unit"].IsNull());
+}
+
+TEST_CASE(
+    "model file: a Gauss-Markov process reads back, and one that is not there is not written") {
+  const auto result = test::synthetic_imu();
+  SensorModel m = model_of(result, 0);
+  CHECK(model_yaml(m).find("gauss_markov") == std::string::npos);
+  m.gauss_markov = {0.02, 61.25, {0.017, 0.025}, {40}};
+  const SensorModel read = parse_sensor_model(model_yaml(m), "model.yaml");
+  CHECK(read.gauss_markov == m.gauss_markov);
 }

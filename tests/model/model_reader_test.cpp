@@ -136,6 +136,10 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1]}\n", "5:");
   starts("noise_shape: {kind: measured, frequency_hz: [2, 1], ratio: [1, 1]}\n", "5:");
   starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1, -1]}\n", "5:");
+  starts("gauss_markov: {sigma: 1}\n", "5:23: error E0545");
+  starts("gauss_markov: {sigma: -1, tau_s: 3}\n", "5:");
+  starts("gauss_markov: {sigma: 1, tau_s: 3, sigma_ci95: [1]}\n", "5:");
+  starts("gauss_markov: {sigma: 1, tau_s: 3, tau_ci95_s: [1, 2, 3]}\n", "5:");
   starts("noise_shape: {kind: triangle, taps: 3}\n", "5:21: error E0544");
   CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
                 "\"g·√s\"}\n")

@@ -11,6 +11,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 
 namespace libchar {
@@ -338,7 +339,10 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   }
   if (options_->data == SampleKind::phase) difference_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
-  add_intervals(result.allan, result.fit ? result.fit->theta : white_alone(result.allan));
+  if (result.fit)
+    add_fit_intervals(result.allan, *result.fit);
+  else
+    add_intervals(result.allan, white_alone(result.allan));
   kept_ = {};
   despiked_ = {};
   return result;

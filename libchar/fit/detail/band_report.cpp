@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/detail/gauss_markov_means.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 
 namespace libchar {
@@ -128,6 +129,9 @@ void add_lines(const std::vector<PowerBin>& clipped,
   for (const PowerBin& bin : full) {
     double terms = 0;
     for (std::size_t i = 0; i < kTerms; ++i) terms += fit.theta[i] * bin.unit[i];
+    if (fit.gauss_markov && fit.gauss_markov->in_model)
+      terms += *fit.gauss_markov->sigma.value * *fit.gauss_markov->sigma.value *
+               gauss_markov_unit(bin, *fit.gauss_markov->tau_s.value, fit.rate_hz);
     if (fit.bandwidth_hz) terms *= low_pass_gain(bin, *fit.bandwidth_hz, fit.rate_hz).gain;
     const bool counts = bin.dof > 4 && bin.energy > kCounts * without_lines(bin);
     any = any || counts;

@@ -96,6 +96,31 @@ std::string derived_row(const std::string& name,
          fmt::format("<td colspan=\"5\">{}</td></tr>\n", html_text(what));
 }
 
+std::string process_rows(const GaussMarkovFit& process, const std::string& unit) {
+  const auto row = [&](const char* name, const Coefficient& c, const std::string& of) {
+    const std::string high = std::isfinite(c.ci95.high) ? number_text(c.ci95.high, 4) : "no end";
+    return fmt::format(
+        "<tr><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td class=\"n\">[{}, "
+        "{}]</td><td "
+        "class=\"u\">{}</td><td></td><td>{}</td><td class=\"n\">±{} %</td><td "
+        "class=\"n\">–</td><td "
+        "class=\"n\">–</td></tr>\n",
+        name,
+        html_text(value_text(c)),
+        number_text(c.ci95.low, 4),
+        high,
+        html_text(of),
+        status_chip(c.status),
+        number_text(100 * c.relative_sd, 2));
+  };
+  return row("Gauss–Markov <b>σ</b><span class=\"dim\"> standard deviation</span>",
+             process.sigma,
+             unit.empty() ? "U" : unit) +
+         row("Gauss–Markov <b>τ</b><span class=\"dim\"> correlation time</span>",
+             process.tau_s,
+             "s");
+}
+
 std::string derived_rows(const ChannelView& view, double rate_hz) {
   const ChannelResult& c = *view.result;
   const std::string& unit = view.shown_unit;
@@ -148,6 +173,8 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (c.fit->term[t].status != Status::not_fitted) out += coefficient_row(*c.fit, t, view.unit);
   }
+  if (c.fit->gauss_markov && c.fit->gauss_markov->in_model)
+    out += process_rows(*c.fit->gauss_markov, view.unit);
   out += derived_rows(view, rate_hz) + "</tbody></table></div>\n";
   out +=
       "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; "
