@@ -32,11 +32,11 @@ Coefficient limit(double upper) {
   return c;
 }
 
-CharacterizationSummary summary(const Coefficient& white,
+ReportedCharacterization summary(const Coefficient& white,
                                 const Coefficient& flicker,
                                 const std::string& unit = "deg/s") {
-  CharacterizationSummary out;
-  ChannelSummary c;
+  ReportedCharacterization out;
+  ReportedChannel c;
   c.name = "x";
   c.unit = unit;
   c.fitted = true;
