@@ -141,6 +141,10 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_flag("--no-remedies",
                 a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
+  verb.add_text("--temperature",
+                a.options.temperature,
+                "channel that is the temperature: a polynomial of it, with a lag, is taken out of "
+                "the others before their noise is fitted");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
 }
 

@@ -22,7 +22,7 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
 /// segment when a time was given for it, 0 otherwise.
 void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s);
-/// --terms, --threshold, --no-remedies, --no-second-opinion
+/// --terms, --threshold, --no-remedies, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 
 /// The options of the job. Throws Error(usage) for flags that do not go together.

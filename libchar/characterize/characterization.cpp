@@ -36,8 +36,36 @@ Characterization characterize_source(const Source& source,
     source.read_again(second);
   }
   result.channels = stages.finish(result.log, progress);
+  result.temperature = stages.temperature();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+/// What is read: the temperature too, where channels were chosen and it is not among them.
+ReadOptions with_temperature(const CharacterizeOptions& options) {
+  ReadOptions reading = options.reading;
+  const auto& channels = reading.channels;
+  if (options.temperature.empty() || channels.empty() ||
+      std::find(channels.begin(), channels.end(), options.temperature) != channels.end())
+    return reading;
+  if (!reading.names.empty() || reading.units.size() > 1)
+    throw Error({ErrorKind::usage,
+                 "E0702",
+                 "",
+                 "with `names` or `units` for each channel, `channels` must hold the temperature",
+                 options.temperature,
+                 "add it to `channels`, and its name and unit"});
+  reading.channels.push_back(options.temperature);
+  return reading;
+}
+
+/// It was read for the others only.
+void drop_temperature(Characterization& result) {
+  const auto is_temperature = [&](const Channel& channel) {
+    return channel.name == result.temperature->name;
+  };
+  std::erase_if(result.channels, [&](const ChannelResult& c) { return is_temperature(c.channel); });
+  std::erase_if(result.log.channels, is_temperature);
 }
 
 void check_columns(const Recording& recording) {
@@ -75,15 +103,18 @@ LogInfo push_recording(const Recording& recording, BlockSink& sink, Progress& pr
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options,
                               Progress& progress) {
+  const ReadOptions chosen = with_temperature(options);
   Source source;
-  source.read = [&](BlockSink& sink) { return read_log(path, options.reading, sink, progress); };
+  source.read = [&](BlockSink& sink) { return read_log(path, chosen, sink, progress); };
   if (!read_once(path))
     source.read_again = [&](BlockSink& sink) {
-      ReadOptions reading = options.reading;
+      ReadOptions reading = chosen;
       reading.hash = false;
       read_log(path, reading, sink, progress);
     };
-  return characterize_source(source, options, progress);
+  Characterization result = characterize_source(source, options, progress);
+  if (chosen.channels.size() > options.reading.channels.size()) drop_temperature(result);
+  return result;
 }
 
 Characterization characterize(const Recording& recording,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/noise_type.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
 #include "libchar/fit/noise_fit.hpp"
@@ -48,6 +49,8 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
+  /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
+  std::string temperature;
   AllanOptions allan;
   WelchOptions spectrum;
   double segment_s =
@@ -73,6 +76,8 @@ struct ChannelResult {
   Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
+  std::vector<NoiseType>
+      noise_types;  ///< by averaging time; of phase and frequency that are kept only
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
@@ -83,7 +88,8 @@ struct Characterization {
   std::vector<ChannelResult> channels;
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
-  double seconds = 0;                ///< measured; kept apart from everything else in the outputs
+  std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
+  double seconds = 0;  ///< measured; kept apart from everything else in the outputs
 };
 
 /// Reads the log once (a second time only when a remedy asks for it) and computes what the report

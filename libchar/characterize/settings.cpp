@@ -97,6 +97,7 @@ const Fields<CharacterizeOptions>& characterize_fields() {
     };
     all = always(all);
     all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}).field);
+    all.rows.push_back(field<&Options::temperature>("temperature").field);
     return all;
   }();
   return rows;

@@ -115,6 +115,8 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
                           number_text(100 * fit.gauss_markov->sigma.relative_sd, 2),
                           number_text(100 * fit.gauss_markov->tau_s.relative_sd, 2))
             : ", but the record contradicts it or the terms do not describe it"));
+  if (fit.temperature && fit.temperature->order > 0)
+    out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
     out.push_back(
         fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "

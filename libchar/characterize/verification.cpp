@@ -32,13 +32,15 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   return model;
 }
 
-// The recording's steps, warm-up and ramp on top of simulated noise: the measured curve has them.
-class EventsAdded {
+// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured curve has them.
+class MeansAdded {
  public:
-  EventsAdded(const std::vector<Event>& events, const ArraySimulation& simulation) {
-    if (events.empty()) return;
+  MeansAdded(const NoiseFit& fit, const ArraySimulation& simulation) {
+    const bool moved = fit.temperature && fit.temperature->order > 0;
+    if (fit.events.empty() && !moved) return;
     less_.assign(simulation.samples, 0.0);
-    subtract_events(events, simulation.rate_hz, less_);
+    subtract_events(fit.events, simulation.rate_hz, less_);
+    if (moved) add_temperature_effect(*fit.temperature, -1, less_);
   }
   std::span<const double> added(std::span<const double> noise) {
     if (less_.empty()) return noise;
@@ -58,6 +60,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
                                 CharacterizeWorkspace& workspace,
                                 const VerifyOptions& how,
                                 std::uint64_t index,
+                                const std::shared_ptr<const TemperatureRecord>& temperature,
                                 bool kept) {
   ArraySimulation simulation;
   simulation.rate_hz = log.time.rate_hz;
@@ -69,10 +72,11 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   same.wanted.quality = false;
   ChannelStage stage(same, workspace);
   if (!kept) stage.stop_keeping();
+  if (recorded.fit->temperature) stage.set_temperature(temperature);
   ArraySimulator simulator(simulation);
-  EventsAdded events(recorded.fit->events, simulation);
+  MeansAdded means(*recorded.fit, simulation);
   for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
-    stage.push(events.added(columns[0]));
+    stage.push(means.added(columns[0]));
   return stage.finish(recorded.channel, log.time.rate_hz);
 }
 
@@ -249,10 +253,11 @@ bool verify(Characterization& recorded,
     tbb::parallel_for(first, last, [&](std::size_t c) {
       ChannelResult& channel = channels[c];
       if (!channel.fit) return;
-      channel.verification = std::make_shared<ChannelVerification>(
-          compared(channel,
-                   simulated_channel(channel, recorded.log, options, workspace, how, c, kept),
-                   how));
+      channel.verification = std::make_shared<ChannelVerification>(compared(
+          channel,
+          simulated_channel(
+              channel, recorded.log, options, workspace, how, c, recorded.temperature, kept),
+          how));
     });
   }
   return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {

@@ -100,6 +100,35 @@ Json events_json(const std::vector<Event>& events) {
   return list;
 }
 
+Json temperature_json(const TemperatureEffect& effect) {
+  Json json = {{"channel", effect.channel},
+               {"unit", effect.unit},
+               {"order", effect.order},
+               {"p", json_number(effect.p)},
+               {"mean", json_number(effect.mean)},
+               {"range", pair_of(effect.range)}};
+  if (effect.order == 0) return json;
+  json["coefficients"] = Json::array();
+  for (int j = 0; j < effect.order; ++j)
+    json["coefficients"].push_back(json_number(effect.coefficient[static_cast<std::size_t>(j)]));
+  json["ci95"] = pair_of(effect.ci95);
+  json["lag_s"] = json_number(effect.lag_s);
+  json["lag_ci95"] =
+      Json::array({json_number(effect.lag_ci95.low),
+                   effect.lag_ci95.high > 0 ? json_number(effect.lag_ci95.high) : Json(nullptr)});
+  json["likelihood_ratio"] = json_number(effect.gain);
+  json["rms"] = json_number(effect.rms);
+  json["like_drift"] = effect.like_drift;
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (effect.without[i].status != Status::not_fitted)
+      json["without"][std::string(kTermNames[i].key)] = {
+          {"value", json_number(effect.without[i].value)},
+          {"ci95", effect.without[i].value ? pair_of(effect.without[i].ci95) : Json(nullptr)},
+          {"upper95", json_number(effect.without[i].upper95)},
+          {"status", name_of(effect.without[i].status)}};
+  return json;
+}
+
 // Column by column: five arrays take a third of the bytes of as many objects.
 Json residuals_json(const std::vector<FitResidual>& residuals) {
   Json json;
@@ -143,6 +172,7 @@ Json noise_fit_json(const std::string& name,
                                 {"count", remedy.count}});
   }
   json["events"] = events_json(fit.events);
+  json["temperature"] = fit.temperature ? temperature_json(*fit.temperature) : Json(nullptr);
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;
   json["converged"] = fit.converged;

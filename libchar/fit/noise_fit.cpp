@@ -23,6 +23,7 @@
 #include "libchar/fit/detail/contradiction.hpp"
 #include "libchar/fit/detail/gauss_markov_fit.hpp"
 #include "libchar/fit/detail/goodness.hpp"
+#include "libchar/fit/detail/record_means.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/power_bins.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -312,71 +313,39 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   return std::move(now.fit);
 }
 
+namespace {
+
+/// The fit of what a binner has seen, of which temperature has taken degrees of freedom.
+NoiseFit fit_bins_beside(const PowerBinner& binner,
+                         double rate_hz,
+                         std::uint64_t samples,
+                         const AllanCurve* allan,
+                         const FitOptions& options,
+                         FitWorkspace* workspace,
+                         const std::optional<TemperatureEffect>& temperature) {
+  ClippedBins lines;
+  if (options.remedies)
+    lines = binner.finish_clipped(rate_hz);
+  else
+    lines.bins = binner.finish(rate_hz);
+  if (temperature) count_spent(*temperature, static_cast<double>(samples) / rate_hz, lines.bins);
+  NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, options, workspace);
+  if (lines.clipped == 0) return fit;
+  add_lines(lines.bins, lines.all, fit);
+  fit.remedies.insert(fit.remedies.begin(), lines_remedy(lines.clipped));
+  return fit;
+}
+
+}  // namespace
+
 NoiseFit fit_binned(const PowerBinner& binner,
                     double rate_hz,
                     std::uint64_t samples,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
-  std::uint64_t clipped = 0;
-  const std::vector<PowerBin> bins =
-      options.remedies ? binner.finish_clipped(rate_hz, clipped) : binner.finish(rate_hz);
-  NoiseFit fit = fit_power_bins(bins, rate_hz, samples, allan, options, workspace);
-  if (clipped > 0) add_lines(bins, binner.finish(rate_hz), fit);
-  if (clipped > 0) fit.remedies.insert(fit.remedies.begin(), lines_remedy(clipped));
-  return fit;
+  return fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, {});
 }
-
-namespace {
-
-constexpr std::size_t kFewestForEvents = 1024;  ///< samples
-constexpr std::size_t kFewestPoints = 64;       ///< of a series of means
-
-struct WithoutEvents {
-  std::vector<double> samples;  ///< empty: nothing was found
-  EventSearch search;
-};
-
-/// The record less its steps, warm-up and ramp. Where there are more than one can count, or jumps between two levels, they are part
-/// of what the sensor does all the time, and stay.
-WithoutEvents without_events(std::span<const double> record,
-                             double rate_hz,
-                             const FitOptions& options) {
-  WithoutEvents out;
-  if (!options.events || !options.remedies || record.size() < kFewestForEvents) return out;
-  try {
-    const EventSeries series = event_series(record, rate_hz);
-    if (series.value.size() < kFewestPoints) return out;
-    out.search = find_events(series, fitted_powers(), {}, options.unit);
-  } catch (const Error& error) {
-    // What cannot be searched is fitted as it is; the fit says itself what it cannot do.
-    if (error.problem().kind != ErrorKind::numeric) throw;
-    return {};
-  }
-  if (out.search.events.empty() || out.search.more || out.search.telegraph) return out;
-  out.samples.assign(record.begin(), record.end());
-  subtract_events(out.search.events, rate_hz, out.samples);
-  return out;
-}
-
-void report_events(const WithoutEvents& found, NoiseFit& fit) {
-  for (const std::string& sentence : found.search.sentences) fit.sentences.push_back(sentence);
-  // What stayed in is not noise, and the coefficients hold it.
-  if (found.search.more || found.search.telegraph)
-    for (Coefficient& term : fit.term)
-      if (term.status == Status::detected) term.status = Status::undetermined;
-  if (found.samples.empty()) return;
-  fit.events = found.search.events;
-  for (const Event& event : fit.events)
-    fit.remedies.push_back({std::string(event_name(event.kind)),
-                            fmt::format("score {:.3g}, above {:.3g} by chance in 0.3 % of records",
-                                        event.score,
-                                        event.threshold),
-                            "taken out of the record before the noise was fitted",
-                            1});
-}
-
-}  // namespace
 
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
@@ -386,8 +355,8 @@ NoiseFit fit_record(std::span<const double> record,
   const DespikedRecord despiked = options.remedies ? without_spikes(record) : DespikedRecord{};
   std::span<const double> data =
       despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
-  const WithoutEvents events = without_events(data, rate_hz, options);
-  if (!events.samples.empty()) data = events.samples;
+  const RecordMeans means = without_means(data, rate_hz, options);
+  if (!means.samples.empty()) data = means.samples;
   AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
   if (allan != nullptr && data.data() != record.data()) {
     own = pyramid_deviation(data, 1 / rate_hz);
@@ -400,9 +369,14 @@ NoiseFit fit_record(std::span<const double> record,
   PowerBinner binner(block);
   const std::vector<double> filled = options.remedies ? bridged(data) : std::vector<double>{};
   binner.push(filled.empty() ? data : filled);
-  NoiseFit fit =
-      fit_binned(binner, rate_hz, record.size() - count_missing(record), allan, options, workspace);
-  report_events(events, fit);
+  NoiseFit fit = fit_bins_beside(binner,
+                                 rate_hz,
+                                 record.size() - count_missing(record),
+                                 allan,
+                                 options,
+                                 workspace,
+                                 means.temperature);
+  report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);
   return fit;
 }

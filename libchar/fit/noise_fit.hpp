@@ -17,6 +17,7 @@
 #include "libchar/core/noise_shape.hpp"
 #include "libchar/fit/events.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/temperature.hpp"
 
 namespace libchar {
 
@@ -81,6 +82,7 @@ struct NoiseFit {
   std::vector<Remedy> remedies;
   std::vector<Event>
       events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
+  std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
   std::vector<FitResidual> residuals;
   /// a sentence: "the record cannot tell bias instability from random walk…"
   std::vector<std::string> sentences;
@@ -106,6 +108,8 @@ struct FitOptions {
   bool gauss_markov = true;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
+  /// its effect is taken out before the noise is fitted (a record that is kept only); null: none
+  std::shared_ptr<const TemperatureRecord> temperature;
   std::string unit;         ///< of the samples, in sentences
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this

@@ -236,15 +236,17 @@ std::vector<PowerBin> PowerBinner::finish(double rate_hz) const {
   return bins;
 }
 
-std::vector<PowerBin> PowerBinner::finish_clipped(double rate_hz, std::uint64_t& clipped) const {
-  std::vector<PowerBin> bins;
-  clipped = 0;
-  for (const PooledPower& power : state_->powers()) {
+ClippedBins PowerBinner::finish_clipped(double rate_hz) const {
+  ClippedBins out;
+  const std::vector<PooledPower> powers = state_->powers();
+  for (const PooledPower& power : powers) {
     const LineClip clip = clip_lines(power.mean, power.first, power.pooled);
-    clipped += clip.count;
-    append_power_bins(power, rate_hz, clip.clipped, bins);
+    out.clipped += clip.count;
+    append_power_bins(power, rate_hz, clip.clipped, out.bins);
   }
-  return bins;
+  if (out.clipped > 0)
+    for (const PooledPower& power : powers) append_power_bins(power, rate_hz, {}, out.all);
+  return out;
 }
 
 }  // namespace libchar

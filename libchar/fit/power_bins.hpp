@@ -23,6 +23,13 @@ struct PowerBin {
   std::uint64_t first = 0, end = 0, length = 0, spacing = 1;
 };
 
+/// Bins without the coefficients of spectral lines.
+struct ClippedBins {
+  std::vector<PowerBin> bins;
+  std::vector<PowerBin> all;  ///< with every coefficient; empty when none was left out
+  std::uint64_t clipped = 0;  ///< coefficients left out
+};
+
 /// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`
 /// samples are transformed one by one (k >= 1) and their means as one more series (docs/theory/fit.md). A record of at most
 /// `block` samples gets one exact DCT. Missing samples: short ones are closed up (concatenated), at a long gap a new record
@@ -41,8 +48,8 @@ class PowerBinner final : public BlockTaker {
   bool take_block(std::span<const double> samples) override;
   void take_power(std::vector<double> power) override;
   std::vector<PowerBin> finish(double rate_hz) const;
-  /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out; counts them.
-  std::vector<PowerBin> finish_clipped(double rate_hz, std::uint64_t& clipped) const;
+  /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out.
+  ClippedBins finish_clipped(double rate_hz) const;
 
  private:
   struct State;

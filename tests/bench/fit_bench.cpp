@@ -40,7 +40,8 @@ const std::vector<Scene> kScenes = {
 
 struct Tally {
   double sum = 0, square = 0;
-  int covered = 0, count = 0, detected = 0, undetermined = 0, reported = 0, reported_covered = 0;
+  int covered = 0, count = 0, detected = 0, undetermined = 0, reported = 0, reported_covered = 0,
+      decided_covered = 0;
 };
 
 struct Row {
@@ -116,9 +117,11 @@ Row run(const Scene& scene, int records, std::uint64_t block) {
       const Coefficient& c = decided.term[i];
       row.term[i].detected += c.status == Status::detected ? 1 : 0;
       row.term[i].undetermined += c.status == Status::undetermined ? 1 : 0;
+      const bool inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high;
+      row.term[i].decided_covered += inside ? 1 : 0;
       if (c.status == Status::detected) {
         ++row.term[i].reported;
-        row.term[i].reported_covered += c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;
+        row.term[i].reported_covered += inside ? 1 : 0;
       }
     }
   }
@@ -135,7 +138,7 @@ void print(const Scene& scene, const Row& row) {
     const Tally& t = row.term[i];
     if (truth[i] > 0) {
       const double crb = *bound[i] * truth[i];
-      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f}",
+      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f} {:11.1f}",
                  scene.name,
                  kTermNames[i].letter,
                  100 * *bound[i],
@@ -144,9 +147,10 @@ void print(const Scene& scene, const Row& row) {
                  100.0 * t.covered / n,
                  100.0 * t.detected / n,
                  100.0 * t.undetermined / n,
-                 t.reported ? 100.0 * t.reported_covered / t.reported : 0.0);
+                 t.reported ? 100.0 * t.reported_covered / t.reported : 0.0,
+                 100.0 * t.decided_covered / n);
     } else {
-      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14}",
+      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14} {:11.1f}",
                  scene.name,
                  kTermNames[i].letter,
                  "absent",
@@ -155,7 +159,8 @@ void print(const Scene& scene, const Row& row) {
                  "",
                  100.0 * t.detected / n,
                  100.0 * t.undetermined / n,
-                 "");
+                 "",
+                 100.0 * t.decided_covered / n);
     }
     if (i == 0)
       fmt::print(" {:7.1f} {:9.2e} {:8.3f} {:8.2f} {:7.1f}",
@@ -179,6 +184,7 @@ int main(int argc, char** argv) {
       "records {}; block {}\n", records, block == 0 ? "whole record" : std::to_string(block));
   fmt::print(
       "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
+      "cover all  "
       "optimum  worst    ms/fit  ms/bins  p<.05\n");
   for (const Scene& scene : kScenes) {
     if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos)

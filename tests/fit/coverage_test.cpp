@@ -79,3 +79,39 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
     CHECK(remedies <= 7);     // 1 % expected
   }
 }
+
+TEST_CASE("coverage near the limit: of everything that is said, and of what is called detected") {
+  constexpr std::size_t kSamples = 32768;
+  constexpr int kRecords = 400;
+  constexpr double kRate = 200;
+  const std::array<double, 3> truth = {5e-3, 2.5e-3, 1e-3};
+  test::NoiseSource source(kSamples, kRate, 4711);
+  FitOptions options;
+  options.remedies = options.second_opinion = false;
+  std::array<int, 3> covered{}, detected{}, detected_covered{};
+  for (int r = 0; r < kRecords; ++r) {
+    const std::vector<double> y = source.record(truth[0], truth[1], truth[2]);
+    PowerBinner binner(kSamples);
+    binner.push(y);
+    const NoiseFit fit = fit_power_bins(binner.finish(kRate), kRate, kSamples, nullptr, options);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Coefficient& c = fit.term[i];
+      const int inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;
+      covered[i] += inside;
+      if (c.status != Status::detected) continue;
+      ++detected[i];
+      detected_covered[i] += inside;
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    INFO(kTermNames[i].letter << ": " << covered[i] << " of " << kRecords << ", detected "
+                              << detected_covered[i] << " of " << detected[i]);
+    CHECK(covered[i] >= 0.93 * kRecords);
+    CHECK(detected_covered[i] >= 0.95 * detected[i] - 3 * std::sqrt(0.95 * 0.05 * detected[i]));
+  }
+  // Neither hopeless nor easy: otherwise nothing was selected.
+  CHECK(detected[1] > 40);
+  CHECK(detected[1] < kRecords - 40);
+  CHECK(detected[2] > 40);
+  CHECK(detected[2] < kRecords - 40);
+}

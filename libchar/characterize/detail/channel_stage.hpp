@@ -54,6 +54,11 @@ class ChannelStage {
   void stop_keeping();
   /// Lets go of what is kept; nothing is computed any more.
   void drop() { kept_ = {}; }
+  std::span<const double> kept() const { return kept_; }
+  /// Before `finish`: what the temperature does is taken out of the record before its noise is fitted.
+  void set_temperature(std::shared_ptr<const TemperatureRecord> temperature) {
+    temperature_ = std::move(temperature);
+  }
   std::size_t kept_bytes() const { return kept_.capacity() * sizeof(double); }
   /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
   void reserve(std::size_t samples);
@@ -75,6 +80,8 @@ class ChannelStage {
   AllanCurve octaves_of_kept(double rate_hz) const;
   AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
   void difference_kept(double rate_hz);
+  std::vector<NoiseType> types_of_kept(double rate_hz) const;
+  void name_noise_types(ChannelResult& result) const;
   NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, const std::string& unit) const;
   NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
@@ -92,8 +99,10 @@ class ChannelStage {
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
   std::vector<double> fractional_;           // scratch of as_rate
+  std::vector<NoiseType> noise_types_;
   DespikedRecord despiked_;  // rate of the phase without its spikes, when it has some
   std::uint64_t samples_ = 0;
+  std::shared_ptr<const TemperatureRecord> temperature_;
 };
 
 }  // namespace libchar

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
@@ -36,7 +38,10 @@ void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t channels = so_far.channels.size();
   if (options_.wanted.spectrum && options_.spectrum.segment == 0 && options_.segment_s > 0)
     options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
-  for (std::size_t c = 0; c < channels; ++c) stages_.emplace_back(options_, workspace_);
+  if (!options_.temperature.empty()) find_temperature(so_far);
+  for (std::size_t c = 0; c < channels; ++c)
+    stages_.emplace_back(
+        !options_.temperature.empty() && c == temperature_index_ ? plain_ : options_, workspace_);
   arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
   too_long_ = needs_all_samples_.empty() && surely_too_long(so_far);
   if (too_long_) return;
@@ -56,6 +61,63 @@ void ChannelStages::block(const SampleBlock& samples) {
       stages_[c].push({samples.channels[c], samples.rows});
     });
   });
+}
+
+// By the name that the channel has in the end, or by its place.
+void ChannelStages::find_temperature(const LogInfo& so_far) {
+  const auto& channels = so_far.channels;
+  const std::string& wanted = options_.temperature;
+  std::vector<std::string> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  auto found = std::find(names.begin(), names.end(), wanted);
+  for (std::size_t c = 0; found == names.end() && c < names.size(); ++c)
+    if (wanted == fmt::format("c{}", c)) found = names.begin() + static_cast<std::ptrdiff_t>(c);
+  if (found == names.end()) {
+    const auto near = nearest(wanted, names);
+    throw Error({ErrorKind::usage,
+                 "E0702",
+                 so_far.file,
+                 "there is no channel of this name to be the `temperature`",
+                 wanted,
+                 near ? fmt::format("did you mean {}?", *near) : ""});
+  }
+  temperature_index_ = static_cast<std::size_t>(found - names.begin());
+  const std::string& unit = channels[temperature_index_].unit;
+  const auto known = find_unit(unit);
+  if (known && known->quantity != Quantity::temperature)
+    throw Error({ErrorKind::usage,
+                 "E0702",
+                 so_far.file,
+                 fmt::format("the channel {} is in {}, which is no temperature", *found, unit),
+                 "",
+                 "choose a channel in degC, K or degF, or one without a unit, which is taken for "
+                 "degC"});
+  if (channels.size() < 2)
+    throw Error({ErrorKind::usage,
+                 "E0702",
+                 so_far.file,
+                 fmt::format("{} is the only channel: there is none that it could move", *found),
+                 "",
+                 ""});
+  plain_ = options_;
+  plain_.data = SampleKind::rate;
+}
+
+// In degC or K: what is said per degree is said per K.
+void ChannelStages::give_temperature(const LogInfo& log) {
+  const Channel& channel = log.channels[temperature_index_];
+  auto record = std::make_shared<TemperatureRecord>();
+  record->name = channel.name;
+  const std::span<const double> kept = stages_[temperature_index_].kept();
+  record->samples.assign(kept.begin(), kept.end());
+  const auto unit = find_unit(channel.unit);
+  record->unit = unit && unit->symbol == "K" ? "K" : "°C";
+  if (unit && unit->symbol == "°F")
+    for (double& value : record->samples) value = (value - 32) * unit->to_si;
+  check_temperature(*record, log.time.rate_hz > 0 ? log.time.rate_hz : 1);
+  temperature_ = record;
+  for (std::size_t c = 0; c < stages_.size(); ++c)
+    if (c != temperature_index_) stages_[c].set_temperature(temperature_);
 }
 
 std::vector<std::size_t> ChannelStages::need_second_pass() const {
@@ -96,6 +158,7 @@ void ChannelStages::refuse(const LogInfo& log) const {
 
 std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& progress) {
   if (refused()) refuse(log);
+  if (!options_.temperature.empty()) give_temperature(log);
   std::vector<ChannelResult> results(stages_.size());
   for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
     progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");

@@ -28,12 +28,17 @@ class ChannelStages final : public BlockSink {
   /// Curves and fits, two channels at a time: memory stays bounded however many there are. Throws Error(usage) where an option
   /// needs all samples and they do not fit.
   std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress);
+  /// After `finish`: the temperature that was taken out, and which channel it is; null: none was asked for.
+  std::shared_ptr<const TemperatureRecord> temperature() const { return temperature_; }
+  std::size_t temperature_index() const { return temperature_index_; }
 
  private:
   bool surely_too_long(const LogInfo& so_far) const;
   bool refused() const;
   void drop_all();
   [[noreturn]] void refuse(const LogInfo& log) const;
+  void find_temperature(const LogInfo& so_far);
+  void give_temperature(const LogInfo& log);
 
   CharacterizeOptions options_;  ///< with the segment in samples, once the rate is known
   CharacterizeWorkspace& workspace_;
@@ -43,6 +48,9 @@ class ChannelStages final : public BlockSink {
   bool too_long_ = false;          ///< to be kept: streamed, or refused and only counted
   tbb::task_arena arena_;
   std::vector<ChannelStage> stages_;
+  CharacterizeOptions plain_;  ///< of the temperature: no phase, no frequency
+  std::size_t temperature_index_ = 0;
+  std::shared_ptr<const TemperatureRecord> temperature_;
 };
 
 /// The second pass, through the channels that asked for it and no others.

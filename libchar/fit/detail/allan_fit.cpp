@@ -2,13 +2,14 @@
 // model's exact covariance:
 //   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
 //   fitted curve stands still
-// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: damped by a
-// half after 25 rounds.
+// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: each
+// round that moves no less than the one before halves the step.
 #include "libchar/fit/detail/allan_fit.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
@@ -31,6 +32,8 @@ AllanCurve usable(const AllanCurve& curve, const NoiseFit& first) {
   });
   return kept;
 }
+
+constexpr int kMostRounds = 100;
 
 struct Solution {
   Mixture theta{};
@@ -56,8 +59,8 @@ std::optional<Solution> solve(const AllanCurve& curve,
     }
   }
   Solution solution{start, TermMatrix::Zero(), 0, false};
-  constexpr int kMost = 50, kDampAfter = 25;
-  for (int round = 0; round < kMost && !solution.converged; ++round) {
+  double step = 1, before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds && !solution.converged; ++round) {
     const std::optional<Eigen::MatrixXd> factor = cholesky_factor(covariance.at(solution.theta));
     if (!factor) return std::nullopt;
     const Eigen::MatrixXd whitened = solve_lower(*factor, design);
@@ -67,9 +70,8 @@ std::optional<Solution> solve(const AllanCurve& curve,
     Mixture right{};
     for (std::size_t i = 0; i < kTerms; ++i) right[i] = product[static_cast<Eigen::Index>(i)];
     Mixture next = nonnegative_minimum(gram, right, terms);
-    if (round >= kDampAfter) {
-      for (std::size_t i = 0; i < kTerms; ++i) next[i] = 0.5 * (next[i] + solution.theta[i]);
-    }
+    for (std::size_t i = 0; i < kTerms; ++i)
+      next[i] = step * next[i] + (1 - step) * solution.theta[i];
     const auto vector = [](const Mixture& theta) {
       return Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(theta.data());
     };
@@ -80,7 +82,9 @@ std::optional<Solution> solve(const AllanCurve& curve,
     solution.theta = next;
     solution.covariance = inverse_of(gram, terms);
     solution.chi2 = (target - whitened * vector(next)).squaredNorm();
-    solution.converged = moved < 1e-8;
+    solution.converged = moved < 1e-7 * step;
+    if (moved > 0.95 * before) step /= 2;
+    before = moved;
   }
   return solution;
 }
@@ -116,7 +120,8 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
   } else if (second.agrees) {
     second.sentence = "agrees";
   }
-  if (!solution.converged) second.sentence += " (the reweighting did not settle in 50 rounds)";
+  if (!solution.converged)
+    second.sentence += fmt::format(" (the reweighting did not settle in {} rounds)", kMostRounds);
 }
 
 }  // namespace

@@ -8,14 +8,15 @@
 #include "libchar/fit/detail/bounds.hpp"
 #include "libchar/fit/detail/profile.hpp"
 #include "libchar/fit/detail/scoring.hpp"
+#include "libchar/fit/detail/selection.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr double kUndeterminedAbove =
     0.30;  ///< bound above which a term counts as not determined (docs/theory/fit.md)
-/// Likelihood ratio above which a dropped term widens the intervals of the others.
-constexpr double kDoubtfulAbove = 1;
+/// Relative sd below which a dropped term moves no interval (white noise).
+constexpr double kWellKnown = 0.01;
 
 double sd_of_theta(const BinProblem& problem,
                    const ModelPoint& at,
@@ -29,37 +30,40 @@ double sd_of_theta(const BinProblem& problem,
 Interval profile_interval(const BinProblem& problem,
                           const TermSet& terms,
                           const Optimum& best,
-                          std::size_t term) {
+                          std::size_t term,
+                          double lower_rise) {
   const double sd = sd_of_theta(problem, best.at, terms, term);
-  return {std::sqrt(profile_lower(problem, terms, best, term, sd, kTwoSided95)),
+  return {std::sqrt(profile_lower(problem, terms, best, term, sd, lower_rise)),
           std::sqrt(profile_upper(problem, terms, best, term, sd, kTwoSided95))};
 }
 
-/// Terms that were dropped but may be there (likelihood ratio above 1): without them the intervals
-/// of the others would pretend that the decision was certain (coverage 85 % instead of 95 % in
-/// scene a2 of the theory page).
-struct Nuisance {
+/// The model of all terms that were offered. A dropped term is not known to be zero: without it the intervals of the
+/// others would pretend that the decision was certain (coverage 85 % instead of 95 % in scene a2 of the theory page).
+struct WithDropped {
   TermSet terms{};
   Optimum best;
   bool any = false;
 };
 
-Nuisance doubtful_terms(const BinProblem& problem,
-                        const Decision& decision,
-                        const TermSet& offered) {
-  Nuisance nuisance;
-  nuisance.terms = decision.kept;
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    if (!offered[i] || decision.kept[i] || !(decision.likelihood_ratio[i] > kDoubtfulAbove)) {
-      continue;
-    }
-    nuisance.terms[i] = nuisance.any = true;
+WithDropped with_dropped(const BinProblem& problem,
+                         const Decision& decision,
+                         const TermSet& offered) {
+  WithDropped all;
+  all.terms = offered;
+  all.any = offered != decision.kept;
+  if (all.any) {
+    const ScoringResult full = score(problem, all.terms);
+    all.best = {full.at, full.half_deviance};
   }
-  if (nuisance.any) {
-    const ScoringResult full = score(problem, nuisance.terms);
-    nuisance.best = {full.at, full.half_deviance};
-  }
-  return nuisance;
+  return all;
+}
+
+/// Rise of the lower limit of a term that is reported because its likelihood ratio passed the threshold, and called
+/// detected because its relative sd is below kUndeterminedAbove: the stricter of the two, the second on the scale of the
+/// root of the ratio, which grows about as the inverse of the relative sd.
+double lower_rise(double ratio, double relative_sd, double threshold) {
+  const double bound = relative_sd / kUndeterminedAbove;
+  return selected_rise(ratio, bound < 1 ? std::max(threshold, ratio * bound * bound) : threshold);
 }
 
 /// Limits of a term that has no value: it is put back into the model for that.
@@ -96,7 +100,7 @@ ModelPoint report_coefficients(const BinProblem& problem,
   fit.converged = decision.converged && polished.converged;
   fit.iterations = decision.iterations + polished.iterations;
   const Optimum best{polished.at, polished.half_deviance};
-  const Nuisance nuisance = doubtful_terms(problem, decision, options.terms);
+  const WithDropped all = with_dropped(problem, decision, options.terms);
   for (std::size_t i = 0; i < kTerms; ++i) {
     for (std::size_t j = 0; j < kTerms; ++j) {
       fit.covariance[i][j] =
@@ -123,9 +127,12 @@ ModelPoint report_coefficients(const BinProblem& problem,
     const double spread = std::exp(kNormal95 * sd / 2);
     term.ci95 = {*term.value / spread, *term.value * spread};
     term.profile = term.relative_sd > options.profile_above;
-    if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i);
-    if (nuisance.any && nuisance.best.at.theta[i] > 0) {
-      const Interval wide = profile_interval(problem, nuisance.terms, nuisance.best, i);
+    const double rise =
+        ambiguous ? kTwoSided95
+                  : lower_rise(decision.ratio_in_all[i], term.relative_sd, options.threshold);
+    if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i, rise);
+    if (all.any && term.relative_sd > kWellKnown && all.best.at.theta[i] > 0) {
+      const Interval wide = profile_interval(problem, all.terms, all.best, i, rise);
       term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
       term.profile = true;
     }

@@ -87,7 +87,9 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
   decision.half_deviance = best.half_deviance;
   decision.converged = best.converged;
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (offered[i]) decision.likelihood_ratio[i] = models.ratio(set, i);
+    if (!offered[i]) continue;
+    decision.likelihood_ratio[i] = models.ratio(set, i);
+    decision.ratio_in_all[i] = models.ratio(offered, i);
   }
   decision.iterations = models.iterations;
   return decision;

@@ -24,40 +24,55 @@ std::uint64_t next_edge(std::uint64_t k) {
 
 using Unit = std::array<double, kTerms>;
 
-/// Mean of unit(k) over the kept coefficients lo..hi-1; a wide bin without clipped coefficients by
-/// Gauss-Legendre over k.
+/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is smooth and wide.
+template <typename UnitAt>
+void add_run(
+    std::uint64_t lo, std::uint64_t hi, double weight, bool smooth, UnitAt&& unit_at, Unit& sum) {
+  static constexpr std::array<double, 4> node = {
+      0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  static constexpr std::array<double, 4> share = {
+      0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  const auto add = [&](double k, double w) {
+    const Unit unit = unit_at(k);
+    for (std::size_t i = 0; i < kTerms; ++i) sum[i] += w * unit[i];
+  };
+  if (!smooth || hi - lo <= 64) {
+    const double each = weight / static_cast<double>(hi - lo);
+    for (std::uint64_t k = lo; k < hi; ++k) add(static_cast<double>(k), each);
+    return;
+  }
+  const double middle = 0.5 * static_cast<double>(lo + hi - 1),
+               half = 0.5 * static_cast<double>(hi - lo);
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern
+    // would bite.
+    add(middle + half * node[i] + 1e-7, 0.5 * share[i] * weight);
+    add(middle - half * node[i] + 1e-7, 0.5 * share[i] * weight);
+  }
+}
+
+/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not clipped.
 template <typename UnitAt>
 Unit average_unit(std::uint64_t lo,
                   std::uint64_t hi,
                   const std::vector<char>& clipped,
                   std::uint64_t first,
+                  std::uint64_t kept,
                   bool smooth,
                   UnitAt&& unit_at) {
-  static constexpr std::array<double, 4> node = {
-      0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  static constexpr std::array<double, 4> weight = {
-      0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
   Unit sum{};
-  const auto add = [&](double k, double w) {
-    const Unit unit = unit_at(k);
-    for (std::size_t i = 0; i < kTerms; ++i) sum[i] += w * unit[i];
+  const auto is_clipped = [&](std::uint64_t k) {
+    return !clipped.empty() && clipped[k - first] != 0;
   };
-  if (smooth && hi - lo > 64) {
-    const double middle = 0.5 * static_cast<double>(lo + hi - 1),
-                 half = 0.5 * static_cast<double>(hi - lo);
-    for (std::size_t i = 0; i < node.size(); ++i) {
-      // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern
-      // would bite.
-      add(middle + half * node[i] + 1e-7, 0.5 * weight[i]);
-      add(middle - half * node[i] + 1e-7, 0.5 * weight[i]);
-    }
-    return sum;
-  }
-  double kept = 0;
-  for (std::uint64_t k = lo; k < hi; ++k)
-    kept += clipped.empty() || clipped[k - first] == 0 ? 1 : 0;
-  for (std::uint64_t k = lo; k < hi; ++k) {
-    if (clipped.empty() || clipped[k - first] == 0) add(static_cast<double>(k), 1 / kept);
+  for (std::uint64_t from = lo, to = lo; from < hi; from = to + 1) {
+    for (to = from; to < hi && !is_clipped(to);) ++to;
+    if (to > from)
+      add_run(from,
+              to,
+              static_cast<double>(to - from) / static_cast<double>(kept),
+              smooth,
+              unit_at,
+              sum);
   }
   return sum;
 }
@@ -94,7 +109,7 @@ void append_bins_of(const PooledPower& power,
     bin.end = hi;
     bin.length = power.length;
     bin.spacing = power.spacing;
-    bin.unit = average_unit(lo, hi, clipped, power.first, smooth && kept == hi - lo, unit_at);
+    bin.unit = average_unit(lo, hi, clipped, power.first, kept, smooth, unit_at);
     bins.push_back(bin);
   }
 }

@@ -1,0 +1,30 @@
+#pragma once
+// What of a record is a mean and no noise: temperature, steps, a warm-up, a ramp. Taken out before the noise is fitted.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+struct RecordMeans {
+  std::vector<double> samples;  ///< the record without them; empty: nothing was found
+  EventSearch search;
+  bool events_taken = false;  ///< else they are too many or too alike, and stay
+  std::optional<TemperatureEffect> temperature;
+};
+
+/// Looks for what `options` asks for.
+RecordMeans without_means(std::span<const double> record,
+                          double rate_hz,
+                          const FitOptions& options);
+
+/// What the temperature takes from the transform coefficients, for the bins.
+void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins);
+
+/// Into the fit of what is left: sentences, events, remedies.
+void report_means(const RecordMeans& means, const FitOptions& options, NoiseFit& fit);
+
+}  // namespace libchar

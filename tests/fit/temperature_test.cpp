@@ -1,0 +1,178 @@
+#include "libchar/fit/temperature.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+
+namespace {
+
+constexpr double kRate = 10;
+constexpr std::size_t kSamples = 40'000;
+constexpr double kQ = 5e-3, kB = 5e-3;
+
+/// Shapes of a temperature in degC: what sensors see.
+enum class Weather { drifting, daily, warming, ramp, cycling };
+
+TemperatureRecord weather(Weather kind, std::size_t n, test::Gaussian& gauss) {
+  TemperatureRecord out{"temp", "°C", std::vector<double>(n)};
+  const double phase = 6.28 * gauss.uniform();
+  double walk = 0;
+  for (std::size_t t = 0; t < n; ++t) {
+    const double x = static_cast<double>(t) / static_cast<double>(n);
+    walk += gauss() / std::sqrt(static_cast<double>(n));
+    double value = 25;
+    if (kind == Weather::drifting) value += 3 * walk;
+    if (kind == Weather::daily) value += 5 * std::sin(2 * 6.2832 * x + phase) + 0.5 * walk;
+    if (kind == Weather::warming) value += 10 * (1 - std::exp(-6 * x)) + 0.3 * walk;
+    if (kind == Weather::ramp) value += 8 * x + 0.2 * walk;
+    if (kind == Weather::cycling) value += std::sin(20 * 6.2832 * x + phase) + 0.2 * walk;
+    out.samples[t] = std::round((value + 0.02 * gauss()) / 0.01) * 0.01;
+  }
+  return out;
+}
+
+/// What a sensor with these coefficients makes of a temperature.
+void add_effect(std::vector<double>& y,
+                const TemperatureRecord& temperature,
+                double lag_s,
+                double one,
+                double two = 0) {
+  double mean = 0;
+  for (const double x : temperature.samples) mean += x / static_cast<double>(y.size());
+  double state = temperature.samples[0];
+  for (std::size_t t = 0; t < y.size(); ++t) {
+    state = lag_s > 0 ? state + (temperature.samples[t] - state) / (lag_s * kRate)
+                      : temperature.samples[t];
+    y[t] += one * (state - mean) + two * (state - mean) * (state - mean);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("temperature: a record that it does not move is left alone") {
+  // 3 of 1200 in a longer run (docs/theory/events.md); 1 % is promised.
+  int alarms = 0;
+  for (const Weather kind :
+       {Weather::drifting, Weather::daily, Weather::warming, Weather::cycling}) {
+    test::NoiseSource source(kSamples, kRate, 107 + static_cast<unsigned>(kind));
+    for (const double k : {0.0, 1e-3}) {
+      for (int i = 0; i < 10; ++i) {
+        const std::vector<double> y = source.record(kQ, kB, k);
+        const TemperatureEffect found =
+            find_temperature_effect(y, kRate, weather(kind, kSamples, source.gauss()));
+        alarms += found.order > 0 ? 1 : 0;
+        CHECK((found.order > 0) == !found.value.empty());
+      }
+    }
+  }
+  CHECK(alarms <= 3);
+}
+
+TEST_CASE("temperature: what it does is found with its lag, and the walk stays whole") {
+  test::NoiseSource source(kSamples, kRate, 171);
+  constexpr double kWalk = 5e-4;
+  double clean = 0, with = 0, without = 0;
+  int covered = 0, lag_covered = 0;
+  constexpr int kRecords = 8;
+  for (int i = 0; i < kRecords; ++i) {
+    std::vector<double> y = source.record(kQ, kB, kWalk);
+    FitOptions options;
+    options.second_opinion = false;
+    clean += fit_record(y, kRate, nullptr, options).theta[2];
+    const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
+    add_effect(y, t, 60, 0.02);
+    options.temperature = std::make_shared<TemperatureRecord>(t);
+    options.unit = "deg/s";
+    const NoiseFit fit = fit_record(y, kRate, nullptr, options);
+    REQUIRE(fit.temperature.has_value());
+    const TemperatureEffect& effect = *fit.temperature;
+    REQUIRE(effect.order >= 1);
+    CHECK(effect.coefficient[0] == Approx(0.02).epsilon(0.3));
+    covered += effect.ci95.low <= 0.02 && 0.02 <= effect.ci95.high ? 1 : 0;
+    lag_covered += effect.lag_ci95.low <= 60 && 60 <= effect.lag_ci95.high ? 1 : 0;
+    with += fit.theta[2];
+    without += std::pow(effect.without[2].value.value_or(0), 2);
+    CHECK(fit.remedies.back().kind == "temperature");
+    CHECK(std::any_of(fit.sentences.begin(), fit.sentences.end(), [](const std::string& s) {
+      return s.find("With temperature left in, K would be") == 0;
+    }));
+  }
+  CHECK(covered >= kRecords - 1);
+  CHECK(lag_covered >= kRecords - 1);
+  CHECK(std::sqrt(with / clean) == Approx(1).margin(0.12));
+  CHECK(without > 1.5 * with);
+}
+
+TEST_CASE("temperature: a curve about the mean temperature has order 2") {
+  test::NoiseSource source(kSamples, kRate, 173);
+  std::vector<double> y = source.record(kQ, kB, 0);
+  const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
+  add_effect(y, t, 0, 0, 0.004);
+  const TemperatureEffect effect = find_temperature_effect(y, kRate, t);
+  REQUIRE(effect.order == 2);
+  CHECK(effect.coefficient[1] == Approx(0.004).epsilon(0.1));
+  CHECK(effect.ci95.low < 0);
+  CHECK(effect.ci95.high > 0);
+}
+
+TEST_CASE("temperature: a step of the sensor beside it is a step") {
+  test::NoiseSource source(kSamples, kRate, 174);
+  std::vector<double> y = source.record(kQ, kB, 0);
+  const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
+  add_effect(y, t, 0, 0.02);
+  for (std::size_t i = kSamples / 3; i < kSamples; ++i) y[i] += 0.1;
+  FitOptions options;
+  options.second_opinion = false;
+  options.temperature = std::make_shared<TemperatureRecord>(t);
+  const NoiseFit fit = fit_record(y, kRate, nullptr, options);
+  REQUIRE(fit.temperature->order >= 1);
+  CHECK(fit.temperature->coefficient[0] == Approx(0.02).epsilon(0.1));
+  REQUIRE(fit.events.size() == 1);
+  CHECK(fit.events[0].kind == EventKind::step);
+  CHECK(fit.events[0].size == Approx(0.1).epsilon(0.15));
+}
+
+TEST_CASE("temperature: a slow thermometer, taking out and putting in again") {
+  test::NoiseSource source(kSamples, kRate, 175);
+  std::vector<double> y = source.record(kQ, kB, 0);
+  TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
+  add_effect(y, t, 0, 0.02);
+  const TemperatureEffect each = find_temperature_effect(y, kRate, t);
+  for (std::size_t i = 0; i < kSamples; ++i)
+    if (i % 50 != 7) t.samples[i] = std::numeric_limits<double>::quiet_NaN();
+  const TemperatureEffect slow = find_temperature_effect(y, kRate, t);
+  REQUIRE(slow.order >= 1);
+  CHECK(slow.coefficient[0] == Approx(each.coefficient[0]).epsilon(0.02));
+  std::vector<double> back = y;
+  add_temperature_effect(slow, -1, back);
+  add_temperature_effect(slow, 1, back);
+  for (std::size_t i = 0; i < kSamples; i += 97) CHECK(back[i] == Approx(y[i]).margin(1e-12));
+}
+
+TEST_CASE("temperature: one that says nothing is refused in a sentence") {
+  test::NoiseSource source(kSamples, kRate, 176);
+  const std::vector<double> y = source.record(kQ, 0, 0);
+  TemperatureRecord t = weather(Weather::ramp, kSamples, source.gauss());
+  const auto what = [&] {
+    try {
+      find_temperature_effect(y, kRate, t);
+    } catch (const Error& error) {
+      return error.problem().what;
+    }
+    return std::string();
+  };
+  for (std::size_t i = 10'000; i < 20'000; ++i)
+    t.samples[i] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(what().find("is missing for 1000 s from 1000 s on") != std::string::npos);
+  t.samples.assign(kSamples, 21.5);
+  CHECK(what().find("is constant, 21.5 throughout") != std::string::npos);
+  t.samples.assign(kSamples, std::numeric_limits<double>::quiet_NaN());
+  CHECK(what().find("has 0 values") != std::string::npos);
+}
