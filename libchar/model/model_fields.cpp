@@ -236,7 +236,7 @@ const Fields<SensorModel>& noise_fields() {
           gauss_markov_fields(),
           {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: density "
                       "2 sigma^2 tau / (1 + (2 pi f tau)^2)",
-           .meaning = "first-order Gauss–Markov process, `sigma` in U, `tau_s`",
+           .meaning = "first-order Gauss–Markov process beside the terms",
            .otherwise = "none",
            .form = Entry::Form::flow}),
       field<&SensorModel::noise_sampling>("noise_sampling",

@@ -53,9 +53,11 @@ void check(const NoiseDesign& design) {
       (design.gauss_markov_sigma == 0 ||
        (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
   if (!process)
-    refuse("a Gauss-Markov process needs a finite `sigma`, not negative, and a positive `tau_s`",
-           shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s),
-           "");
+    refuse(
+        "a Gauss-Markov process needs a finite standard deviation, not negative, and a positive "
+        "correlation time",
+        shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s),
+        "");
   if (design.bandwidth_hz && !(std::isfinite(*design.bandwidth_hz) && *design.bandwidth_hz > 0))
     refuse(
         "the bandwidth must be positive", shortest(*design.bandwidth_hz), "leave it out for none");
