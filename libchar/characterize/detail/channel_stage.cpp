@@ -202,6 +202,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                                    const std::string& unit) const {
   FitOptions options = options_->fit;
   options.unit = unit;
+  options.clock = options_->data != SampleKind::rate;
   options.temperature = temperature_;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
@@ -226,13 +227,15 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz)
     cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
+  FitOptions options = options_->fit;
+  options.clock = options_->data != SampleKind::rate;
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,
                             octaves.points.empty() ? nullptr
                             : cleaned              ? &cleaned_allan
                                                    : &octaves,
-                            options_->fit,
+                            options,
                             &workspace_->fit);
   add_spike_answer(answer, fit);
   return fit;
