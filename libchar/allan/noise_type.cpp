@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "libchar/core/text.hpp"
+
 namespace libchar {
 namespace {
 
@@ -47,6 +49,26 @@ std::optional<double> lag_one(std::vector<double> z) {
   }
   if (!(power > 0)) return std::nullopt;
   return product / power;
+}
+
+/// Missing readings interpolated, those at the ends left out; empty when there are more than one in a hundred.
+std::vector<double> without_gaps(std::span<const double> phase) {
+  while (!phase.empty() && std::isnan(phase.front())) phase = phase.subspan(1);
+  while (!phase.empty() && std::isnan(phase.back())) phase = phase.first(phase.size() - 1);
+  std::vector<double> out(phase.begin(), phase.end());
+  std::size_t missing = 0, before = 0;
+  for (std::size_t i = 0; i < phase.size(); ++i) {
+    if (std::isnan(phase[i])) {
+      ++missing;
+      continue;
+    }
+    for (std::size_t j = before + 1; j < i; ++j)
+      out[j] = phase[before] + (phase[i] - phase[before]) * static_cast<double>(j - before) /
+                                   static_cast<double>(i - before);
+    before = i;
+  }
+  if (missing * 100 > phase.size()) return {};
+  return out;
 }
 
 }  // namespace
@@ -93,9 +115,23 @@ std::optional<NoiseType> lag1_noise_type(std::span<const double> phase,
 
 std::vector<NoiseType> lag1_noise_types(std::span<const double> phase, double dt_s) {
   std::vector<NoiseType> out;
+  const std::vector<double> filled = without_gaps(phase);
+  phase = filled;
   for (std::uint64_t m = 1; phase.size() / m >= kFewestReadings; m *= 2)
     if (const auto type = lag1_noise_type(phase, m, dt_s)) out.push_back(*type);
   return out;
+}
+
+std::string noise_types_text(std::span<const NoiseType> types) {
+  std::string text;
+  for (std::size_t i = 0, end = 0; i < types.size(); i = end) {
+    while (end < types.size() && types[end].alpha == types[i].alpha) ++end;
+    text += (text.empty() ? "" : ", ") + std::string(noise_type_name(types[i].alpha));
+    text += end == i + 1 ? " at " + significant(types[i].tau_s, 4) + " s"
+                         : " from " + significant(types[i].tau_s, 4) + " s to " +
+                               significant(types[end - 1].tau_s, 4) + " s";
+  }
+  return text;
 }
 
 }  // namespace libchar

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,7 +28,11 @@ std::optional<NoiseType> lag1_noise_type(std::span<const double> phase,
                                          std::uint64_t m,
                                          double dt_s);
 
-/// Averaging factors 1, 2, 4… while enough readings are left.
+/// Averaging factors 1, 2, 4… while enough readings are left. At most 1 % of the readings may be missing; these are interpolated, and
+/// left out at the ends. Empty otherwise.
 std::vector<NoiseType> lag1_noise_types(std::span<const double> phase, double dt_s);
+
+/// "white phase from 1 s to 32 s, flicker phase at 64 s, white frequency from 128 s to 8192 s"; empty without types.
+std::string noise_types_text(std::span<const NoiseType> types);
 
 }  // namespace libchar

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/noise_type.hpp"
 #include "libchar/characterize/trace.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
@@ -83,6 +84,8 @@ struct ChannelResult {
   Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
+  std::vector<NoiseType>
+      noise_types;  ///< by averaging time; of phase and frequency that are kept only
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)

@@ -42,6 +42,7 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.rate_hz = fit.rate_hz;
   model.noise = fit.term;
   model.gauss_markov = process_of(fit);
+  model.flicker_phase = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
@@ -64,6 +65,7 @@ SensorModel sensor_model_from(const Channel& channel,
   model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
   model.noise = fit.term;
   model.gauss_markov = process_of(fit);
+  model.flicker_phase = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.resolution = quality.resolution;

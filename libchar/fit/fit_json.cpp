@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 
 namespace libchar {
 namespace {
@@ -38,6 +39,19 @@ Json gauss_markov_json(const GaussMarkovFit& process, const std::string& unit) {
           {"sigma_unit", unit},
           {"tau_s", figure(process.tau_s)},
           {"likelihood_ratio", json_number(process.sigma.likelihood_ratio)}};
+}
+
+Json power_laws_json(const NoiseFit& fit) {
+  Json list = Json::array();
+  for (const PowerLaw& law : power_laws(fit))
+    list.push_back({{"alpha", law.alpha},
+                    {"name", law.name},
+                    {"stable32", law.abbreviation},
+                    {"h", json_number(law.h.value)},
+                    {"ci95", law.h.value ? pair_of(law.h.ci95) : Json(nullptr)},
+                    {"upper95", json_number(law.h.upper95)},
+                    {"status", name_of(law.h.status)}});
+  return list;
 }
 
 Json goodness_json(const Goodness& goodness) {
@@ -162,6 +176,7 @@ Json noise_fit_json(const std::string& name,
   json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
   json["gauss_markov"] =
       fit.gauss_markov ? gauss_markov_json(*fit.gauss_markov, unit) : Json(nullptr);
+  if (fit.flicker_phase) json["power_laws"] = power_laws_json(fit);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
   json["remedies"] = Json::array();

@@ -21,6 +21,7 @@
 #include "libchar/fit/detail/bridge.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/contradiction.hpp"
+#include "libchar/fit/detail/flicker_phase_means.hpp"
 #include "libchar/fit/detail/gauss_markov_fit.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/record_means.hpp"
@@ -92,7 +93,7 @@ Attempt attempt(const std::vector<PowerBin>& bins,
   fit.duration_s = static_cast<double>(samples) / rate_hz;
   fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
   const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
-  if (!out.band.tau_s) report_bounds(decision.kept, fit);
+  if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
   describe_band(bins, out.band, problem, best, rate_hz, fit);
   fit.goodness =
       goodness_of(inside_of(fit.residuals),
@@ -276,21 +277,29 @@ void answer_process(const std::vector<PowerBin>& bins,
   settle_gauss_markov(bins, process, fit);
 }
 
-}  // namespace
+/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's covariance says.
+void settle_flicker_phase(NoiseFit& fit) {
+  for (Coefficient& term : fit.term)
+    if (term.value) term.bound = term.relative_sd;
+  fit.flicker_phase = fit.term[kRamp];
+  fit.term[kRamp] = {};
+  fit.theta[kRamp] = 0;
+  for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][kRamp] = fit.covariance[kRamp][i] = 0;
+}
 
-NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
-                        double rate_hz,
-                        std::uint64_t samples,
-                        const AllanCurve* allan,
-                        const FitOptions& options,
-                        FitWorkspace* workspace) {
+NoiseFit fit_offered(const std::vector<PowerBin>& bins,
+                     double rate_hz,
+                     std::uint64_t samples,
+                     const AllanCurve* allan,
+                     const FitOptions& options,
+                     FitWorkspace* workspace) {
   Band band;
   if (options.remedies)
     band = find_band(bins, rate_hz, options.terms);
   else
     band = whole_band(bins, rate_hz);
   std::optional<GaussMarkovChoice> process;
-  if (options.remedies && options.gauss_markov)
+  if (options.remedies && options.gauss_markov && !options.clock)
     process = choose_gauss_markov(
         bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   if (process && process->needed) band = process->band;
@@ -305,13 +314,32 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   }
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);
-  const bool terms_alone = !now.fit.gauss_markov || !now.fit.gauss_markov->in_model;
+  if (options.clock) settle_flicker_phase(now.fit);
+  const bool terms_alone = !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
+                           !(now.fit.flicker_phase && now.fit.flicker_phase->value);
   if (options.second_opinion && allan != nullptr && terms_alone)
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr) answer_contradictions(now.fit, *allan);
   now.fit.bins = bins;
   return std::move(now.fit);
+}
+
+}  // namespace
+
+NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
+                        double rate_hz,
+                        std::uint64_t samples,
+                        const AllanCurve* allan,
+                        const FitOptions& options,
+                        FitWorkspace* workspace) {
+  if (!options.clock) return fit_offered(bins, rate_hz, samples, allan, options, workspace);
+  std::vector<PowerBin> lent = bins;
+  const std::vector<double> units = flicker_phase_units(bins, rate_hz);
+  for (std::size_t j = 0; j < lent.size(); ++j) lent[j].unit[kRamp] = units[j];
+  FitOptions offered = options;
+  offered.terms[kRamp] = offered.terms[kQuantization] = true;
+  return fit_offered(lent, rate_hz, samples, allan, offered, workspace);
 }
 
 namespace {

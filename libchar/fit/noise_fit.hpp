@@ -74,6 +74,8 @@ struct NoiseFit {
   std::optional<double> bandwidth_hz;  ///< corner of the first-order low-pass, when it was needed
   std::optional<Interval> bandwidth_ci95;
   std::optional<GaussMarkovFit> gauss_markov;
+  /// of a clock: F of flicker phase noise, y_t = F (x_t - x_{t-1})/dt with x unit flicker (power_laws.hpp)
+  std::optional<Coefficient> flicker_phase;
   Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
   /// of ln(theta) of the terms with a value
   std::array<std::array<double, kTerms>, kTerms> covariance{};
@@ -108,6 +110,8 @@ struct FitOptions {
   bool remedies = true;
   /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
   bool gauss_markov = true;
+  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
+  bool clock = false;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
   /// its effect is taken out before the noise is fitted (a record that is kept only); null: none

@@ -32,8 +32,14 @@ bool has_process(const NoiseFit& fit) {
   return fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value;
 }
 
+double flicker_phase_theta(const NoiseFit& fit) {
+  const double f = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
+  return f * f;
+}
+
 double plain_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  const double terms = spectrum(fit.theta, frequency_hz, dt_s);
+  const double terms = spectrum(fit.theta, frequency_hz, dt_s) +
+                       flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
   if (!has_process(fit)) return terms;
   const double sigma = *fit.gauss_markov->sigma.value;
   return terms +
@@ -41,7 +47,8 @@ double plain_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
 }
 
 double plain_variance(const NoiseFit& fit, double m, double dt_s) {
-  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s);
+  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s) +
+         flicker_phase_theta(fit) * flicker_phase_allan_variance(m, dt_s);
 }
 
 bool has_shape(const NoiseFit& fit) {
@@ -94,7 +101,11 @@ double process_allan_variance(const NoiseFit& fit, double m, double dt_s) {
 }
 
 void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
-  if (!has_process(fit)) return add_intervals(curve, fit.theta);
+  if (!has_process(fit)) {
+    Mixture theta = fit.theta;  // flicker phase has the degrees of freedom of white phase, nearly
+    theta[static_cast<std::size_t>(Term::quantization)] += flicker_phase_theta(fit);
+    return add_intervals(curve, theta);
+  }
   constexpr double kRises = 1, kFalls = 4;  // averaging times in correlation times
   AllanCurve one = curve;
   for (AllanPoint& point : curve.points) {

@@ -236,9 +236,17 @@ const Fields<SensorModel>& noise_fields() {
           gauss_markov_fields(),
           {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: density "
                       "2 sigma^2 tau / (1 + (2 pi f tau)^2)",
-           .meaning = "first-order Gauss–Markov process, `sigma` in U, `tau_s`",
+           .meaning = "first-order Gauss–Markov process beside the terms",
            .otherwise = "none",
            .form = Entry::Form::flow}),
+      field<&SensorModel::flicker_phase>(
+          "flicker_phase",
+          {.unit = "U·s",
+           .range = kNotNegative,
+           .comment =
+               "of a clock: flicker phase noise, one-sided density 4 pi value^2 f of the frequency",
+           .meaning = "of a clock: flicker phase noise",
+           .otherwise = "0"}),
       field<&SensorModel::noise_sampling>("noise_sampling",
                                           {.words = kSamplings,
                                            .meaning = "see below",

@@ -79,6 +79,8 @@ struct SensorModel {
   double reference_temperature_degc = 25;
   Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
   GaussMarkovNoise gauss_markov;  ///< in U, beside the terms; sigma 0: none
+  double flicker_phase =
+      0;  ///< of a clock's frequency: differences of flicker over the sampling interval, times this
   NoiseSampling noise_sampling = NoiseSampling::per_sample;
   NoiseStart noise_start = NoiseStart::stationary;
   std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"

@@ -10,6 +10,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 
 namespace libchar {
 
@@ -80,6 +81,26 @@ std::vector<std::string> process_row(const Coefficient& c,
           ""};
 }
 
+std::string power_laws_text(const NoiseFit& fit) {
+  std::vector<std::vector<std::string>> rows = {
+      {"S_y(f), one-sided", "noise type", "h", "95 % interval", "status"}};
+  for (const PowerLaw& law : power_laws(fit)) {
+    std::string status(name_of(law.h.status));
+    std::replace(status.begin(), status.end(), '_', ' ');
+    rows.push_back({fmt::format("h{} f^{}", law.alpha, law.alpha),
+                    fmt::format("{} {}", law.name, law.abbreviation),
+                    law.h.value     ? significant(*law.h.value, 4)
+                    : law.h.upper95 ? "≤ " + significant(*law.h.upper95, 3)
+                                    : "–",
+                    law.h.value ? fmt::format("{} … {}",
+                                              significant(law.h.ci95.low, 3),
+                                              significant(law.h.ci95.high, 3))
+                                : "",
+                    status});
+  }
+  return rows.size() > 1 ? text_table(rows, "  ", true) : "";
+}
+
 }  // namespace
 
 std::string fit_text(const Channel& channel, const NoiseFit& fit) {
@@ -106,6 +127,7 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
     rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
   }
   text += text_table(rows, "  ", true);
+  text += power_laws_text(fit);
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
                         significant(*fit.bandwidth_hz, 4),

@@ -116,6 +116,16 @@ Json fit_or_reason(const ChannelView& view) {
   return out;
 }
 
+Json noise_types_json(const std::vector<NoiseType>& types) {
+  Json list = Json::array();
+  for (const NoiseType& type : types)
+    list.push_back({{"tau_s", json_number(type.tau_s)},
+                    {"alpha", type.alpha},
+                    {"estimate", json_number(type.estimate)},
+                    {"name", noise_type_name(type.alpha)}});
+  return list;
+}
+
 }  // namespace
 
 Json json_without_times(const CharacterizationView& view) {
@@ -146,6 +156,8 @@ Json json_without_times(const CharacterizationView& view) {
     const ChannelResult& c = *v.result;
     allan["channels"].push_back(
         allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
+    if (!c.noise_types.empty())
+      allan["channels"].back()["noise_types"] = noise_types_json(c.noise_types);
     spectrum["channels"].push_back(spectrum_channel_json(
         c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
     fit["channels"].push_back(fit_or_reason(v));

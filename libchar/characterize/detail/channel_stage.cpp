@@ -182,8 +182,28 @@ void ChannelStage::difference_kept(double rate_hz) {
     if (!phase.empty()) phase.pop_back();
   };
   if (options_->fit.remedies && wants_fit()) despiked_ = without_spikes(kept_);
+  noise_types_ = types_of_kept(rate_hz);
   difference(despiked_.samples);
   difference(kept_);
+}
+
+// Of a clock: its phase, or the sum of its frequency.
+std::vector<NoiseType> ChannelStage::types_of_kept(double rate_hz) const {
+  if (!keeping_ || !wants_fit() || options_->data == SampleKind::rate) return {};
+  if (options_->data == SampleKind::phase)
+    return lag1_noise_types(despiked_.samples.empty() ? kept_ : despiked_.samples, 1 / rate_hz);
+  std::vector<double> phase(kept_.size() + 1, 0.0);
+  for (std::size_t t = 0; t < kept_.size(); ++t) phase[t + 1] = phase[t] + kept_[t] / rate_hz;
+  if (std::isnan(phase.back())) return {};
+  return lag1_noise_types(phase, 1 / rate_hz);
+}
+
+void ChannelStage::name_noise_types(ChannelResult& result) const {
+  result.noise_types = noise_types_;
+  if (!result.fit || noise_types_.empty()) return;
+  result.fit->sentences.push_back(
+      "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
+      noise_types_text(noise_types_) + ".");
 }
 
 NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
@@ -191,6 +211,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                                    const std::string& unit) const {
   FitOptions options = options_->fit;
   options.unit = unit;
+  options.clock = options_->data != SampleKind::rate;
   options.temperature = temperature_;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
@@ -215,13 +236,15 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz)
     cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
+  FitOptions options = options_->fit;
+  options.clock = options_->data != SampleKind::rate;
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,
                             octaves.points.empty() ? nullptr
                             : cleaned              ? &cleaned_allan
                                                    : &octaves,
-                            options_->fit,
+                            options,
                             &workspace_->fit);
   add_spike_answer(answer, fit);
   return fit;
@@ -338,7 +361,9 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
     return result;
   }
   if (options_->data == SampleKind::phase) difference_kept(rate_hz);
+  if (options_->data == SampleKind::frequency) noise_types_ = types_of_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
+  name_noise_types(result);
   if (result.fit)
     add_fit_intervals(result.allan, *result.fit);
   else

@@ -80,6 +80,8 @@ class ChannelStage {
   AllanCurve octaves_of_kept(double rate_hz) const;
   AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
   void difference_kept(double rate_hz);
+  std::vector<NoiseType> types_of_kept(double rate_hz) const;
+  void name_noise_types(ChannelResult& result) const;
   NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, const std::string& unit) const;
   NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
@@ -98,6 +100,7 @@ class ChannelStage {
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
   std::vector<double> fractional_;           // scratch of as_rate
+  std::vector<NoiseType> noise_types_;
   DespikedRecord despiked_;  // rate of the phase without its spikes, when it has some
   std::uint64_t samples_ = 0;
   std::shared_ptr<const TemperatureRecord> temperature_;

@@ -12,6 +12,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"
@@ -159,6 +160,25 @@ std::string derived_rows(const ChannelView& view, double rate_hz) {
   return out;
 }
 
+std::string power_laws_table(const NoiseFit& fit) {
+  const std::vector<PowerLaw> laws = power_laws(fit);
+  if (laws.empty()) return "";
+  std::string out =
+      "<h4>As a clock: one-sided S<sub>y</sub>(f) = Σ h<sub>α</sub> f<sup>α</sup></h4>\n<div "
+      "class=\"wide\"><table>\n" +
+      table_head({"Noise type", "Stable32", "α", "h", "95 % interval", "Status"});
+  for (const PowerLaw& law : laws)
+    out += table_row({std::string(law.name),
+                      std::string(law.abbreviation),
+                      std::to_string(law.alpha),
+                      value_text(law.h),
+                      law.h.value
+                          ? number_text(law.h.ci95.low, 3) + " … " + number_text(law.h.ci95.high, 3)
+                          : "–",
+                      std::string(name_of(law.h.status))});
+  return out + "</tbody></table></div>\n";
+}
+
 std::string numbers_table(const ChannelView& view, double rate_hz) {
   const ChannelResult& c = *view.result;
   std::string out =
@@ -175,7 +195,7 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   }
   if (c.fit->gauss_markov && c.fit->gauss_markov->in_model)
     out += process_rows(*c.fit->gauss_markov, view.unit);
-  out += derived_rows(view, rate_hz) + "</tbody></table></div>\n";
+  out += derived_rows(view, rate_hz) + "</tbody></table></div>\n" + power_laws_table(*c.fit);
   out +=
       "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; "
       "a data "

@@ -22,6 +22,7 @@ NoiseDesign noise_design(const SensorModel& m, const ChainOptions& options) {
   for (std::size_t t = 0; t < kTerms; ++t) design.coefficient[t] = simulated_value(m.noise[t]);
   if (m.white_hold_s) design.coefficient[static_cast<std::size_t>(Term::white)] = 0;
   if (m.flicker_hold_s) design.coefficient[static_cast<std::size_t>(Term::flicker)] = 0;
+  design.flicker_phase = m.flicker_phase;
   design.gauss_markov_sigma = m.gauss_markov.sigma;
   design.gauss_markov_tau_s = m.gauss_markov.tau_s;
   design.rate_hz = options.rate_hz;
@@ -61,7 +62,7 @@ class HeldNoise {
                             const ChainOptions& options) {
     NoiseDesign design = noise_design(m, options);
     design.coefficient = {};
-    design.gauss_markov_sigma = 0;
+    design.gauss_markov_sigma = design.flicker_phase = 0;
     design.coefficient[static_cast<std::size_t>(term)] = simulated_value(m[term]);
     design.rate_hz = 1 / hold_s;
     design.bandwidth_hz = std::nullopt;
