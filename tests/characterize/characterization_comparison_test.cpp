@@ -33,8 +33,8 @@ Coefficient limit(double upper) {
 }
 
 ReportedCharacterization summary(const Coefficient& white,
-                                const Coefficient& flicker,
-                                const std::string& unit = "deg/s") {
+                                 const Coefficient& flicker,
+                                 const std::string& unit = "deg/s") {
   ReportedCharacterization out;
   ReportedChannel c;
   c.name = "x";
