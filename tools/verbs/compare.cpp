@@ -87,8 +87,9 @@ void compare_two_characterizations(Session& session, const CompareVerb& verb) {
                  ""});
   std::vector<GrowthCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
-  const CharacterizationComparison comparison = compare_characterizations(
-      read_characterization_report(verb.a), read_characterization_report(verb.b));
+  const CharacterizationSummary a = read_characterization_report(verb.a);  // A is refused before B
+  const CharacterizationComparison comparison =
+      compare_characterizations(a, read_characterization_report(verb.b));
   std::vector<std::string> failed;
   for (const GrowthCheck& check : checks)
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
@@ -107,9 +108,10 @@ void compare_two_characterizations(Session& session, const CompareVerb& verb) {
 
 /// The kind of document decides what is compared.
 void run_compare(Session& session, const CompareVerb& verb) {
-  if (!is_characterization_report(verb.a)) return compare_two_replays(session, verb);
-  if (!is_characterization_report(verb.b)) read_characterization_report(verb.b);  // says why not
-  compare_two_characterizations(session, verb);
+  if (is_characterization_report(verb.a) || is_characterization_report(verb.b))
+    compare_two_characterizations(session, verb);
+  else
+    compare_two_replays(session, verb);
 }
 
 std::function<void()> compare_options(VerbOptions& options, Session& session) {
