@@ -172,6 +172,7 @@ std::optional<Statistic> statistic_of(Devices devices,
   Statistic out;
   LotStatistic& lot = out.lot;
   lot.group = group.name;
+  lot.of_kind = !group.one_channel;
   lot.term = term;
   const std::string unit = group.unit.empty() ? "U" : group.unit;
   lot.unit = term ? term_unit(kTermNames[static_cast<std::size_t>(*term)].key, unit) : unit;

@@ -26,6 +26,7 @@ struct LotOutlier {
 /// One quantity over the members of a group.
 struct LotStatistic {
   std::string group;         ///< "gyro_x", or "angular_rate in deg/s" for all channels of a kind
+  bool of_kind = false;      ///< of all channels of a kind, not of one channel of several devices
   std::optional<Term> term;  ///< none: the mean of the samples
   std::string unit;          ///< of the values
   std::size_t members = 0;

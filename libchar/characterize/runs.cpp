@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "libchar/allan/noise_curves.hpp"
@@ -144,6 +145,14 @@ Mixture at_most(const NoiseFit& fit) {
   return theta;
 }
 
+/// Variance by which flicker moves the mean of a run, beyond its Allan variance there, when runs may lie a year apart: what its
+/// density B²/(2 pi f) holds between 1/year and 1/length.
+double slower_flicker(const Mixture& theta, double length_s) {
+  constexpr double kYear = 3.15576e7;
+  return theta[static_cast<std::size_t>(Term::flicker)] / std::numbers::pi *
+         std::max(0.0, std::log(kYear / length_s));
+}
+
 void find_bias(std::span<const Characterization> runs, PooledChannel& out) {
   std::vector<double> mean, least, most;
   const Mixture limits = at_most(out.fit);
@@ -152,13 +161,13 @@ void find_bias(std::span<const Characterization> runs, PooledChannel& out) {
     const double dt_s = 1 / channel.fit->rate_hz, m = static_cast<double>(channel.fit->samples);
     run.mean = channel.quality.mean;
     least.push_back(allan_variance(out.fit.theta, m, dt_s));
-    most.push_back(allan_variance(limits, m, dt_s));
+    most.push_back(allan_variance(limits, m, dt_s) + slower_flicker(limits, m * dt_s));
     run.mean_sd = std::sqrt(least.back());
     mean.push_back(run.mean);
   }
   if (out.runs.size() < 2 || !(*std::min_element(least.begin(), least.end()) > 0)) return;
   out.bias = random_effects(mean, least);
-  // Slow noise that was not detected may be there, and moves means too: nothing is claimed that it could have done.
+  // Slow noise that was not detected may be there, and flicker goes on between the runs: nothing is claimed that they could have done.
   out.bias->spread_ci95.low =
       std::min(out.bias->spread_ci95.low, random_effects(mean, most).spread_ci95.low);
 }

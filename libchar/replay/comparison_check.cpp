@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
@@ -9,10 +10,6 @@
 
 namespace libchar {
 namespace {
-
-[[noreturn]] void refuse(std::string_view text, const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::usage, "E0922", "`check`", what, std::string(text), hint});
-}
 
 struct Metric {
   const char* name;
@@ -25,16 +22,10 @@ constexpr Metric kMetrics[] = {{"rmse", &AlgorithmSummary::rmse, 0},
                                {"ns_per_sample", &AlgorithmSummary::ns_per_sample, 0},
                                {"peak_bytes", &AlgorithmSummary::peak_bytes, 1024}};
 
-const Metric& metric_of(std::string_view name, std::string_view text) {
-  std::vector<std::string> names;
-  for (const Metric& metric : kMetrics) {
-    if (name == metric.name) return metric;
-    names.emplace_back(metric.name);
-  }
-  const auto near = nearest(name, names);
-  refuse(text,
-         "expected rmse, regret, ns_per_sample or peak_bytes in front of the plus sign",
-         near ? fmt::format("did you mean {}?", *near) : "such as rmse+5%");
+const Metric& metric_of(std::string_view name) {
+  return *std::find_if(std::begin(kMetrics), std::end(kMetrics), [&](const Metric& metric) {
+    return name == metric.name;
+  });
 }
 
 double value_of(const AlgorithmSummary* one, const Metric& metric) {
@@ -78,28 +69,13 @@ std::string failure(const ComparedAlgorithm& row,
 }  // namespace
 
 ComparisonCheck parse_comparison_check(std::string_view text) {
-  ComparisonCheck out;
-  out.text = text;
-  const std::string_view example = "such as rmse+5%, or minque:regret+0.5%";
-  const std::size_t plus = text.rfind('+');
-  if (plus == std::string_view::npos || text.empty() || text.back() != '%')
-    refuse(text, "expected METRIC+NUMBER%", std::string(example));
-  const auto percent = parse_double(text.substr(plus + 1, text.size() - plus - 2));
-  if (!percent || *percent < 0)
-    refuse(text, "expected a number of at least 0 between + and %", std::string(example));
-  out.share = *percent / 100;
-  std::string_view metric = text.substr(0, plus);
-  if (const std::size_t colon = metric.rfind(':'); colon != std::string_view::npos) {
-    out.label = metric.substr(0, colon);
-    if (out.label.empty()) refuse(text, "no algorithm in front of the colon", std::string(example));
-    metric.remove_prefix(colon + 1);
-  }
-  out.metric = metric_of(metric, text).name;
-  return out;
+  GrowthWords words{{}, "algorithm", "such as rmse+5%, or minque:regret+0.5%"};
+  for (const Metric& metric : kMetrics) words.metrics.emplace_back(metric.name);
+  return parse_growth_check(text, words);
 }
 
 std::vector<std::string> failures(const Comparison& comparison, const ComparisonCheck& check) {
-  const Metric& metric = metric_of(check.metric, check.text);
+  const Metric& metric = metric_of(check.metric);
   std::vector<std::string> out, labels;
   std::size_t checked = 0;
   bool found = false;
@@ -116,9 +92,9 @@ std::vector<std::string> failures(const Comparison& comparison, const Comparison
   }
   if (!found && !check.label.empty()) {
     const auto near = nearest(check.label, labels);
-    refuse(check.text,
-           "neither report has this algorithm",
-           near ? fmt::format("did you mean {}?", *near) : "labels are those of the table");
+    refuse_check(check.text,
+                 "neither report has this algorithm",
+                 near ? fmt::format("did you mean {}?", *near) : "labels are those of the table");
   }
   if (checked == 0)
     throw Error({ErrorKind::check,

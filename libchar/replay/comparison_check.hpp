@@ -5,16 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/growth_check.hpp"
 #include "libchar/replay/comparison.hpp"
 
 namespace libchar {
 
-struct ComparisonCheck {
-  std::string text;    ///< as it was typed
-  std::string label;   ///< of one algorithm; empty: of every one
-  std::string metric;  ///< rmse, regret, ns_per_sample or peak_bytes
-  double share = 0;  ///< B may be larger than A by this; of regret: by this much, as it is a share
-};
+/// Metrics: rmse, regret (by so many points, as it is a share itself), ns_per_sample, peak_bytes; labels are of algorithms.
+using ComparisonCheck = GrowthCheck;
 
 /// "[LABEL:]METRIC+NUMBER%". Throws Error(usage) with the nearest metric.
 ComparisonCheck parse_comparison_check(std::string_view text);

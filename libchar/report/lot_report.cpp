@@ -58,17 +58,30 @@ std::vector<std::string> lot_cells(const LotStatistic& s) {
 const std::vector<std::string> kLotHeads = {
     "Group", "What", "Mean over the lot", "Spread (sd)", "Counted", "Not counted"};
 
-std::string statistics_table(const Lot& lot) {
-  std::string out =
-      "<h2>The lot</h2>\n<div class=\"wide\"><table class=\"many\">\n" + table_head(kLotHeads);
-  for (const LotStatistic& s : lot.statistics) out += table_row(lot_cells(s));
+/// Rows of those that something is known of.
+std::string statistics_table(const std::vector<LotStatistic>& statistics) {
+  std::string out = "<div class=\"wide\"><table class=\"many\">\n" + table_head(kLotHeads);
+  for (const LotStatistic& s : statistics)
+    if (!s.counted.empty()) out += table_row(lot_cells(s));
+  return out + "</tbody></table></div>\n";
+}
+
+/// Those of kinds, and the rest folded; where there are no kinds the rest is what there is.
+std::string statistics_part(const Lot& lot) {
+  std::vector<LotStatistic> kinds, channels;
+  for (const LotStatistic& s : lot.statistics) (s.of_kind ? kinds : channels).push_back(s);
+  std::string out = "<h2>The lot</h2>\n" + statistics_table(kinds.empty() ? channels : kinds);
+  if (!kinds.empty() && !channels.empty())
+    out += "<details><summary>Channel by channel over the recordings</summary>\n" +
+           statistics_table(channels) + "</details>\n";
   return out +
-         "</tbody></table></div>\n<p class=\"note\">Means of coefficients are geometric. Spread: "
-         "from member to member, what the "
+         "<p class=\"note\">Means of coefficients are geometric. Spread: from member to member, "
+         "what the "
          "uncertainty of each alone would make is taken out; ≤: none beyond that, 97.5 % limit. In "
          "brackets: 95 % intervals. Only "
          "coefficients that were detected count, and no mean is given where they are under two "
-         "thirds.</p>\n";
+         "thirds; a term detected in no member "
+         "has no row.</p>\n";
 }
 
 std::vector<std::string> outlier_sentences(const Lot& lot) {
@@ -177,7 +190,7 @@ std::string lot_html(const LotReport& report) {
   const Lot& lot = *report.lot;
   const std::string body =
       "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(lot_verdict(lot)) + "</p>\n" +
-      bullet_list(outlier_sentences(lot), "cautions") + statistics_table(lot) +
+      bullet_list(outlier_sentences(lot), "cautions") + statistics_part(lot) +
       "</section>\n<section class=\"channel\">\n<h2>Allan curves</h2>\n" + overlaid_curves(report) +
       "</section>\n<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
       recordings_table(report.devices, recorded_devices(report)) + "</section>\n" +
@@ -205,6 +218,7 @@ std::string lot_text(const LotReport& report) {
   out += "\n" + text_table(rows);
   rows = {{"group", "what", "mean", "spread (sd)", "counted", "not counted"}};
   for (const LotStatistic& s : lot.statistics) {
+    if (s.counted.empty()) continue;
     rows.push_back(lot_cells(s));
     for (std::string& cell : rows.back()) cell = printable(cell);
   }

@@ -1,11 +1,10 @@
 // Two characterizations, term by term.
 
-#include "libchar/characterize/characterization_comparison.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/characterization_check.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/report/json_report.hpp"
 #include "tests/report/synthetic.hpp"
@@ -105,6 +104,25 @@ TEST_CASE("compared terms: an interval that reaches zero claims nothing") {
   Coefficient wide = known(5, 0.3);
   wide.ci95.low = 0;
   CHECK(flicker_difference(known(1, 0.05), wide) == TermDifference::not_resolved);
+}
+
+TEST_CASE("checks of a comparison fail beyond chance only, and where B lost what A knew") {
+  const auto failed = [](const Coefficient& a, const Coefficient& b, const std::string& check) {
+    return failures(
+        compare_characterizations(summary(known(1, 0.01), a), summary(known(1, 0.01), b)),
+        parse_characterization_check(check));
+  };
+  CHECK(failed(known(1, 0.05), known(1.3, 0.05), "bias_instability+10%").size() == 1);
+  CHECK(failed(known(1, 0.05), known(1.3, 0.05), "x:bias_instability+20%").empty());
+  CHECK(failed(known(1, 0.05), known(1.3, 0.5), "bias_instability+0%").empty());
+  CHECK(failed(limit(1), known(1.3, 0.05), "bias_instability+0%").size() == 1);
+  CHECK(failed(limit(1), known(1.3, 0.05), "bias_instability+50%").empty());
+  CHECK_THAT(failed(known(1, 0.05), known(1, 0.05, Status::misfit), "bias_instability+0%").at(0),
+             Contains("not to be relied on"));
+  CHECK_THROWS_WITH(failed(known(1, 0.05, Status::misfit), known(9, 0.05), "bias_instability+0%"),
+                    Contains("E0923"));
+  CHECK_THROWS_WITH(failed(known(1, 0.05), known(9, 0.05), "y:bias_instability+0%"),
+                    Contains("E0922") && Contains("neither report"));
 }
 
 TEST_CASE("compared channels: units are converted, unlike ones and missing channels said") {

@@ -180,6 +180,17 @@ TEST_CASE("compare: two characterizations, and what only one of them has") {
   CHECK(document.at("channels").at(0).at("terms").at(0).at("ratio").get<double>() ==
         Approx(1.6).epsilon(0.05));
   CHECK(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--unlike"}).code == 2);
+  const auto failed = test::run(
+      {"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "gx:white_noise+10%"});
+  CHECK(failed.code == 6);
+  CHECK_THAT(failed.err, Contains("E0924") && Contains("gx: white_noise is 1."));
+  CHECK(
+      test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_noise+90%"})
+          .code == 0);
+  CHECK_THAT(
+      test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_nose+9%"})
+          .err,
+      Contains("E0922") && Contains("did you mean white_noise?"));
   CHECK_THAT(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--markdown"}).out,
              Contains("# Two characterizations"));
 }

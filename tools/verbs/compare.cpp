@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/characterization_comparison.hpp"
+#include "libchar/characterize/characterization_check.hpp"
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
@@ -56,6 +56,12 @@ Json document(const Session& session, const Comparison& c, const std::vector<std
   return out;
 }
 
+[[noreturn]] void refuse_failed(const std::vector<std::string>& failed) {
+  std::string what = failed[0];
+  for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];
+  throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
+}
+
 void compare_two_replays(Session& session, const CompareVerb& verb) {
   std::vector<ComparisonCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_comparison_check(text));
@@ -68,37 +74,44 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
   print(verb.json       ? dump_json(document(session, comparison, failed))
         : verb.markdown ? comparison_markdown(comparison)
                         : comparison_text(comparison));
-  if (failed.empty()) return;
-  std::string what = failed[0];
-  for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];
-  throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
+  if (!failed.empty()) refuse_failed(failed);
 }
 
 void compare_two_characterizations(Session& session, const CompareVerb& verb) {
-  for (const auto& [given, flag] :
-       {std::pair(!verb.checks.empty(), "--fail-if"), std::pair(verb.unlike, "--unlike")})
-    if (given)
-      throw Error({ErrorKind::usage,
-                   "",
-                   flag,
-                   "goes with reports of replay, and these are characterizations",
-                   "",
-                   ""});
-  const CharacterizationComparison comparison = compare_characterizations(
-      read_characterization_report(verb.a), read_characterization_report(verb.b));
-  if (!verb.json)
-    return print(verb.markdown ? comparison_markdown(comparison) : comparison_text(comparison));
-  Json out =
-      comparison_head(session, "characterization-comparison", comparison.a.file, comparison.b.file);
-  out.update(comparison_json(comparison));
-  print(dump_json(out));
+  if (verb.unlike)
+    throw Error({ErrorKind::usage,
+                 "",
+                 "--unlike",
+                 "goes with reports of replay, and these are characterizations",
+                 "",
+                 ""});
+  std::vector<GrowthCheck> checks;
+  for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
+  const CharacterizationSummary a = read_characterization_report(verb.a);  // A is refused before B
+  const CharacterizationComparison comparison =
+      compare_characterizations(a, read_characterization_report(verb.b));
+  std::vector<std::string> failed;
+  for (const GrowthCheck& check : checks)
+    for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
+  if (verb.json) {
+    Json out = comparison_head(
+        session, "characterization-comparison", comparison.a.file, comparison.b.file);
+    out.update(comparison_json(comparison));
+    out["failed"] = Json::array();
+    for (const std::string& sentence : failed) out["failed"].push_back(printable(sentence));
+    print(dump_json(out));
+  } else {
+    print(verb.markdown ? comparison_markdown(comparison) : comparison_text(comparison));
+  }
+  if (!failed.empty()) refuse_failed(failed);
 }
 
 /// The kind of document decides what is compared.
 void run_compare(Session& session, const CompareVerb& verb) {
-  if (!is_characterization_report(verb.a)) return compare_two_replays(session, verb);
-  if (!is_characterization_report(verb.b)) read_characterization_report(verb.b);  // says why not
-  compare_two_characterizations(session, verb);
+  if (is_characterization_report(verb.a) || is_characterization_report(verb.b))
+    compare_two_characterizations(session, verb);
+  else
+    compare_two_replays(session, verb);
 }
 
 std::function<void()> compare_options(VerbOptions& options, Session& session) {
@@ -114,7 +127,9 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
       .add_texts("--fail-if",
                  verb->checks,
                  "exit code 6 when B is worse than A by more: rmse+5%, ns_per_sample+20%, "
-                 "peak_bytes+10%, regret+0.5% (points); minque:rmse+5% for one algorithm; "
+                 "peak_bytes+10%, regret+0.5% (points), white_noise+10% (beyond its interval); "
+                 "minque:rmse+5% "
+                 "for one algorithm, gyro_x:white_noise+5% for one channel; "
                  "several times")
       .value_name("[LABEL:]METRIC+N%")
       .one_value_each();
