@@ -111,6 +111,12 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
+  for (std::string& sentence : findings_beside_terms(fit, unit)) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit) {
+  std::vector<std::string> out;
   if (fit.temperature && fit.temperature->order > 0)
     out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
