@@ -67,6 +67,7 @@ bool stands_on_log_axes(const Spectrum& s) {
 void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
   const NoiseFit& fit = *channel.fit;
   view.findings = findings(fit, view.unit);
+  view.beside_terms = findings_beside_terms(fit, view.unit);
   view.goodness = goodness_sentence(fit.goodness);
   if (const Coefficient& white = fit[Term::white]; white.value) {
     view.per_sample_sd = *white.value * std::sqrt(rate_hz);

@@ -50,9 +50,10 @@ struct ChannelView {
   ChannelSummary summary;        ///< one sentence and its colour
   std::vector<TraceMark> marks;  ///< in the trace
   double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
-  std::vector<std::string> findings;  ///< sentences with numbers
-  std::vector<std::string> cautions;  ///< what asks for a look before the numbers are used
-  std::string goodness;               ///< how well the model explains the channel; "" without a fit
+  std::vector<std::string> findings;      ///< sentences with numbers
+  std::vector<std::string> beside_terms;  ///< those of them that are not about a noise term
+  std::vector<std::string> cautions;      ///< what asks for a look before the numbers are used
+  std::string goodness;  ///< how well the model explains the channel; "" without a fit
   const AllanPoint* allan_minimum = nullptr;  ///< lowest reliable point; null: none
   std::optional<double> per_sample_sd;        ///< N·√f: what white noise alone gives in a sample
   std::optional<double> noise_density_one_sided;          ///< √2·N, as data sheets say it

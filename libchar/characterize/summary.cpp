@@ -165,10 +165,14 @@ std::string why_no_fit(const ChannelResult& channel) {
   return "No noise coefficients were computed";
 }
 
-// Where the terms hold, when that is not everywhere.
-std::string band_phrase(const NoiseFit& fit) {
-  if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz) return "";
-  return fmt::format(" They hold below {} Hz.", number_text(fit.band.top_hz, 3));
+// Where the terms hold, when that is not everywhere, and what the sensor does beside its noise.
+std::string beside_phrase(const NoiseFit& fit) {
+  const std::string temperature = fit.temperature && fit.temperature->order > 0
+                                      ? " Its dependence on temperature was taken out."
+                                      : "";
+  if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz)
+    return temperature;
+  return fmt::format(" They hold below {} Hz.", number_text(fit.band.top_hz, 3)) + temperature;
 }
 
 constexpr std::size_t kMostSpoils = 4;
@@ -189,7 +193,7 @@ ChannelSummary summary_of(const ChannelResult& channel, const std::string& unit)
   out.spoils = std::move(found.spoils);
   out.sentence = channel.fit ? terms_of(*channel.fit, unit) : why_no_fit(channel);
   out.sentence += ".";
-  if (channel.fit) out.sentence += band_phrase(*channel.fit);
+  if (channel.fit) out.sentence += beside_phrase(*channel.fit);
   if (out.spoils.empty()) return out;
   std::vector<std::string> told(
       out.spoils.begin(),

@@ -111,6 +111,12 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
+  for (std::string& sentence : findings_beside_terms(fit, unit)) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit) {
+  std::vector<std::string> out;
   if (fit.gauss_markov && fit.gauss_markov->in_model)
     out.push_back(fmt::format(
         "Gauss–Markov process: standard deviation σ = {} {}, correlation time τ = {}{}.",

@@ -23,6 +23,9 @@ std::string term_title(Term term);
 /// What a fit found, in sentences with numbers in `unit`.
 std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 
+/// What a fit found beside its noise terms: temperature, a filter. The last of `findings`.
+std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
+
 /// What asks for a look before the numbers of this channel are used; empty when nothing does.
 std::vector<std::string> cautions(const ChannelResult& channel);
 

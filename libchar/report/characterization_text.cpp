@@ -39,4 +39,8 @@ std::string characterization_text(const CharacterizationView& view) {
   return text;
 }
 
+std::string characterization_text(const Characterization& result) {
+  return characterization_text(characterization_view(result));
+}
+
 }  // namespace libchar

@@ -337,7 +337,7 @@
   }
 
   const MAKERS = { allan: allanChart, group: groupChart, spectrum: spectrumChart, residuals: residualChart, trace: traceChart };
-  const ON_PAPER = { trace: [340, 76], residuals: [340, 150], group: [340, 245] };
+  const ON_PAPER = { trace: [340, 66], residuals: [340, 150], group: [340, 222] };
 
   // What the reader has not unfolded is not printed.
   start(MAKERS, (kind) => ON_PAPER[kind] || [340, 260], "details.on-paper:not([open])");

@@ -281,6 +281,7 @@ def check_dark(browser, page):
     media("light")
     expect(browser.until("return getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'"), f"{page}: the light colours do not come back")
     browser.protocol("Emulation.setEmulatedMedia", {"features": []})
+    browser.console()  # has advice about our reading of pixels
 
 
 def check_saving(browser, page):
@@ -298,6 +299,8 @@ def check_saving(browser, page):
     wrong = browser.run("""return window.saved.filter((bytes) => bytes[0] === 60).map((bytes) => new DOMParser().parseFromString(new TextDecoder().decode(bytes), 'image/svg+xml'))
       .filter((svg) => svg.querySelector('parsererror') || svg.querySelectorAll('path').length < 8 || svg.querySelectorAll('text').length < 4 || svg.querySelector('script, image, a')).length""")
     expect(wrong == 0, f"{page}: {wrong} saved drawings are empty, broken or hold something else")
+    console = browser.console()
+    expect(not console, f"{page}: saving says {console[:3]}")
 
 
 def check_paper(browser, page, most):

@@ -246,7 +246,6 @@ std::string trust(const ChannelView& view, std::size_t index) {
          std::to_string(fit.iterations) +
          (fit.converged ? " iterations, converged.</p>\n"
                         : " iterations, <b>not converged</b>.</p>\n");
-  out += bullet_list(fit.sentences, "plain");
   if (!fit.remedies.empty()) {
     out += "<h4>What was done to the data before the fit</h4>\n<div class=\"wide\"><table>\n" +
            table_head({"Remedy", "Because", "What was done", "Count"});
@@ -417,7 +416,8 @@ std::string channel_section(const ChannelView& view,
       view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
                         : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
   out += "<p class=\"sentence\">" + html_text(view.summary.sentence) + "</p>\n";
-  out += bullet_list(view.cautions, "cautions");
+  out += bullet_list(view.cautions, "cautions") + bullet_list(view.beside_terms, "plain");
+  if (c.fit) out += bullet_list(c.fit->sentences, "plain");
   if (layout.trace) out += trace_plot(view, index, log);
   out += curve_plots(view, index);
   if (c.fit)
