@@ -23,6 +23,7 @@ std::string characterization_text(const Characterization& result) {
                                  length,
                                  log.time.gaps,
                                  log.time.gaps == 1 ? "" : "s");
+  if (result.still) text += printable(result.still->sentence) + "\n";
   for (const ChannelResult& c : result.channels) {
     text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
     if (c.verification)

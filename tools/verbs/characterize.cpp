@@ -115,6 +115,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
       "6 when they disagree)");
   options.add_count("--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);
   add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);

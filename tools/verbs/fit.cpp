@@ -231,6 +231,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   options.add_flag("--force", verb->force, "overwrite the output files");
   options.add_flag("--json", verb->json, "one JSON document instead of a table");
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_fit_options(options, verb->analysis);
   return [&session, verb] { run_fit(session, *verb); };
