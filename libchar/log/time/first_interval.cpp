@@ -8,10 +8,10 @@
 //            at random lead away from every line like a random walk
 //   packets  most of the samples would be missing, again and again after at most 40 rows
 //   gaps     the longer steps are few, or multiples of the common step
+#include "libchar/log/time/first_interval.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "libchar/log/time/first_interval.hpp"
 
 namespace libchar {
 namespace {
