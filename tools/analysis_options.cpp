@@ -78,7 +78,34 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
   return wanted;
 }
 
+// "auto", or "10..600" and "10s..10min".
+void read_still(const std::string& text, StillOptions& still) {
+  still = {};
+  still.search = text == "auto";
+  if (still.search) return;
+  const std::size_t dots = text.find("..");
+  try {
+    if (dots != std::string::npos) {
+      still.stretch_s =
+          Interval{parse_duration_s(text.substr(0, dots)), parse_duration_s(text.substr(dots + 2))};
+      return;
+    }
+  } catch (const Error&) {
+    // said below
+  }
+  refuse("--still", "auto or FROM..TO was expected", text, "for example --still 10s..20min");
+}
+
 }  // namespace
+
+void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_parsed(
+      "--still",
+      "auto|FROM..TO",
+      [&a](const std::string& text) { read_still(text, a.options.still); },
+      "analyse only the longest stretch in which no channel moves, or the one from FROM to TO "
+      "after the first sample (s, min, h)");
+}
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_enum("--data",

@@ -16,6 +16,8 @@ struct AnalysisOptions {
   bool no_remedies = false, no_second_opinion = false;
 };
 
+/// --still auto|FROM..TO
+void add_still_option(VerbOptions& verb, AnalysisOptions& analysis);
 /// --data, --nominal-frequency, --memory
 void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --type, --taus, --tau-min, --tau-max, --full-overlap

@@ -14,6 +14,7 @@
 #include "libchar/characterize/trace.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
+#include "libchar/fit/digital.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/log/quality.hpp"
@@ -46,8 +47,15 @@ struct Wanted {
   bool fit = true;
 };
 
+/// Only rest is analysed.
+struct StillOptions {
+  bool search = false;  ///< the longest stretch in which no channel moves (motion.hpp)
+  std::optional<Interval> stretch_s;  ///< this stretch, in seconds after the first sample
+};
+
 struct CharacterizeOptions {
   ReadOptions reading;
+  StillOptions still;
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
@@ -70,6 +78,15 @@ struct CharacterizeOptions {
       false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
 
+/// What was analysed of a log.
+struct Stretch {
+  double from_s = 0, to_s = 0;      ///< after the first sample
+  bool found = false;               ///< as the longest still one; else as asked
+  bool whole = false;               ///< it is all of the log
+  std::vector<std::string> moving;  ///< channels that move outside
+  std::string sentence;
+};
+
 struct ChannelVerification;
 struct LimitReport;
 
@@ -86,6 +103,7 @@ struct ChannelResult {
   std::optional<NoiseFit> fit;
   std::vector<NoiseType>
       noise_types;  ///< by averaging time; of phase and frequency that are kept only
+  DigitalFaults digital;  ///< rails, held values, a staircase (of samples that are kept)
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
@@ -94,6 +112,7 @@ struct ChannelResult {
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
+  std::optional<Stretch> still;      ///< where `still` was asked for
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample

@@ -151,7 +151,7 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
   }
   if (channel.verification && !channel.verification->agrees)
     out.push_back(channel.verification->sentences.front());
-  if (q.saturated > 0 && q.suggestions.empty())
+  if (q.saturated > 0 && q.suggestions.empty() && channel.digital.rails.empty())
     out.push_back(
         fmt::format("{} samples stand at the end of the range.", count_text(q.saturated)));
   // Fewer cost nothing worth mentioning here: terms that touch them are left out.
@@ -202,6 +202,7 @@ std::string verdict_of(const Characterization& result) {
   if (!unfitted.empty()) out += fmt::format(" No fit was possible for {}.", list_of(unfitted));
   if (!doubted.empty()) out += fmt::format(" Coefficients of {} are doubtful.", list_of(doubted));
   if (!noted.empty()) out += fmt::format(" Read what is said of {}.", list_of(noted));
+  if (result.still) out += " " + result.still->sentence;
   return out;
 }
 

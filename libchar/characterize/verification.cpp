@@ -224,6 +224,8 @@ ChannelVerification compared(const ChannelResult& recorded,
       std::count_if(
           out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
       out.terms.size()));
+  if (recorded.fit->term[0].status == Status::misfit && out.agrees)
+    out.sentences.front() += " That is no proof of its coefficients, which are a misfit.";
   if (!disagreements.empty() && !recorded.lines.empty())
     disagreements.push_back(fmt::format(
         "The model holds none of the {} spectral lines of the recording.", recorded.lines.size()));

@@ -104,7 +104,12 @@ Json events_json(const std::vector<Event>& events) {
       json["at_ci95"] = pair_of(event.at_ci95);
       json["in_gap"] = event.in_gap;
     }
-    if (event.kind == EventKind::warm_up) json["tau_s"] = json_number(event.tau_s);
+    if (event.kind == EventKind::warm_up) {
+      json["tau_s"] = json_number(event.tau_s);
+      json["tau_ci95"] =
+          Json::array({json_number(event.tau_ci95.low),
+                       event.tau_ci95.high > 0 ? json_number(event.tau_ci95.high) : Json(nullptr)});
+    }
     if (event.kind == EventKind::ramp) json["slope_per_s"] = json_number(event.slope);
     json["not_told_from"] = Json::array();
     for (const EventKind other : event.not_told_from)
@@ -187,6 +192,8 @@ Json noise_fit_json(const std::string& name,
                                 {"count", remedy.count}});
   }
   json["events"] = events_json(fit.events);
+  json["moving_s"] = Json::array();
+  for (const Interval& stretch : fit.moving_s) json["moving_s"].push_back(pair_of(stretch));
   json["temperature"] = fit.temperature ? temperature_json(*fit.temperature) : Json(nullptr);
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;

@@ -84,6 +84,8 @@ struct NoiseFit {
   std::vector<Remedy> remedies;
   std::vector<Event>
       events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
+  std::vector<Interval>
+      moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
   std::vector<FitResidual> residuals;
   std::vector<PowerBin>

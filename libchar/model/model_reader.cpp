@@ -1,5 +1,7 @@
 #include "libchar/model/model_reader.hpp"
 
+#include <fmt/format.h>
+
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
 #include "libchar/model/model_fields.hpp"
@@ -11,10 +13,17 @@ void check_shape(const SensorModel& model, const MapReader& at) {
   const NoiseShape& shape = model.noise_shape;
   const MapReader part = at.map("noise_shape", {"kind", "taps", "frequency_hz", "ratio"});
   using Kind = NoiseShape::Kind;
+  const bool averages = shape.kind == Kind::boxcar || shape.kind == Kind::bartlett;
+  const auto only = [&](std::string_view key, bool used) {
+    if (part.has(key) && !used)
+      part.refuse(key, fmt::format("says nothing of a shape of kind {}", name_of(shape.kind)));
+  };
+  only("taps", averages);
+  only("frequency_hz", shape.kind == Kind::measured);
+  only("ratio", shape.kind == Kind::measured);
   if (shape.kind != Kind::none && model.noise_sampling == NoiseSampling::band_limited)
     part.refuse("kind", "noise with a shape is made sample by sample, not band-limited");
-  if ((shape.kind == Kind::boxcar || shape.kind == Kind::bartlett) &&
-      (shape.taps < 2 || shape.taps > 4096))
+  if (averages && (shape.taps < 2 || shape.taps > 4096))
     part.refuse("kind", "a moving average needs `taps` from 2 to 4096");
   if (shape.kind != Kind::measured) return;
   if (shape.ratio.empty() || shape.ratio.size() != shape.frequency_hz.size())

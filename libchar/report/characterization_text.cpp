@@ -25,6 +25,7 @@ std::string characterization_text(const CharacterizationView& view) {
                                  length,
                                  log.time.gaps,
                                  log.time.gaps == 1 ? "" : "s");
+  if (result.still) text += printable(result.still->sentence) + "\n";
   for (const ChannelView& channel : view.channels) {
     const ChannelResult& c = *channel.result;
     text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");

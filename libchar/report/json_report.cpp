@@ -45,8 +45,22 @@ Json derived_json(const ChannelView& view) {
   return out;
 }
 
+Json digital_json(const DigitalFaults& faults) {
+  Json out = {{"rails", Json::array()}, {"held", nullptr}, {"staircase", nullptr}};
+  for (const Rail& rail : faults.rails)
+    out["rails"].push_back({{"value", rail.value}, {"high", rail.high}, {"share", rail.share}});
+  if (faults.held)
+    out["held"] = {{"times", faults.held->times}, {"sensor_rate_hz", faults.held->sensor_rate_hz}};
+  if (faults.staircase)
+    out["staircase"] = {{"step", faults.staircase->step},
+                        {"noise", faults.staircase->noise},
+                        {"bounded", faults.staircase->bounded}};
+  return out;
+}
+
 Json quality_json(const ChannelResult& channel) {
   Json out = channel_json(channel.channel, channel.quality);
+  out["digital"] = digital_json(channel.digital);
   out["lines"] = Json::array();
   for (const SpectralLine& line : channel.lines) {
     out["lines"].push_back({{"frequency_hz", line.frequency_hz},
@@ -144,6 +158,12 @@ Json json_without_times(const CharacterizationView& view) {
     qualities.push_back(c.quality);
   }
   out["recording"] = recording_json(log, qualities);
+  if (result.still)
+    out["still"] = {{"from_s", result.still->from_s},
+                    {"to_s", result.still->to_s},
+                    {"found", result.still->found},
+                    {"whole", result.still->whole},
+                    {"sentence", json_text(result.still->sentence)}};
 
   Json allan = json_frame("allan"), spectrum = json_frame("spectrum"),
        fit = noise_fit_document(Json::array()), quality = Json::object();

@@ -292,6 +292,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 "outliers (lot.html, lot.json)")
       .excludes(pool);
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);
   add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);

@@ -267,7 +267,9 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
 
 // A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves throughout, and a sentence
 // where a stretch of it does.
-bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
+bool ChannelStage::is_at_rest(ChannelResult& result,
+                              double rate_hz,
+                              std::vector<Interval>& moving_s) const {
   if (options_->data != SampleKind::rate || !options_->wanted.fit || !options_->fit.remedies)
     return true;
   // Filled gaps are stiller than any sensor.
@@ -275,9 +277,17 @@ bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
   if (kept_.size() < kFewestForMotion || missing * 100 > kept_.size()) return true;
   result.motion = find_motion(event_series(kept_, rate_hz));
   for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
+  moving_s = result.motion.moving_s;
   if (result.motion.whole)
     result.problems.push_back("no noise fit: the recording holds a signal throughout");
   return !result.motion.whole;
+}
+
+// Of samples as the log has them: those of other kinds are differences or ratios.
+void ChannelStage::find_digital(ChannelResult& result, double rate_hz) const {
+  if (options_->data != SampleKind::rate || !options_->wanted.fit) return;
+  result.digital = find_digital_faults(kept_, rate_hz, found_.resolution, result.channel.unit);
+  for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
@@ -293,9 +303,13 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
           result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
   if (!is_noise(result)) return;
+  find_digital(result, rate_hz);
   attempt(result, "noise fit", [&] {
-    if (is_at_rest(result, rate_hz))
-      result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
+    std::vector<Interval> moving_s;
+    if (!is_at_rest(result, rate_hz, moving_s)) return;
+    result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
+    result.fit->moving_s = std::move(moving_s);
+    doubt_digital(result.digital, *result.fit);
   });
 }
 

@@ -87,7 +87,8 @@ class ChannelStage {
   Quantization quantization() const;
   ChannelQuality quality_of_rate() const;
   bool is_noise(ChannelResult& result) const;
-  bool is_at_rest(ChannelResult& result, double rate_hz) const;
+  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) const;
+  void find_digital(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 

@@ -76,7 +76,9 @@ Figure one_axis(const AxisNumber& n, Absent absent) {
     const bool doubtful = n.status == Status::undetermined;
     return {n.value,
             false,
-            doubtful ? "undetermined: the record cannot tell it from another term" : ""};
+            doubtful
+                ? "undetermined: the record cannot tell it from another term, or contradicts it"
+                : ""};
   }
   if (absent == Absent::zero)
     return {0.0,
