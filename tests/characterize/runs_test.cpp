@@ -113,9 +113,11 @@ TEST_CASE("pooled runs: the turn-on bias has a spread beyond the noise, or a lim
   REQUIRE(steady.bias);
   CHECK(steady.bias->spread_ci95.high < 0.02);
   CHECK(steady.bias->spread_ci95.high > 0);
+  CHECK(steady.bias->p > 0.01);
   const PooledChannel changing = only(pool_runs(runs_of({}, 12, 4000, 5, 0.1)));
   REQUIRE(changing.bias);
   CHECK(changing.bias->spread_ci95.low > 0.03);
+  CHECK(changing.bias->p < 1e-3);
   CHECK(changing.bias->spread_ci95.low < 0.1);
   CHECK(changing.bias->spread_ci95.high > 0.1);
   CHECK_THAT(changing.sentences.at(1), Contains("from run to run"));
