@@ -32,9 +32,10 @@ std::vector<double> exact_means(std::uint64_t n, std::uint64_t m) {
       covariance[j] = -4 / pi / (4 * lag * lag - 1);
       continue;
     }
-    covariance[j] = 2 / pi / width *
-                    (odd_harmonic((lag + 1) * width) + odd_harmonic(std::abs(lag - 1) * width) -
-                     2 * odd_harmonic(lag * width));
+    covariance[j] =
+        2 / pi / width *
+        (libchar::odd_harmonic((lag + 1) * width) +
+         libchar::odd_harmonic(std::abs(lag - 1) * width) - 2 * libchar::odd_harmonic(lag * width));
   }
   return dct_means_of_covariance(covariance);
 }
