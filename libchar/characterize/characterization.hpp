@@ -70,6 +70,7 @@ struct CharacterizeOptions {
 };
 
 struct ChannelVerification;
+struct LimitReport;
 
 struct ChannelResult {
   Channel channel;
@@ -93,6 +94,7 @@ struct Characterization {
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
+  std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs
 };
 

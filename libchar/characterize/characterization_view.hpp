@@ -62,7 +62,9 @@ struct ChannelView {
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
   std::vector<std::optional<Interval>> verification_ci95;  ///< of the simulation's spectrum
   std::vector<OtherOpinion> other_opinions;
-  std::vector<ConsumerNumber> consumers;             ///< which number goes where
+  std::vector<ConsumerNumber> consumers;  ///< which number goes where
+  /// of the Allan curve, one a point: a sensor that stands at the limits of its data sheet; empty: no limits for this channel
+  std::vector<std::optional<double>> data_sheet;
   bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
 };
 

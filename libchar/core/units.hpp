@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
+
 namespace libchar {
 
 enum class Quantity {
@@ -21,6 +23,19 @@ enum class Quantity {
   concentration,
   ratio
 };
+template <>
+inline constexpr auto enum_table<Quantity> =
+    enum_words<Quantity>({{Quantity::angular_rate, "angular_rate"},
+                          {Quantity::acceleration, "acceleration"},
+                          {Quantity::magnetic_field, "magnetic_field"},
+                          {Quantity::pressure, "pressure"},
+                          {Quantity::temperature, "temperature"},
+                          {Quantity::voltage, "voltage"},
+                          {Quantity::angle, "angle"},
+                          {Quantity::time, "time"},
+                          {Quantity::frequency, "frequency"},
+                          {Quantity::concentration, "concentration"},
+                          {Quantity::ratio, "ratio"}});
 
 struct Unit {
   std::string symbol;  ///< canonical spelling, e.g. "deg/s"

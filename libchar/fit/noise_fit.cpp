@@ -286,6 +286,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr) answer_contradictions(now.fit, *allan);
+  now.fit.bins = bins;
   return std::move(now.fit);
 }
 

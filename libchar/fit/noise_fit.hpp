@@ -75,6 +75,8 @@ struct NoiseFit {
       events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
   std::vector<FitResidual> residuals;
+  std::vector<PowerBin>
+      bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
   /// a sentence: "the record cannot tell bias instability from random walk…"
   std::vector<std::string> sentences;
   std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …

@@ -5,6 +5,7 @@
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/fit_text.hpp"
+#include "libchar/report/limits_text.hpp"
 
 namespace libchar {
 
@@ -34,6 +35,7 @@ std::string characterization_text(const CharacterizationView& view) {
         text += fmt::format("  {}\n", printable(sentence));
     for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
   }
+  if (result.limits) text += limits_text(*result.limits);
   return text;
 }
 

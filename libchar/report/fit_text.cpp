@@ -84,6 +84,10 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
       rows.push_back(row_of(fit.term[i], i, channel.unit));
   }
   text += text_table(rows, "  ", true);
+  if (!fit.band.whole)
+    text +=
+        "  at best, 10 % needs: were the whole spectrum described by the terms, not this band "
+        "alone\n";
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
                         significant(*fit.bandwidth_hz, 4),

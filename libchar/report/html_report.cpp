@@ -22,6 +22,7 @@
 #include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/limits_pieces.hpp"
 #include "libchar/report/json_report.hpp"
 
 namespace libchar {
@@ -218,7 +219,9 @@ std::string provenance(const Characterization& result) {
 
 std::string html_report(const CharacterizationView& view, const Json& without_times) {
   const Characterization& result = *view.result;
-  std::string body = overview(view) + "<section id=\"channels\">\n<h2>Channel by channel</h2>\n";
+  std::string body = overview(view);
+  if (result.limits) body += limits_section(*result.limits);
+  body += "<section id=\"channels\">\n<h2>Channel by channel</h2>\n";
   for (const ChannelGroup& group : view.groups)
     for (const std::size_t i : group.channels)
       body += channel_section(

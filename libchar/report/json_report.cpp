@@ -13,6 +13,7 @@
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/limits_pieces.hpp"
 #include "libchar/report/detail/verification_json.hpp"
 
 namespace libchar {
@@ -145,6 +146,10 @@ Json json_without_times(const CharacterizationView& view) {
     const ChannelResult& c = *v.result;
     allan["channels"].push_back(
         allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
+    if (!v.data_sheet.empty()) {
+      Json& line = allan["channels"].back()["data_sheet"] = Json::array();
+      for (const auto& value : v.data_sheet) line.push_back(json_number(value));
+    }
     spectrum["channels"].push_back(spectrum_channel_json(
         c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
     fit["channels"].push_back(fit_or_reason(v));
@@ -164,6 +169,7 @@ Json json_without_times(const CharacterizationView& view) {
       out["verification"]["channels"].push_back(v.result->verification ? verification_json(v)
                                                                        : Json(nullptr));
   }
+  if (result.limits) out["limits"] = limits_json(*result.limits);
   return out;
 }
 

@@ -160,9 +160,13 @@ TEST_CASE("compare: bad input is one sentence with its place") {
   replays.make("a", {"--algorithms", "mean"});
   CHECK(replays.compare("a", "nothing").code == 3);
   std::ofstream(replays.path("x.json")) << "{\"format\": \"characterization\", \"version\": 1}\n";
-  const auto other = replays.compare("x.json", "a");
+  const auto other = replays.compare("a", "x.json");
   CHECK(other.code == 3);
   CHECK_THAT(other.err, Contains("x.json:1:12") && Contains("E0920"));
+  const auto turned = replays.compare("x.json", "a");
+  CHECK(turned.code == 3);
+  CHECK_THAT(turned.err,
+             Contains("a/report.json") && Contains("E0771") && Contains("replay-report"));
   std::ofstream(replays.path("y.json")) << "{\"format\": ";
   CHECK(replays.compare("a", "y.json").code == 3);
   std::string text = test::slurp(replays.folder / "a/report.json");

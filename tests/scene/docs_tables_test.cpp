@@ -5,6 +5,7 @@
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/reading_fields.hpp"
 #include "libchar/model/model_fields.hpp"
+#include "libchar/model/noise_limits.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "tests/support/docs_table.hpp"
 
@@ -21,6 +22,8 @@ void check_table(const std::string& file, const std::string& name, const Fields<
 
 TEST_CASE("the tables of keys in docs are those of the readers") {
   check_table("models.md", "sensor model", model_fields());
+  check_table("recordings.md", "limits", limits_fields());
+  check_table("recordings.md", "limit", limit_block_fields());
   check_table("formats.md", "sidecar", sidecar_fields());
   check_table("scenes.md", "scene", scene_fields());
   check_table("scenes.md", "sensor", sensor_fields());

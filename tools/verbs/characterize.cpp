@@ -9,6 +9,9 @@
 
 #include "analysis_options.hpp"
 #include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/limits.hpp"
+#include "libchar/characterize/lot.hpp"
+#include "libchar/characterize/runs.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
@@ -19,7 +22,10 @@
 #include "libchar/log/formats.hpp"
 #include "libchar/report/characterization_text.hpp"
 #include "libchar/report/json_report.hpp"
+#include "libchar/report/limits_text.hpp"
+#include "libchar/report/lot_report.hpp"
 #include "libchar/report/report_files.hpp"
+#include "libchar/report/runs_report.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -31,10 +37,16 @@ namespace fs = std::filesystem;
 
 struct CharacterizeVerb {
   std::vector<std::string> logs;
-  std::string folder;
-  bool json = false, force = false, verify = false;
+  std::string folder, limits;
+  bool json = false, force = false, verify = false, pool = false, lot = false;
   std::uint64_t seed = 1;
   AnalysisOptions analysis;
+};
+
+/// What the exit code depends on.
+struct Outcome {
+  bool any_fit = false, agrees = true;
+  std::vector<std::string> exceeded;  ///< limits, a sentence a recording
 };
 
 fs::path folder_for(const CharacterizeVerb& verb,
@@ -44,46 +56,171 @@ fs::path folder_for(const CharacterizeVerb& verb,
   return fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken);
 }
 
-void run_characterize(Session& session, const CharacterizeVerb& verb) {
-  const CharacterizeOptions options = finish(verb.analysis);
+std::vector<std::string> inputs_of(const CharacterizeVerb& verb) {
+  std::vector<std::string> inputs = verb.logs;
+  if (!verb.limits.empty()) inputs.push_back(verb.limits);
+  return inputs;
+}
+
+void hold_against(const NoiseLimits& limits, Characterization& result, Outcome& outcome) {
+  result.settings.push_back({"limits", limits.file});
+  const auto report = std::make_shared<LimitReport>(judge_limits(result, limits));
+  if (report->count(LimitStatus::fail) > 0)
+    outcome.exceeded.push_back(result.log.file + ": " + limits_verdict(*report));
+  result.limits = report;
+}
+
+Characterization characterized(Session& session,
+                               const CharacterizeVerb& verb,
+                               const CharacterizeOptions& options,
+                               const std::optional<NoiseLimits>& limits,
+                               const std::string& log,
+                               Outcome& outcome) {
+  Characterization result = characterize(log, options, session.terminal);
+  result.command = session.command;
+  result.settings = settings_of(options);
+  if (verb.verify) {
+    VerifyOptions how;
+    how.seed = verb.seed;
+    result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
+    outcome.agrees = verify(result, options, how, session.terminal) && outcome.agrees;
+  }
+  if (verb.pool) result.settings.push_back(part_entry("pool", {{"seed", verb.seed}}));
+  session.terminal.clear();
+  if (limits) hold_against(*limits, result, outcome);
+  report_warnings(session, result.log);
+  for (const ChannelResult& c : result.channels) outcome.any_fit = outcome.any_fit || c.fit;
+  return result;
+}
+
+void say_written(const std::vector<OutputFile>& outputs) {
+  std::string written = "\nwrote";
+  for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
+  print(written + "\n");
+}
+
+void run_one_by_one(Session& session,
+                    const CharacterizeVerb& verb,
+                    const CharacterizeOptions& options,
+                    const std::optional<NoiseLimits>& limits,
+                    Outcome& outcome) {
   std::set<std::string> taken;
   Json documents = Json::array();
-  bool any_fit = false, agrees = true;
   for (const std::string& log : verb.logs) {
-    Characterization result = characterize(log, options, session.terminal);
-    result.command = session.command;
-    result.settings = settings_of(options);
-    if (verb.verify) {
-      VerifyOptions how;
-      how.seed = verb.seed;
-      result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
-      agrees = verify(result, options, how, session.terminal) && agrees;
-    }
-    session.terminal.clear();
-    report_warnings(session, result.log);
+    const Characterization result = characterized(session, verb, options, limits, log, outcome);
     const CharacterizationView view = characterization_view(result);
     const fs::path folder = folder_for(verb, log, taken);
     const std::vector<OutputFile> outputs = report_files(view, folder);
-    write_outputs(outputs, folder, {log}, verb.force);
-    for (const ChannelResult& c : result.channels) any_fit = any_fit || c.fit;
+    write_outputs(outputs, folder, inputs_of(verb), verb.force);
     if (verb.json) {
       documents.push_back(json_report(view));
       continue;
     }
     print_text(characterization_text(view));
-    std::string written = "\nwrote";
-    for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
-    print(written + "\n");
+    say_written(outputs);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
-  if (!any_fit)
+}
+
+/// The files of one folder.
+struct FolderOutputs {
+  fs::path folder;
+  std::vector<OutputFile> files;
+};
+
+/// Nothing is written before all of it can be.
+void write_folders(const CharacterizeVerb& verb, const std::vector<FolderOutputs>& all) {
+  const std::vector<std::string> inputs = inputs_of(verb);
+  for (const FolderOutputs& one : all) {
+    std::vector<std::string> paths;
+    for (const OutputFile& file : one.files) paths.push_back(file.path);
+    check_outputs(paths, one.folder, inputs, verb.force);
+  }
+  for (const FolderOutputs& one : all) write_outputs(one.files, one.folder, inputs, verb.force);
+}
+
+/// The reports of single recordings, in folders of their own below that of the page.
+std::vector<FolderOutputs> single_reports(const CharacterizeVerb& verb,
+                                          const std::vector<Characterization>& results,
+                                          std::vector<std::string>& folders) {
+  std::set<std::string> taken;
+  std::vector<FolderOutputs> all;
+  for (const Characterization& result : results) {
+    folders.push_back(unused_file_name_for(fs::path(result.log.file).stem().string(), taken));
+    const fs::path folder = fs::path(verb.folder) / folders.back();
+    all.push_back({folder, report_files(characterization_view(result), folder)});
+  }
+  return all;
+}
+
+std::vector<Characterization> all_characterized(Session& session,
+                                                const CharacterizeVerb& verb,
+                                                const CharacterizeOptions& options,
+                                                const std::optional<NoiseLimits>& limits,
+                                                Outcome& outcome) {
+  std::vector<Characterization> results;
+  for (const std::string& log : verb.logs)
+    results.push_back(characterized(session, verb, options, limits, log, outcome));
+  return results;
+}
+
+/// The limits of the data sheet hold for what the runs together say.
+void run_pooled(Session& session,
+                const CharacterizeVerb& verb,
+                const CharacterizeOptions& options,
+                const std::optional<NoiseLimits>& limits,
+                Outcome& outcome) {
+  const auto results = all_characterized(session, verb, options, std::nullopt, outcome);
+  PoolOptions how;
+  how.fit = options.fit;
+  how.data = options.data;
+  how.seed = verb.seed;
+  const PooledRuns pooled = pool_runs(results, how);
+  std::optional<LimitReport> judged;
+  if (limits) {
+    std::vector<LimitSubject> subjects;
+    for (const PooledChannel& c : pooled.channels) subjects.push_back({c.channel, &c.fit});
+    judged = judge_limits(subjects, *limits);
+    if (judged->count(LimitStatus::fail) > 0) outcome.exceeded.push_back(limits_verdict(*judged));
+  }
+  RunsReport report{results, &pooled, judged ? &*judged : nullptr, {}, session.command};
+  std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
+  all.push_back({verb.folder, runs_files(report, verb.folder)});
+  write_folders(verb, all);
+  if (verb.json) return print(dump_json(runs_json(report)));
+  print_text(runs_text(report));
+  say_written(all.back().files);
+}
+
+void run_lot(Session& session,
+             const CharacterizeVerb& verb,
+             const CharacterizeOptions& options,
+             const std::optional<NoiseLimits>& limits,
+             Outcome& outcome) {
+  const auto results = all_characterized(session, verb, options, limits, outcome);
+  LotOptions how;
+  how.data = options.data;
+  const Lot lot = lot_of(results, how);
+  LotReport report{results, &lot, {}, session.command};
+  std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
+  all.push_back({verb.folder, lot_files(report, verb.folder)});
+  write_folders(verb, all);
+  if (verb.json) return print(dump_json(lot_json(report)));
+  print_text(lot_text(report));
+  for (const Characterization& result : results)
+    if (result.limits) print_text("\n" + printable(result.log.file) + limits_text(*result.limits));
+  say_written(all.back().files);
+}
+
+void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
+  if (!outcome.any_fit)
     throw Error({ErrorKind::numeric,
                  "E0711",
                  verb.logs[0],
                  "no channel could be fitted; the report says why",
                  "",
                  ""});
-  if (!agrees)
+  if (!outcome.agrees)
     throw Error(
         {ErrorKind::check,
          "E0713",
@@ -91,6 +228,25 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
          "a simulation of the model does not agree with the recording; the report says where",
          "",
          ""});
+  if (!outcome.exceeded.empty())
+    throw Error({ErrorKind::check,
+                 "E0714",
+                 verb.limits,
+                 fmt::format("{}", fmt::join(outcome.exceeded, " ")),
+                 "",
+                 ""});
+}
+
+void run_characterize(Session& session, const CharacterizeVerb& verb) {
+  const CharacterizeOptions options = finish(verb.analysis);
+  if (verb.pool && verb.logs.size() < 2)
+    throw Error({ErrorKind::usage, "", "--pool", "needs two runs of the sensor at least", "", ""});
+  std::optional<NoiseLimits> limits;
+  if (!verb.limits.empty()) limits = read_limits_file(verb.limits);
+  Outcome outcome;
+  const auto run = verb.pool ? run_pooled : verb.lot ? run_lot : run_one_by_one;
+  run(session, verb, options, limits, outcome);
+  refuse_outcome(verb, outcome);
 }
 
 std::function<void()> characterize_options(VerbOptions& options, Session& session) {
@@ -114,7 +270,27 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
       verb->verify,
       "simulate every channel from its model, characterize that, and compare (exit code "
       "6 when they disagree)");
-  options.add_count("--seed", verb->seed, "seed of the simulation of --verify (default: 1)");
+  options
+      .add_text(
+          "--limits",
+          verb->limits,
+          "what a data sheet allows of each noise term (docs/recordings.md): pass, fail or not "
+          "decided; exit code 6 when one fails")
+      .value_name("FILE");
+  options.add_count(
+      "--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
+  const Option pool =
+      options.add_flag("--pool",
+                       verb->pool,
+                       "the LOGs are runs of one sensor: one set of coefficients by one "
+                       "likelihood, whether they have "
+                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
+  options
+      .add_flag("--lot",
+                verb->lot,
+                "the LOGs are devices side by side: overlaid curves, mean and spread of each term, "
+                "outliers (lot.html, lot.json)")
+      .excludes(pool);
   add_reading_options(options, session, verb->analysis.options.reading);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);

@@ -1,4 +1,4 @@
-// compare A B: two reports of one scene side by side, and checks for build servers.
+// compare A B: two reports of one scene side by side, and checks for build servers; or two characterizations, term by term.
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/characterization_comparison.hpp"
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
@@ -15,6 +16,7 @@
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
+#include "libchar/report/characterization_comparison_text.hpp"
 #include "libchar/report/comparison_text.hpp"
 #include "verb.hpp"
 
@@ -29,9 +31,12 @@ struct CompareVerb {
   bool unlike = false, json = false, markdown = false;
 };
 
-Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
+Json comparison_head(const Session& session,
+                     const std::string& format,
+                     const std::string& a,
+                     const std::string& b) {
   std::vector<LogInfo> files(2);
-  const std::string* paths[] = {&c.a.file, &c.b.file};
+  const std::string* paths[] = {&a, &b};
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string text = read_document_text(*paths[i]);
     Sha256 hash;
@@ -40,14 +45,18 @@ Json document(const Session& session, const Comparison& c, const std::vector<std
     files[i].sha256 = hash.finish();
     files[i].bytes = text.size();
   }
-  Json out = document_head(session, "replay-comparison", {&files[0], &files[1]});
+  return document_head(session, format, {&files[0], &files[1]});
+}
+
+Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
+  Json out = comparison_head(session, "replay-comparison", c.a.file, c.b.file);
   out.update(comparison_json(c));
   out["failed"] = Json::array();
   for (const std::string& sentence : failed) out["failed"].push_back(printable(sentence));
   return out;
 }
 
-void run_compare(Session& session, const CompareVerb& verb) {
+void compare_two_replays(Session& session, const CompareVerb& verb) {
   std::vector<ComparisonCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_comparison_check(text));
   const Comparison comparison =
@@ -65,10 +74,42 @@ void run_compare(Session& session, const CompareVerb& verb) {
   throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
 }
 
+void compare_two_characterizations(Session& session, const CompareVerb& verb) {
+  for (const auto& [given, flag] :
+       {std::pair(!verb.checks.empty(), "--fail-if"), std::pair(verb.unlike, "--unlike")})
+    if (given)
+      throw Error({ErrorKind::usage,
+                   "",
+                   flag,
+                   "goes with reports of replay, and these are characterizations",
+                   "",
+                   ""});
+  const CharacterizationComparison comparison = compare_characterizations(
+      read_characterization_report(verb.a), read_characterization_report(verb.b));
+  if (!verb.json)
+    return print(verb.markdown ? comparison_markdown(comparison) : comparison_text(comparison));
+  Json out =
+      comparison_head(session, "characterization-comparison", comparison.a.file, comparison.b.file);
+  out.update(comparison_json(comparison));
+  print(dump_json(out));
+}
+
+/// The kind of document decides what is compared.
+void run_compare(Session& session, const CompareVerb& verb) {
+  if (!is_characterization_report(verb.a)) return compare_two_replays(session, verb);
+  if (!is_characterization_report(verb.b)) read_characterization_report(verb.b);  // says why not
+  compare_two_characterizations(session, verb);
+}
+
 std::function<void()> compare_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<CompareVerb>();
-  options.add_text("A", verb->a, "report.json of a replay, or the folder that holds it").required();
-  options.add_text("B", verb->b, "the same of the replay that is held against it").required();
+  options
+      .add_text("A",
+                verb->a,
+                "report.json of a replay or of characterize (runs.json of pooled runs, what fit "
+                "--json prints), or the folder that holds it")
+      .required();
+  options.add_text("B", verb->b, "the same of what is held against it").required();
   options
       .add_texts("--fail-if",
                  verb->checks,
@@ -90,7 +131,7 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
 VerbEntry verb_compare() {
   return {9,
           "compare",
-          "Two reports of replay side by side; refuses those of unlike scenes",
+          "Two reports of replay, or two characterizations, side by side",
           compare_options};
 }
 

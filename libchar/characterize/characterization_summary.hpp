@@ -1,0 +1,46 @@
+#pragma once
+// report.json of a characterization, read back: what a comparison needs of it.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/coefficient.hpp"
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+
+struct ChannelSummary {
+  std::string name, unit;
+  bool fitted = false;
+  Coefficients term;
+  FitBand band;
+  std::string shape;  ///< its kind, with the number of taps
+  double p = 1;       ///< goodness of fit; NaN: not known
+  double rate_hz = 0, duration_s = 0;
+  std::size_t events = 0;  ///< taken out before the fit
+};
+
+struct CharacterizationSummary {
+  std::string file;       ///< of the report
+  std::string format;     ///< "characterization", "pooled-runs", "noise-fit"
+  std::string program;    ///< version of the program that wrote it
+  std::string recording;  ///< what was characterized, in words
+  std::vector<ChannelSummary> channels;
+
+  const ChannelSummary* find(std::string_view name) const;
+};
+
+/// The file that a path means: the report.json or runs.json in a folder, or the path itself.
+std::string report_file(const std::string& path);
+
+/// Whether the document at the path is one that read_characterization_report reads, by its format; no where it cannot be read.
+bool is_characterization_report(const std::string& path);
+
+/// Reads report.json of characterize, runs.json of pooled runs, or what `fit` prints as JSON; of a folder, the one in it. Throws
+/// Error(input) with file and key.
+CharacterizationSummary read_characterization_report(const std::string& path);
+CharacterizationSummary parse_characterization_report(std::string_view text,
+                                                      const std::string& path);
+
+}  // namespace libchar

@@ -1,0 +1,59 @@
+#pragma once
+// A characterization held against the limits of a data sheet: pass, fail, or not decided.
+//
+// By the 95 % interval of a coefficient: a term that stands exactly at its limit passes, or fails, by chance in at most 2.5 % of
+// recordings (5 % where only an upper limit is known).
+
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/enum_table.hpp"
+#include "libchar/model/noise_limits.hpp"
+
+namespace libchar {
+
+enum class LimitStatus {
+  pass,  ///< the whole interval, or the upper 95 % limit of a term not detected, is within the limit
+  fail,         ///< the whole interval is above it
+  not_decided,  ///< the interval straddles it, or the coefficient cannot be relied on
+};
+template <>
+inline constexpr auto enum_table<LimitStatus> =
+    enum_words<LimitStatus>({{LimitStatus::pass, "pass"},
+                             {LimitStatus::fail, "fail"},
+                             {LimitStatus::not_decided, "not_decided"}});
+
+struct LimitJudgement {
+  std::string channel, unit;  ///< unit of the channel
+  Term term = Term::white;
+  double most = 0;       ///< the limit in the term's own unit
+  std::string text;      ///< the limit as its file says it
+  Coefficient measured;  ///< not_fitted: there is no fit
+  LimitStatus status = LimitStatus::not_decided;
+  std::string sentence;  ///< how it was decided, with numbers
+};
+
+struct LimitReport {
+  std::string file, sensor;
+  std::vector<LimitJudgement> judgements;
+  std::size_t count(LimitStatus status) const;
+};
+
+/// One coefficient against its limit.
+LimitStatus judge_limit(const Coefficient& measured, double most);
+
+/// A channel with its fit; null: there is none.
+struct LimitSubject {
+  Channel channel;
+  const NoiseFit* fit = nullptr;
+};
+
+/// Throws as limits_for.
+LimitReport judge_limits(const std::vector<LimitSubject>& subjects, const NoiseLimits& limits);
+LimitReport judge_limits(const Characterization& result, const NoiseLimits& limits);
+
+/// "2 of 6 limits fail: gyro_x white noise …": the verdict in one sentence.
+std::string limits_verdict(const LimitReport& report);
+
+}  // namespace libchar

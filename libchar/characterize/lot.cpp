@@ -1,0 +1,256 @@
+// Coefficients are compared as logarithms, whose standard deviation is the relative one of the fit: y = ln c, v = (sd c / c)². Means
+// and spreads are those of core/random_effects.hpp: what the records' lengths alone make the values scatter is taken out.
+#include "libchar/characterize/lot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/detail/alike_runs.hpp"
+#include "libchar/characterize/verdict.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+using Devices = std::span<const Characterization>;
+
+const ChannelResult& channel_of(Devices devices, const LotMember& m) {
+  return devices[m.device].channels[m.channel];
+}
+
+/// Names of files without folders, or with them where two are alike.
+std::vector<std::string> device_names(Devices devices) {
+  std::vector<std::string> names;
+  for (const Characterization& one : devices)
+    names.push_back(std::filesystem::path(one.log.file).stem().string());
+  const std::vector<std::string> stems = names;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (std::count(stems.begin(), stems.end(), stems[i]) > 1) names[i] = devices[i].log.file;
+  return names;
+}
+
+struct Group {
+  std::string name, unit;
+  std::vector<LotMember> members;
+  bool one_channel = false;  ///< the same channel of several devices
+};
+
+/// Channels of one name and unit, and all of one kind and unit, in order of appearance; two members at least.
+std::vector<Group> groups_of(Devices devices) {
+  std::vector<Group> by_name, by_kind;
+  const auto add = [](std::vector<Group>& groups,
+                      const std::string& name,
+                      const std::string& unit,
+                      LotMember m,
+                      bool one) {
+    auto at = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+      return g.name == name && g.unit == unit;
+    });
+    if (at == groups.end()) at = groups.insert(groups.end(), Group{name, unit, {}, one});
+    at->members.push_back(m);
+  };
+  for (std::size_t d = 0; d < devices.size(); ++d)
+    for (std::size_t c = 0; c < devices[d].channels.size(); ++c) {
+      const Channel& channel = devices[d].channels[c].channel;
+      const auto unit = find_unit(channel.unit);
+      const std::string symbol = unit ? unit->symbol : channel.unit;
+      add(by_name, channel.name, symbol, {d, c}, true);
+      add(by_kind,
+          unit                   ? fmt::format("{} in {}", name_of(unit->quantity), symbol)
+          : channel.unit.empty() ? "no unit"
+                                 : "in " + channel.unit,
+          symbol,
+          {d, c},
+          false);
+    }
+  std::vector<Group> out;
+  for (const Group& kind : by_kind) {
+    std::size_t names = 0;
+    for (const Group& name : by_name)
+      names += std::any_of(name.members.begin(),
+                           name.members.end(),
+                           [&](const LotMember& m) {
+                             return m.device == kind.members[0].device &&
+                                    m.channel == kind.members[0].channel;
+                           }) &&
+               name.members.size() == kind.members.size();
+    // A kind of one channel only is that channel.
+    if (kind.members.size() >= 2 && names == 0) out.push_back(kind);
+  }
+  for (const Group& name : by_name)
+    if (name.members.size() >= 2) out.push_back(name);
+  return out;
+}
+
+struct Values {
+  std::vector<double> y, v;
+};
+
+Values add_values(Devices devices,
+                  const Group& group,
+                  std::optional<Term> term,
+                  LotStatistic& out) {
+  Values values;
+  for (const LotMember& m : group.members) {
+    const ChannelResult& c = channel_of(devices, m);
+    double y = 0, v = 0;
+    if (!c.fit) {
+      ++out.doubtful;
+      continue;
+    }
+    if (term) {
+      const Coefficient& k = (*c.fit)[*term];
+      if (k.status == Status::not_detected) ++out.not_detected;
+      if (k.status != Status::detected && k.status != Status::not_detected) ++out.doubtful;
+      if (k.status != Status::detected || !k.value || !(k.relative_sd > 0)) continue;
+      y = std::log(*k.value);
+      v = k.relative_sd * k.relative_sd;
+    } else {
+      y = c.quality.mean;
+      v = allan_variance(c.fit->theta, static_cast<double>(c.fit->samples), 1 / c.fit->rate_hz);
+      if (!(v > 0)) continue;
+    }
+    values.y.push_back(y);
+    values.v.push_back(v);
+    out.counted.push_back(m);
+  }
+  return values;
+}
+
+/// How far a member is from what the others let expect.
+LotOutlier outlier_of(Devices devices,
+                      const std::vector<std::string>& names,
+                      const LotStatistic& s,
+                      const Values& values,
+                      const Outlier& found) {
+  LotOutlier out;
+  out.member = s.counted[found.index];
+  out.p = found.p;
+  const double value = values.y[found.index];
+  const std::string who =
+      channel_of(devices, out.member).channel.name + " of " + names[out.member.device];
+  if (!s.term) {
+    out.sentence = fmt::format("{}: mean {} {}, {} standard deviations from the others ({}).",
+                               who,
+                               number_text(value),
+                               s.unit,
+                               number_text(std::abs(found.deviation), 2),
+                               probability_text(found.p));
+    return out;
+  }
+  std::vector<double> y = values.y, v = values.v;
+  y.erase(y.begin() + static_cast<std::ptrdiff_t>(found.index));
+  v.erase(v.begin() + static_cast<std::ptrdiff_t>(found.index));
+  const double others = random_effects(y, v).mean;
+  out.ratio = std::exp(value - others);
+  out.sentence = fmt::format("{}: {} {} {}, {} times that of the others ({}).",
+                             who,
+                             lot_title(s),
+                             number_text(std::exp(value)),
+                             s.unit,
+                             number_text(out.ratio, 3),
+                             probability_text(found.p));
+  return out;
+}
+
+/// A statistic with the values that it is of.
+struct Statistic {
+  LotStatistic lot;
+  Values values;
+};
+
+std::optional<Statistic> statistic_of(Devices devices,
+                                      const Group& group,
+                                      std::optional<Term> term) {
+  Statistic out;
+  LotStatistic& lot = out.lot;
+  lot.group = group.name;
+  lot.term = term;
+  const std::string unit = group.unit.empty() ? "U" : group.unit;
+  lot.unit = term ? term_unit(kTermNames[static_cast<std::size_t>(*term)].key, unit) : unit;
+  lot.members = group.members.size();
+  out.values = add_values(devices, group, term, lot);
+  if (lot.counted.empty() && (lot.not_detected == 0 || (term && *term >= Term::quantization)))
+    return std::nullopt;
+  if (lot.counted.size() >= 2 && 3 * lot.counted.size() >= 2 * lot.members)
+    lot.effects = random_effects(out.values.y, out.values.v);
+  return out;
+}
+
+std::vector<Statistic> statistics_of(Devices devices, const LotOptions& options) {
+  std::vector<Statistic> out;
+  for (const Group& group : groups_of(devices)) {
+    for (std::size_t t = 0; t < kTerms; ++t)
+      if (auto s = statistic_of(devices, group, static_cast<Term>(t))) out.push_back(std::move(*s));
+    if (group.one_channel && options.data == SampleKind::rate)
+      if (auto s = statistic_of(devices, group, std::nullopt)) out.push_back(std::move(*s));
+  }
+  return out;
+}
+
+}  // namespace
+
+Lot lot_of(Devices devices, const LotOptions& options) {
+  std::size_t channels = 0;
+  for (const Characterization& one : devices) channels += one.channels.size();
+  if (channels < 2)
+    throw Error({ErrorKind::usage,
+                 "",
+                 "",
+                 "one channel is no lot",
+                 "",
+                 "name several recordings, or one with several channels"});
+  check_files(devices);
+  Lot lot;
+  lot.devices = device_names(devices);
+  std::vector<Statistic> statistics = statistics_of(devices, options);
+  const double share = options.outlier_probability /
+                       static_cast<double>(std::max<std::size_t>(1, statistics.size()));
+  for (Statistic& s : statistics) {
+    if (s.lot.effects)
+      for (const Outlier& found : find_outliers(s.values.y, s.values.v, share))
+        s.lot.outliers.push_back(outlier_of(devices, lot.devices, s.lot, s.values, found));
+    lot.statistics.push_back(std::move(s.lot));
+  }
+  return lot;
+}
+
+std::optional<LotFigures> lot_figures(const LotStatistic& s) {
+  if (!s.effects) return std::nullopt;
+  LotFigures out{s.effects->mean, s.effects->mean_ci95, s.effects->spread, s.effects->spread_ci95};
+  if (!s.term) return out;
+  out.mean = std::exp(out.mean);
+  out.mean_ci95 = {std::exp(out.mean_ci95.low), std::exp(out.mean_ci95.high)};
+  return out;
+}
+
+std::string lot_title(const LotStatistic& s) {
+  return s.term ? term_title(*s.term) : "Mean";
+}
+
+std::string lot_verdict(const Lot& lot) {
+  std::vector<LotMember> named;
+  for (const LotStatistic& s : lot.statistics)
+    for (const LotOutlier& o : s.outliers)
+      if (std::none_of(named.begin(), named.end(), [&](const LotMember& m) {
+            return m.device == o.member.device && m.channel == o.member.channel;
+          }))
+        named.push_back(o.member);
+  const std::string devices =
+      fmt::format("{} recording{}", lot.devices.size(), lot.devices.size() == 1 ? "" : "s");
+  if (named.empty()) return devices + ": no channel stands out from its kind.";
+  return fmt::format("{}: {} channel{} out from {} kind.",
+                     devices,
+                     named.size(),
+                     named.size() == 1 ? " stands" : "s stand",
+                     named.size() == 1 ? "its" : "their");
+}
+
+}  // namespace libchar

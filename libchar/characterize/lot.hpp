@@ -1,0 +1,70 @@
+#pragma once
+// Several devices, or axes of one, side by side: mean and spread of each coefficient over the lot, and who does not belong to it.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/random_effects.hpp"
+
+namespace libchar {
+
+/// A channel of a device.
+struct LotMember {
+  std::size_t device = 0, channel = 0;  ///< indices
+};
+
+struct LotOutlier {
+  LotMember member;
+  double ratio = 1;  ///< of a coefficient: to the mean of the lot; of a bias: 1
+  double p = 1;      ///< of so large a deviation of any member
+  std::string sentence;
+};
+
+/// One quantity over the members of a group.
+struct LotStatistic {
+  std::string group;         ///< "gyro_x", or "angular_rate in deg/s" for all channels of a kind
+  std::optional<Term> term;  ///< none: the mean of the samples
+  std::string unit;          ///< of the values
+  std::size_t members = 0;
+  std::size_t not_detected = 0;    ///< upper limit only
+  std::size_t doubtful = 0;        ///< undetermined, misfit, or no fit
+  std::vector<LotMember> counted;  ///< those that the figures below are of
+  /// of ln(value) for coefficients, of the value for means; none: fewer than two, or under two thirds of the members
+  std::optional<RandomEffects> effects;
+  std::vector<LotOutlier> outliers;
+};
+
+struct Lot {
+  std::vector<std::string> devices;  ///< names, one a recording, none twice
+  std::vector<LotStatistic> statistics;
+};
+
+struct LotOptions {
+  SampleKind data = SampleKind::rate;  ///< the mean of a phase is no bias
+  double outlier_probability =
+      0.01;  ///< of naming any member of a lot that has no outlier: each statistic gets its share
+};
+
+/// Throws Error(input) for one file twice, Error(usage) where there are not two channels.
+Lot lot_of(std::span<const Characterization> devices, const LotOptions& options = {});
+
+/// Mean and spread of a statistic in the unit of its values: exp of the logarithms for coefficients.
+struct LotFigures {
+  double mean = 0;
+  Interval mean_ci95;
+  double spread =
+      0;  ///< of coefficients relative (standard deviation of the logarithm), of means in their unit
+  Interval spread_ci95;
+};
+std::optional<LotFigures> lot_figures(const LotStatistic& statistic);
+
+/// "White noise", "Mean".
+std::string lot_title(const LotStatistic& statistic);
+
+/// A paragraph.
+std::string lot_verdict(const Lot& lot);
+
+}  // namespace libchar

@@ -1,0 +1,101 @@
+#include "libchar/report/detail/limits_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/limits_text.hpp"
+
+namespace libchar {
+namespace {
+
+std::string_view limit_words(LimitStatus status) {
+  switch (status) {
+    case LimitStatus::pass:
+      return "pass";
+    case LimitStatus::fail:
+      return "fail";
+    case LimitStatus::not_decided:
+      return "not decided";
+  }
+  return "";
+}
+
+std::string_view limit_chip(LimitStatus status) {
+  switch (status) {
+    case LimitStatus::pass:
+      return "detected";
+    case LimitStatus::fail:
+      return "alarm";
+    case LimitStatus::not_decided:
+      return "unsure";
+  }
+  return "";
+}
+
+std::string limit_row(const LimitJudgement& j) {
+  return fmt::format(
+      "<tr><td><span class=\"chip {}\">{}</span></td><td class=\"text\">{}</td></tr>\n",
+      limit_chip(j.status),
+      limit_words(j.status),
+      html_text(j.sentence));
+}
+
+}  // namespace
+
+Json limits_json(const LimitReport& report) {
+  Json out = {{"file", json_text(report.file)},
+              {"sensor", json_text(report.sensor)},
+              {"verdict", json_text(limits_verdict(report))}};
+  for (const LimitStatus status : {LimitStatus::pass, LimitStatus::fail, LimitStatus::not_decided})
+    out[std::string(name_of(status))] = report.count(status);
+  out["terms"] = Json::array();
+  for (const LimitJudgement& j : report.judgements) {
+    const auto key = kTermNames[static_cast<std::size_t>(j.term)].key;
+    const Coefficient& c = j.measured;
+    out["terms"].push_back(
+        {{"channel", json_text(j.channel)},
+         {"term", key},
+         {"limit", j.most},
+         {"unit", json_text(term_unit(key, j.unit))},
+         {"limit_as_given", json_text(j.text)},
+         {"value", json_number(c.value)},
+         {"ci95",
+          c.value ? Json::array({json_number(c.ci95.low), json_number(c.ci95.high)})
+                  : Json(nullptr)},
+         {"upper95", json_number(c.upper95)},
+         {"status", name_of(c.status)},
+         {"judgement", name_of(j.status)},
+         {"sentence", json_text(j.sentence)}});
+  }
+  return out;
+}
+
+std::string limits_section(const LimitReport& report) {
+  std::string out = "<section id=\"limits\">\n<h2>Limits" +
+                    (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) +
+                    "</h2>\n<p>" + html_text(limits_verdict(report)) +
+                    "</p>\n<div class=\"wide\"><table>\n" + table_head({"Judgement", "Why"});
+  for (const LimitJudgement& j : report.judgements) out += limit_row(j);
+  return out + "</tbody></table></div>\n<p class=\"note\">From " + html_text(report.file) +
+         ". A term passes or fails when its whole 95 % interval is within or above the "
+         "limit; one that stands at the limit does either by chance in at most 2.5 % of "
+         "recordings, "
+         "and passes in 5 % where only an upper limit is known.</p>\n</section>\n";
+}
+
+std::string limits_text(const LimitReport& report) {
+  std::string out = fmt::format("\nlimits{}: {}\n",
+                                report.sensor.empty() ? "" : " of " + printable(report.sensor),
+                                printable(limits_verdict(report)));
+  for (const LimitJudgement& j : report.judgements)
+    out += fmt::format("  {:<12} {}\n", limit_words(j.status), printable(j.sentence));
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,15 @@
+#pragma once
+// The judgement of limits as each output shows it.
+
+#include <string>
+
+#include "libchar/characterize/limits.hpp"
+#include "libchar/core/json.hpp"
+
+namespace libchar {
+
+Json limits_json(const LimitReport& report);
+/// A section of the page.
+std::string limits_section(const LimitReport& report);
+
+}  // namespace libchar

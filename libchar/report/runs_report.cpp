@@ -1,0 +1,216 @@
+#include "libchar/report/runs_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/core/file_name.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/fit/fit_json.hpp"
+#include "libchar/model/model_file.hpp"
+#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/limits_pieces.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
+#include "libchar/report/detail/svg_curves.hpp"
+#include "libchar/report/fit_text.hpp"
+#include "libchar/report/limits_text.hpp"
+
+namespace libchar {
+namespace {
+
+std::vector<Recorded> recorded_runs(const RunsReport& report) {
+  std::vector<Recorded> out;
+  for (std::size_t r = 0; r < report.runs.size(); ++r)
+    out.push_back({report.pooled->runs[r].file, report.folders[r]});
+  return out;
+}
+
+const ChannelResult& channel_in(const RunsReport& report, const PooledChannel& c, std::size_t run) {
+  for (const ChannelResult& one : report.runs[run].channels)
+    if (one.channel.name == c.channel.name) return one;
+  return report.runs[run].channels.front();
+}
+
+Json effects_json(const RandomEffects& e) {
+  return {{"mean", json_number(e.mean)},
+          {"mean_ci95", interval_json(e.mean_ci95)},
+          {"spread", json_number(e.spread)},
+          {"spread_ci95", interval_json(e.spread_ci95)},
+          {"p", json_number(e.p)},
+          {"count", e.count}};
+}
+
+Json consistency_json(const PooledChannel& c) {
+  Json out = {{"name", json_text(c.channel.name)},
+              {"unit", json_text(c.channel.unit)},
+              {"consistent", c.consistent},
+              {"likelihood_ratio", json_number(c.ratio)},
+              {"p", json_number(c.p)}};
+  out["turn_on_bias"] = c.bias ? effects_json(*c.bias) : Json(nullptr);
+  out["runs"] = Json::array();
+  for (const ChannelRun& run : c.runs)
+    out["runs"].push_back({{"run", run.run},
+                           {"mean", json_number(run.mean)},
+                           {"mean_sd", json_number(run.mean_sd)},
+                           {"likelihood_ratio", json_number(run.ratio)},
+                           {"p", json_number(run.p)},
+                           {"differs", run.differs}});
+  out["sentences"] = Json::array();
+  for (const std::string& sentence : c.sentences) out["sentences"].push_back(json_text(sentence));
+  return out;
+}
+
+const AllanCurve& longest_curve(const RunsReport& report, const PooledChannel& c) {
+  const AllanCurve* longest = &channel_in(report, c, c.runs[0].run).allan;
+  for (const ChannelRun& run : c.runs) {
+    const AllanCurve& one = channel_in(report, c, run.run).allan;
+    if (one.points.size() > longest->points.size()) longest = &one;
+  }
+  return *longest;
+}
+
+std::string curves_of(const RunsReport& report, const PooledChannel& c) {
+  std::vector<SvgCurve> curves;
+  for (const ChannelRun& run : c.runs) {
+    const AllanCurve& allan = channel_in(report, c, run.run).allan;
+    SvgCurve curve;
+    curve.name = run.differs ? report.pooled->runs[run.run].file + " (differs)"
+                             : report.pooled->runs[run.run].file;
+    curve.colour = run.run;
+    curve.strong = run.differs;
+    for (const AllanPoint& point : allan.points) {
+      if (!point.reliable) continue;
+      curve.x.push_back(point.tau_s);
+      curve.y.push_back(point.deviation);
+    }
+    curves.push_back(std::move(curve));
+  }
+  SvgCurve model;
+  model.name = "the pooled model";
+  model.model = true;
+  const AllanCurve& longest = longest_curve(report, c);
+  for (const AllanPoint& point : longest.points)
+    if (const auto value =
+            model_deviation(c.fit, longest.type, static_cast<double>(point.m), longest.dt_s)) {
+      model.x.push_back(point.tau_s);
+      model.y.push_back(*value);
+    }
+  curves.insert(curves.begin(), std::move(model));
+  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  return svg_curves(curves,
+                    {"averaging time τ, s",
+                     std::string(name_of(longest.type)) + ", " + unit,
+                     "Allan curves of all runs of " + c.channel.name});
+}
+
+std::string runs_rows(const RunsReport& report, const PooledChannel& c) {
+  std::string out =
+      "<details><summary>The runs one by one</summary>\n<div class=\"wide\"><table>\n" +
+      table_head({"Run", "Mean", "moved by noise", "2 ln L", "p", ""});
+  for (const ChannelRun& run : c.runs)
+    out += fmt::format(
+        "<tr><th "
+        "scope=\"row\">{}</th><td>{}</td><td>±{}</td><td>{}</td><td>{}</td><td{}</td></tr>\n",
+        html_text(report.pooled->runs[run.run].file),
+        html_text(number_text(run.mean)),
+        html_text(number_text(run.mean_sd, 2)),
+        html_text(number_text(run.ratio, 3)),
+        html_text(probability_text(run.p)),
+        run.differs ? " class=\"out\">differs" : ">");
+  return out + "</tbody></table></div>\n</details>\n";
+}
+
+std::string channel_part(const RunsReport& report, const PooledChannel& c) {
+  std::string out = "<section class=\"channel\">\n<h2>" + html_text(c.channel.name) +
+                    " <span class=\"unit\">" + html_text(c.channel.unit) + "</span></h2>\n" +
+                    bullet_list(c.sentences, "plain");
+  std::vector<std::string> heads = coefficient_heads();
+  out += "<div class=\"wide\"><table class=\"many\">\n" + table_head(heads) + "<tr>";
+  for (const std::string& cell : coefficient_cells(c.channel, &c.fit))
+    out += "<td class=\"n\">" + html_text(cell) + "</td>";
+  out += "</tr></tbody></table></div>\n" + bullet_list(c.fit.sentences, "cautions");
+  return out + curves_of(report, c) + runs_rows(report, c) + "</section>\n";
+}
+
+SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
+  const ChannelResult& first = channel_in(report, c, c.runs[0].run);
+  SensorModel model = sensor_model_from(
+      c.channel, report.runs[c.runs[0].run].log, first.quality, c.fit, first.allan);
+  model.obtained = fmt::format("fit of {} recordings together", c.runs.size());
+  // One hash is that of one file.
+  model.recording_file =
+      fmt::format("{} and {} more", report.pooled->runs[c.runs[0].run].file, c.runs.size() - 1);
+  model.recording_sha256.clear();
+  for (const ChannelRun& run : c.runs)
+    model.remarks.push_back("run: " + report.pooled->runs[run.run].file);
+  if (c.bias && c.bias->spread_ci95.low > 0) model.bias.spread = c.bias->spread;
+  if (c.bias) model.mean = c.bias->mean;
+  for (const std::string& sentence : c.sentences) model.remarks.push_back(sentence);
+  return model;
+}
+
+}  // namespace
+
+Json runs_json(const RunsReport& report) {
+  Json out = many_head("pooled-runs", report.runs, report.command);
+  if (!report.runs.empty()) out["config"] = json_of(report.runs[0].settings);
+  out["verdict"] = json_text(pool_verdict(*report.pooled));
+  out["runs"] = recordings_json(report.runs, recorded_runs(report));
+  Json fits = Json::array(), channels = Json::array(), problems = Json::array();
+  for (const PooledChannel& c : report.pooled->channels) {
+    fits.push_back(
+        noise_fit_json(json_text(c.channel.name), json_text(c.channel.unit), c.fit, true));
+    channels.push_back(consistency_json(c));
+  }
+  for (const std::string& problem : report.pooled->problems) problems.push_back(json_text(problem));
+  out["fit"] = noise_fit_document(std::move(fits));
+  out["consistency"] = {{"channels", std::move(channels)}};
+  out["problems"] = std::move(problems);
+  if (report.limits != nullptr) out["limits"] = limits_json(*report.limits);
+  return out;
+}
+
+std::string runs_html(const RunsReport& report) {
+  std::string body = "<section id=\"overview\">\n<p class=\"verdict\">" +
+                     html_text(pool_verdict(*report.pooled)) + "</p>\n" +
+                     bullet_list(report.pooled->problems, "cautions") + "</section>\n";
+  if (report.limits != nullptr) body += limits_section(*report.limits);
+  for (const PooledChannel& c : report.pooled->channels) body += channel_part(report, c);
+  body += "<section class=\"channel\">\n<h2>Each run by itself</h2>\n" +
+          recordings_table(report.runs, recorded_runs(report)) + "</section>\n" +
+          many_provenance(report.runs, report.command);
+  return many_page(
+      "Runs of a sensor", fmt::format("{} runs", report.runs.size()), body, runs_json(report));
+}
+
+std::string runs_text(const RunsReport& report) {
+  std::string out = printable(pool_verdict(*report.pooled)) + "\n";
+  for (const PooledChannel& c : report.pooled->channels) {
+    out += "\n" + fit_text(c.channel, c.fit);
+    for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
+  }
+  for (const std::string& problem : report.pooled->problems)
+    out += "\n" + printable(problem) + "\n";
+  if (report.limits != nullptr) out += limits_text(*report.limits);
+  return out;
+}
+
+std::vector<OutputFile> runs_files(const RunsReport& report, const std::filesystem::path& folder) {
+  std::vector<OutputFile> out = {{(folder / "runs.html").string(), runs_html(report)},
+                                 {(folder / "runs.json").string(), dump_json(runs_json(report))}};
+  std::set<std::string> taken;
+  for (const PooledChannel& c : report.pooled->channels)
+    out.push_back(
+        {(folder / (unused_file_name_for(c.channel.name, taken) + ".sensor.yaml")).string(),
+         model_yaml(model_of(report, c))});
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,185 @@
+// Limits, runs, lots and comparisons of characterizations, as people run them.
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/noise.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Contains;
+
+namespace {
+
+void write_log(const std::filesystem::path& path,
+               const std::string& unit,
+               double q,
+               std::uint64_t seed,
+               std::size_t samples = 4000,
+               double rate_hz = 50) {
+  test::NoiseSource noise(samples, rate_hz, seed);
+  const auto x = noise.record(q, 0, 0), y = noise.record(q, 0, 0);
+  std::ofstream out(path);
+  out << "t[s],gx[" << unit << "],gy[" << unit << "]\n";
+  for (std::size_t i = 0; i < samples; ++i)
+    out << static_cast<double>(i) / rate_hz << "," << x[i] << "," << y[i] << "\n";
+}
+
+struct Logs {
+  test::TemporaryFolder folder;
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  test::Ran characterize(const std::vector<std::string>& logs,
+                         const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"characterize"};
+    for (const std::string& log : logs) words.push_back(path(log));
+    words.insert(words.end(), {"-o", path("out"), "--no-second-opinion"});
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run(words);
+  }
+  libchar::Json json(const std::string& name) const {
+    return libchar::parse_json(test::slurp(folder / name), name);
+  }
+  /// No file below the results.
+  bool nothing_written() const {
+    if (!std::filesystem::exists(folder / "out")) return true;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "out"))
+      if (entry.is_regular_file()) return false;
+    return true;
+  }
+};
+
+std::string limits_text(const std::string& value) {
+  return "format: noise-limits\nversion: 1\nsensor: <b>sheet</b>\nlimits:\n  - kind: angular_rate\n"
+         "    white_noise: {value: " +
+         value + ", unit: deg/√h}\n";
+}
+
+}  // namespace
+
+TEST_CASE("characterize --limits: exit code, report, and refusals that leave nothing") {
+  const Logs logs;
+  write_log(logs.folder / "a.csv", "deg/s", 5e-3, 1);  // .3 deg/√h
+  std::ofstream(logs.folder / "kept.yaml") << limits_text("0.5");
+  std::ofstream(logs.folder / "low.yaml") << limits_text("0.1");
+  const auto kept = logs.characterize({"a.csv"}, {"--limits", logs.path("kept.yaml")});
+  CAPTURE(kept.err);
+  CHECK(kept.code == 0);
+  CHECK_THAT(kept.out, Contains("All 2 limits are kept."));
+  const auto failed = logs.characterize({"a.csv"}, {"--limits", logs.path("low.yaml"), "--force"});
+  CHECK(failed.code == 6);
+  CHECK_THAT(failed.err, Contains("E0714") && Contains("2 of 2 limits fail"));
+  const auto report = logs.json("out/report.json");
+  CHECK(report.at("limits").at("fail") == 2);
+  CHECK(report.at("limits").at("terms").at(0).at("judgement") == "fail");
+  CHECK(report.at("limits").at("terms").at(0).at("limit").get<double>() == Approx(0.1 / 60));
+  const std::string page = test::slurp(logs.folder / "out/report.html");
+  CHECK_THAT(page, Contains("Limits of &lt;b&gt;sheet&lt;/b&gt;"));
+  std::filesystem::remove_all(logs.folder / "out");
+  std::ofstream(logs.folder / "other.yaml")
+      << "format: noise-limits\nversion: 1\nlimits:\n  - kind: pressure\n    bias_instability: 1\n";
+  const auto other = logs.characterize({"a.csv"}, {"--limits", logs.path("other.yaml")});
+  CHECK(other.code == 3);
+  CHECK_THAT(other.err, Contains("other.yaml:4:11") && Contains("another sensor"));
+  CHECK(logs.nothing_written());
+}
+
+TEST_CASE("characterize --pool: pages, numbers and a model of runs together") {
+  const Logs logs;
+  for (const char* name : {"a", "b", "c"})
+    write_log(logs.folder / (std::string(name) + ".csv"), "deg/s", 5e-3, 7 + name[0]);
+  const auto ran = logs.characterize({"a.csv", "b.csv", "c.csv"}, {"--pool"});
+  CAPTURE(ran.err, ran.out);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("3 runs, one sensor"));
+  for (const char* file :
+       {"runs.html", "runs.json", "gx.sensor.yaml", "a/report.html", "c/report.json"})
+    CHECK(std::filesystem::file_size(logs.folder / "out" / file) > 500);
+  const auto runs = logs.json("out/runs.json");
+  const auto& white = runs.at("fit").at("channels").at(0).at("white_noise");
+  CHECK(white.at("ci95").at(0).get<double>() < 5e-3);
+  CHECK(white.at("ci95").at(1).get<double>() > 5e-3);
+  CHECK(white.at("relative_sd").get<double>() < 0.75 * logs.json("out/a/report.json")
+                                                           .at("fit")
+                                                           .at("channels")
+                                                           .at(0)
+                                                           .at("white_noise")
+                                                           .at("relative_sd")
+                                                           .get<double>());
+  CHECK(runs.at("consistency").at("channels").at(0).at("consistent") == true);
+  CHECK(test::run({"model", logs.path("out/gx.sensor.yaml")}).code == 0);
+  const auto again = logs.characterize({"a.csv", "b.csv", "c.csv"}, {"--pool"});
+  CHECK(again.code == 5);  // exists
+  const auto compared = test::run({"compare", logs.path("out"), logs.path("out/a")});
+  CHECK(compared.code == 0);
+  CHECK_THAT(compared.out, Contains("No difference beyond chance"));
+}
+
+TEST_CASE(
+    "characterize --pool: runs that are not of one sensor end in a sentence, with nothing "
+    "written") {
+  const Logs logs;
+  write_log(logs.folder / "a.csv", "deg/s", 5e-3, 1);
+  write_log(logs.folder / "b.csv", "rad/s", 5e-3, 2);
+  write_log(logs.folder / "c.csv", "deg/s", 5e-3, 3, 4000, 100);
+  std::ofstream(logs.folder / "empty.csv") << "t[s],gx[deg/s],gy[deg/s]\n";
+  std::ofstream(logs.folder / "short.csv")
+      << "t[s],gx[deg/s],gy[deg/s]\n0,1,2\n0.02,1,3\n0.04,2,3\n";
+  const auto refused = [&](const std::string& other, int code, const std::string& why) {
+    const auto ran = logs.characterize({"a.csv", other}, {"--pool"});
+    CAPTURE(other, ran.err);
+    CHECK(ran.code == code);
+    CHECK_THAT(ran.err, Contains(why));
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') <=
+          2);  // warnings of the log, the sentence
+    CHECK(logs.nothing_written());
+  };
+  refused("b.csv", 3, "one unit");
+  refused("c.csv", 3, "one rate");
+  refused("empty.csv", 3, "E0322");
+  refused("short.csv", 3, "E0761");
+  refused("a.csv", 3, "E0762");
+  CHECK(logs.characterize({"a.csv"}, {"--pool"}).code == 2);
+  CHECK(logs.characterize({"a.csv", "c.csv"}, {"--pool", "--lot"}).code == 2);
+}
+
+TEST_CASE("characterize --lot: one page of several devices") {
+  const Logs logs;
+  std::vector<std::string> names;
+  for (int i = 0; i < 5; ++i) {
+    names.push_back("imu" + std::to_string(i) + ".csv");
+    write_log(logs.folder / names.back(), "deg/s", i == 3 ? 9e-3 : 5e-3, 40 + i);
+  }
+  const auto ran = logs.characterize(names, {"--lot"});
+  CAPTURE(ran.err, ran.out);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("stand out") && Contains("gx of imu3"));
+  const auto lot = logs.json("out/lot.json");
+  bool named = false;
+  for (const auto& s : lot.at("statistics"))
+    for (const auto& o : s.at("outliers")) named = named || o.at("recording") == 3;
+  CHECK(named);
+  const std::string page = test::slurp(logs.folder / "out/lot.html");
+  CHECK_THAT(page, Contains("imu3/report.html") && Contains("<polyline"));
+  CHECK(std::filesystem::exists(logs.folder / "out/imu4/report.html"));
+}
+
+TEST_CASE("compare: two characterizations, and what only one of them has") {
+  const Logs logs;
+  write_log(logs.folder / "a.csv", "deg/s", 5e-3, 1);
+  write_log(logs.folder / "b.csv", "deg/s", 8e-3, 2);
+  REQUIRE(logs.characterize({"a.csv", "b.csv"}, {}).code == 0);
+  const auto ran = test::run({"compare", logs.path("out/a"), logs.path("out/b/report.json")});
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("white noise of gx is larger"));
+  const auto json = test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--json"});
+  const auto document = libchar::parse_json(json.out, "stdout");
+  CHECK(document.at("format") == "characterization-comparison");
+  CHECK(document.at("channels").at(0).at("terms").at(0).at("difference") == "larger");
+  CHECK(document.at("channels").at(0).at("terms").at(0).at("ratio").get<double>() ==
+        Approx(1.6).epsilon(0.05));
+  CHECK(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--unlike"}).code == 2);
+  CHECK_THAT(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--markdown"}).out,
+             Contains("# Two characterizations"));
+}

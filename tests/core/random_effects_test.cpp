@@ -1,0 +1,112 @@
+// Values with known uncertainties and a spread of their own.
+
+#include "libchar/core/random_effects.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+
+namespace {
+
+struct Lot {
+  std::vector<double> value, variance;
+};
+
+// Uncertainties between .5 and 1.5, spread about a mean of 3.
+Lot made(std::size_t count, double spread, test::Gaussian& gauss) {
+  Lot lot;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double sd = 0.5 + gauss.uniform();
+    lot.variance.push_back(sd * sd);
+    lot.value.push_back(3 + spread * gauss() + sd * gauss());
+  }
+  return lot;
+}
+
+}  // namespace
+
+TEST_CASE("random effects: equal uncertainties have the moments in closed form") {
+  const std::vector<double> y = {1, 2, 3, 4, 10}, v(5, 0.25);
+  const RandomEffects r = random_effects(y, v);
+  CHECK(r.mean == Approx(4));
+  // Sample variance 12.5 = spread² + v.
+  CHECK(r.spread == Approx(std::sqrt(12.25)).epsilon(1e-9));
+  // (k - 1) 12.5 / chi-square quantile = spread² + v.
+  CHECK(r.spread_ci95.low == Approx(std::sqrt(50 / 11.143287 - 0.25)).epsilon(1e-6));
+  CHECK(r.spread_ci95.high == Approx(std::sqrt(50 / 0.48441856 - 0.25)).epsilon(1e-6));
+  // Student's t of 4 degrees of freedom.
+  CHECK(r.mean_ci95.high == Approx(4 + 2.7764451 * std::sqrt(12.5 / 5)).epsilon(1e-6));
+}
+
+TEST_CASE("random effects: intervals cover, with a spread and without") {
+  test::Gaussian gauss(7);
+  for (const double spread : {0.0, 0.3, 1.0, 5.0})
+    for (const std::size_t count : {3, 8, 30}) {
+      CAPTURE(spread, count);
+      int mean = 0, inside = 0, found = 0;
+      constexpr int kLots = 400;
+      for (int i = 0; i < kLots; ++i) {
+        const Lot lot = made(count, spread, gauss);
+        const RandomEffects r = random_effects(lot.value, lot.variance);
+        mean += r.mean_ci95.low <= 3 && 3 <= r.mean_ci95.high;
+        inside += r.spread_ci95.low <= spread && spread <= r.spread_ci95.high;
+        found += r.spread_ci95.low > 0;
+      }
+      // 95 % of 400 lots, less four standard deviations.
+      CHECK(mean >= 0.905 * kLots);
+      CHECK(inside >= 0.905 * kLots);
+      // A spread that is not there is claimed in 2.5 %.
+      if (spread == 0) CHECK(found <= 0.06 * kLots);
+      if (spread == 5 && count >= 8) CHECK(found >= 0.97 * kLots);
+    }
+}
+
+TEST_CASE(
+    "random effects: values closer than their uncertainties do not bound the spread by nothing") {
+  const std::vector<double> y = {1, 1, 1, 1}, v(4, 1.0);
+  const RandomEffects r = random_effects(y, v);
+  CHECK(r.spread == 0);
+  CHECK(r.spread_ci95.low == 0);
+  CHECK(r.spread_ci95.high > 1);
+  CHECK(r.p > 0.99);
+}
+
+TEST_CASE("random effects: one value has no spread, two have a wide mean") {
+  const std::vector<double> y = {1, 3}, v = {0.01, 0.01};
+  CHECK(std::isnan(random_effects(std::span(y).first(1), std::span(v).first(1)).spread));
+  const RandomEffects two = random_effects(y, v);
+  CHECK(two.mean_ci95.high == Approx(2 + 12.706205).epsilon(1e-5));
+}
+
+TEST_CASE("outliers: at most 1 % of lots without one have one, and one that is there is named") {
+  test::Gaussian gauss(11);
+  for (const double spread : {0.0, 1.0})
+    for (const std::size_t count : {4, 6, 12, 40}) {
+      CAPTURE(spread, count);
+      int false_alarms = 0, found = 0;
+      constexpr int kLots = 300;
+      for (int i = 0; i < kLots; ++i) {
+        Lot lot = made(count, spread, gauss);
+        false_alarms += !find_outliers(lot.value, lot.variance).empty();
+        lot.value[2] += 30;
+        const auto outliers = find_outliers(lot.value, lot.variance);
+        found += !outliers.empty() && outliers[0].index == 2;
+      }
+      CHECK(false_alarms <= 9);  // 1 % of 300, plus four standard deviations of a Poisson count
+      // Of four, three are left to say what is usual: Student's t of two degrees of freedom.
+      if (count > 4) CHECK(found >= 0.98 * kLots);
+    }
+}
+
+TEST_CASE("outliers: two of them do not hide each other in a lot of twelve") {
+  test::Gaussian gauss(13);
+  Lot lot = made(12, 0.2, gauss);
+  lot.value[1] += 40;
+  lot.value[5] += 35;
+  const auto outliers = find_outliers(lot.value, lot.variance);
+  REQUIRE(outliers.size() == 2);
+  CHECK(outliers[0].index + outliers[1].index == 6);
+}
