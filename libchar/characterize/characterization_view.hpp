@@ -47,7 +47,7 @@ struct ChannelView {
   std::string unit;              ///< in its usual spelling, "m/s²"; "" when nobody said one
   std::string shown_unit;        ///< in texts: "U" when nobody said one, "" for a ratio
   std::string trace_unit;        ///< the same of the trace's
-  ChannelSummary summary;        ///< one sentence and its colour
+  ChannelSentence summary;       ///< one sentence and its colour
   std::vector<TraceMark> marks;  ///< in the trace
   double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
   std::vector<std::string> findings;      ///< sentences with numbers

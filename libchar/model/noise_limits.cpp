@@ -53,7 +53,7 @@ Row<LimitBlock> term_row() {
       kTermNames[T].key,
       "number or map",
       {.meaning =
-           T == 0 ? "N, the most that is allowed; each term has these keys" : kTermNames[T].ieee});
+           T == 0 ? "N, the most that is allowed; each term has these keys" : kTermNames[T].letter});
   if (T == 0) row.field.below = limit_keys().rows;
   return row;
 }
