@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/allan/deviation_types.hpp"
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/readable.hpp"
@@ -179,6 +182,25 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   return out;
 }
 
+// Of the terms that have a limit; no limit is no noise.
+std::vector<std::optional<double>> data_sheet_curve(const ChannelResult& channel,
+                                                    const LimitReport& limits) {
+  Mixture theta{};
+  bool any = false;
+  for (const LimitJudgement& j : limits.judgements) {
+    if (j.channel != channel.channel.name) continue;
+    theta[static_cast<std::size_t>(j.term)] = j.most * j.most;
+    any = true;
+  }
+  std::vector<std::optional<double>> out;
+  if (!any || !deviation_row(channel.allan.type).is_allan()) return out;
+  for (const AllanPoint& p : channel.allan.points) {
+    const double variance = allan_variance(theta, static_cast<double>(p.m), channel.allan.dt_s);
+    out.push_back(variance > 0 ? std::optional(std::sqrt(variance)) : std::nullopt);
+  }
+  return out;
+}
+
 }  // namespace
 
 CharacterizationView characterization_view(const Characterization& result) {
@@ -188,8 +210,10 @@ CharacterizationView characterization_view(const Characterization& result) {
   const double rate_hz = result.log.time.rate_hz;
   if (rate_hz > 0) out.duration_s = static_cast<double>(result.log.samples) / rate_hz;
   Factors factors;
-  for (const ChannelResult& channel : result.channels)
+  for (const ChannelResult& channel : result.channels) {
     out.channels.push_back(channel_view(channel, rate_hz, factors));
+    if (result.limits) out.channels.back().data_sheet = data_sheet_curve(channel, *result.limits);
+  }
   for (const ChannelView& channel : out.channels)
     out.rating = std::max(out.rating, channel.summary.rating);
   out.groups = groups_of(out.channels);

@@ -47,7 +47,7 @@ struct ChannelView {
   std::string unit;              ///< in its usual spelling, "m/s²"; "" when nobody said one
   std::string shown_unit;        ///< in texts: "U" when nobody said one, "" for a ratio
   std::string trace_unit;        ///< the same of the trace's
-  ChannelSummary summary;        ///< one sentence and its colour
+  ChannelSentence summary;       ///< one sentence and its colour
   std::vector<TraceMark> marks;  ///< in the trace
   double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
   std::vector<std::string> findings;      ///< sentences with numbers
@@ -62,7 +62,9 @@ struct ChannelView {
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
   std::vector<std::optional<Interval>> verification_ci95;  ///< of the simulation's spectrum
   std::vector<OtherOpinion> other_opinions;
-  std::vector<ConsumerNumber> consumers;             ///< which number goes where
+  std::vector<ConsumerNumber> consumers;  ///< which number goes where
+  /// of the Allan curve, one a point: a sensor that stands at the limits of its data sheet; empty: no limits for this channel
+  std::vector<std::optional<double>> data_sheet;
   bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
 };
 

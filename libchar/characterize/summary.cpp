@@ -183,12 +183,12 @@ std::string_view rating_word(Rating rating) {
   return rating == Rating::good ? "good" : rating == Rating::caution ? "look" : "do not use";
 }
 
-ChannelSummary summary_of(const ChannelResult& channel, const std::string& unit) {
+ChannelSentence summary_of(const ChannelResult& channel, const std::string& unit) {
   Found found;
   if (channel.fit) look_at_fit(*channel.fit, found);
   look_at_motion(channel.motion, found);
   look_at_record(channel, found);
-  ChannelSummary out;
+  ChannelSentence out;
   out.rating = channel.fit ? found.rating : Rating::bad;
   out.spoils = std::move(found.spoils);
   out.sentence = channel.fit ? terms_of(*channel.fit, unit) : why_no_fit(channel);

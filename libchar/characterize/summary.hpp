@@ -23,13 +23,13 @@ inline constexpr auto enum_table<Rating> = enum_words<Rating>({{Rating::good, "g
 /// "good", "look", "do not use".
 std::string_view rating_word(Rating rating);
 
-struct ChannelSummary {
+struct ChannelSentence {
   Rating rating = Rating::good;
   std::string sentence;             ///< the terms, then what spoils them
   std::vector<std::string> spoils;  ///< each a phrase; empty where nothing does
 };
 
-ChannelSummary summary_of(const ChannelResult& channel, const std::string& unit);
+ChannelSentence summary_of(const ChannelResult& channel, const std::string& unit);
 
 /// A term in the unit that the field quotes it in, or in its own where the field has none of its own.
 struct FieldUnit {

@@ -127,6 +127,10 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
     rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
   }
   text += text_table(rows, "  ", true);
+  if (!fit.band.whole)
+    text +=
+        "  at best, 10 % needs: were the whole spectrum described by the terms, not this band "
+        "alone\n";
   text += power_laws_text(fit);
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",

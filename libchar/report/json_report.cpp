@@ -178,6 +178,10 @@ Json json_without_times(const CharacterizationView& view) {
         allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
     if (!c.noise_types.empty())
       allan["channels"].back()["noise_types"] = noise_types_json(c.noise_types);
+    if (!v.data_sheet.empty()) {
+      Json& line = allan["channels"].back()["data_sheet"] = Json::array();
+      for (const auto& value : v.data_sheet) line.push_back(json_number(value));
+    }
     spectrum["channels"].push_back(spectrum_channel_json(
         c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
     fit["channels"].push_back(fit_or_reason(v));

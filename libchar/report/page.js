@@ -116,6 +116,9 @@
     return (band.left_out_hz || []).map((pair) => [pair[0], pair[1]]).concat(band.whole || !(band.top_hz > 0) ? [] : [[band.top_hz, Infinity]]);
   }
 
+  // What a sensor at the limits of its data sheet would show.
+  const dataSheet = (a, label) => (a.data_sheet ? [{ label, data: points(a.tau_s, a.data_sheet), borderColor: colours().ink, borderDash: [12, 4], borderWidth: 1.6, pointRadius: 0, pointHitRadius: 0, fill: false, order: 4 }] : []);
+
   // ---- the plots ----
   function allanChart(index, axis, unit) {
     const a = report.allan.channels[index], f = report.fit.channels[index], c = colours();
@@ -138,7 +141,7 @@
       });
     }
     if (a.model) sets.push({ label: "fitted model", data: points(a.tau_s, a.model), borderColor: c.model, cubicInterpolationMode: "monotone", borderWidth: 2.2, pointRadius: 0, pointHitRadius: 0, fill: false, order: 3 });
-    sets.push(...simulated(index, "allan"), ...asymptotes(a.asymptotes));
+    sets.push(...dataSheet(a, "data sheet"), ...simulated(index, "allan"), ...asymptotes(a.asymptotes));
     marks.filter((m) => positive(m.tau_s) && positive(m.deviation)).forEach((m) => {
       const style = TERMS[m.term];
       sets.push({
@@ -255,6 +258,8 @@
       all.push(...data);
       if (few) around.push(...a.ci95.flatMap((pair) => pair || []));
     });
+    const lines = new Map(indices.map((channel) => [JSON.stringify(report.allan.channels[channel].data_sheet || null), channel]));
+    Array.from(lines.values()).forEach((channel, i) => sets.push(...dataSheet(report.allan.channels[channel], i === 0 ? "data sheet" : "")));
     const [xMin, xMax] = padded(all.map((p) => p.x), 1.4), [yMin, yMax] = padded(framed(all.map((p) => p.y), around, 3), 1.5);
     return {
       type: "line", data: { datasets: sets }, plugins: [outside(shaped.map((tau) => [0, tau]), "shape", 1 / indices.length), whitePaper],

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "tests/report/synthetic.hpp"
 
@@ -81,4 +82,23 @@ TEST_CASE("characterization view: a curve of zeros is not drawn") {
   CHECK_FALSE(view.channels[0].draws_spectrum);
   CHECK(view.channels[1].draws_allan);
   CHECK(view.channels[1].draws_spectrum);
+}
+
+TEST_CASE("characterization view: the data sheet's line is that of a sensor at its limits") {
+  Characterization result = test::synthetic_imu();
+  LimitReport limits;
+  limits.judgements.resize(2);
+  limits.judgements[0].channel = limits.judgements[1].channel = "gyr_x";
+  limits.judgements[0].most = 0.01;
+  limits.judgements[1].term = Term::flicker;
+  limits.judgements[1].most = 0.002;
+  result.limits = std::make_shared<const LimitReport>(limits);
+  const CharacterizationView view = characterization_view(result);
+  const auto& points = result.channels[0].allan.points;
+  REQUIRE(view.channels[0].data_sheet.size() == points.size());
+  const double floor = 2 * std::log(2.0) / 3.14159265358979 * 4e-6;
+  const AllanPoint& late = points[points.size() - 2];
+  CHECK(*view.channels[0].data_sheet[points.size() - 2] ==
+        Approx(std::sqrt(1e-4 / late.tau_s + floor)).epsilon(0.01));
+  CHECK(view.channels[1].data_sheet.empty());
 }

@@ -28,7 +28,7 @@ Event step_of(double size, double at_s) {
 TEST_CASE(
     "summary: a channel that nothing speaks against is good, its terms in the field's units") {
   const ChannelResult c = clean();
-  const ChannelSummary summary = summary_of(c, "deg/s");
+  const ChannelSentence summary = summary_of(c, "deg/s");
   CHECK(summary.rating == Rating::good);
   CHECK(summary.spoils.empty());
   CHECK_THAT(summary.sentence,
@@ -49,7 +49,7 @@ TEST_CASE("summary: a ratio has no unit to print") {
 TEST_CASE("summary: what was taken out, and what is doubtful, is never called good") {
   ChannelResult c = clean();
   c.fit->events = {step_of(0.1, 12)};
-  ChannelSummary summary = summary_of(c, "deg/s");
+  ChannelSentence summary = summary_of(c, "deg/s");
   CHECK(summary.rating == Rating::caution);
   CHECK_THAT(summary.sentence, Contains("But: a step was taken out."));
   c.fit->events.push_back(step_of(-0.1, 20));
@@ -67,7 +67,7 @@ TEST_CASE("summary: a misfit, a bad goodness, no fit are not to be used") {
   ChannelResult c = clean();
   for (Coefficient& term : c.fit->term)
     if (term.value) term.status = Status::misfit;
-  ChannelSummary summary = summary_of(c, "deg/s");
+  ChannelSentence summary = summary_of(c, "deg/s");
   CHECK(summary.rating == Rating::bad);
   CHECK_THAT(summary.sentence, Contains("Do not rely on them: the noise terms do not describe"));
   c = clean();
@@ -91,7 +91,7 @@ TEST_CASE(
   c.motion.changes[0].at_s = 100;
   c.motion.changes[0].factor = 1.75;
   c.motion.sentences = c.problems = {"The sensor was moved or shaken in 2 stretches."};
-  const ChannelSummary summary = summary_of(c, "deg/s");
+  const ChannelSentence summary = summary_of(c, "deg/s");
   CHECK(summary.rating == Rating::caution);
   CHECK_THAT(
       summary.sentence,
