@@ -102,7 +102,7 @@ struct ChannelResult {
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<NoiseType>
-      noise_types;  ///< by averaging time; of phase and frequency that are kept only
+      noise_types;        ///< by averaging time; of phase and frequency that are kept only
   DigitalFaults digital;  ///< rails, held values, a staircase (of samples that are kept)
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>

@@ -140,6 +140,17 @@ Json noise_types_json(const std::vector<NoiseType>& types) {
   return list;
 }
 
+Json allan_json_of(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
+  Json out =
+      allan_channel_json(c.channel, c.allan, view.allan_model ? &*view.allan_model : nullptr);
+  if (!c.noise_types.empty()) out["noise_types"] = noise_types_json(c.noise_types);
+  if (view.data_sheet.empty()) return out;
+  Json& line = out["data_sheet"] = Json::array();
+  for (const auto& value : view.data_sheet) line.push_back(json_number(value));
+  return out;
+}
+
 }  // namespace
 
 Json json_without_times(const CharacterizationView& view) {
@@ -174,14 +185,7 @@ Json json_without_times(const CharacterizationView& view) {
   for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
   for (const ChannelView& v : view.channels) {
     const ChannelResult& c = *v.result;
-    allan["channels"].push_back(
-        allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
-    if (!c.noise_types.empty())
-      allan["channels"].back()["noise_types"] = noise_types_json(c.noise_types);
-    if (!v.data_sheet.empty()) {
-      Json& line = allan["channels"].back()["data_sheet"] = Json::array();
-      for (const auto& value : v.data_sheet) line.push_back(json_number(value));
-    }
+    allan["channels"].push_back(allan_json_of(v));
     spectrum["channels"].push_back(spectrum_channel_json(
         c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
     fit["channels"].push_back(fit_or_reason(v));
