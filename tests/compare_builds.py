@@ -63,7 +63,7 @@ def runs():
     yield "psd segment", ["psd", imu, "--segment", "4096", "--window", "blackman_harris", "-c", "gyro_z"]
     yield "fit", ["fit", imu]
     yield "fit json", ["fit", imu, "--json"]
-    yield "fit terms", ["fit", imu, "--terms", "Q,B,K,R", "-c", "gyro_z"]
+    yield "fit terms", ["fit", imu, "--terms", "white_noise,bias_instability,random_walk,rate_ramp", "-c", "gyro_z"]
     yield "inspect", ["inspect", imu]
     yield "inspect json", ["inspect", imu, "--json"]
     for npy in sorted((root / "fixtures/npy").glob("*.npy")):
@@ -80,13 +80,13 @@ def runs():
     yield "characterize", ["characterize", imu, "-o", "report", "--force"]
     yield "characterize json", ["characterize", imu, "-o", "report2", "--json", "--verify"]
     yield "characterize options", ["characterize", imu, "-o", "report3", "--segment", "2048", "--window", "flat_top", "--sides", "two",
-                                   "--scaling", "lsd", "--terms", "Q,B", "--no-remedies", "--no-second-opinion", "--taus", "decade"]
+                                   "--scaling", "lsd", "--terms", "white_noise,bias_instability", "--no-remedies", "--no-second-opinion", "--taus", "decade"]
     yield "characterize streamed", ["characterize", imu, "-o", "report4", "--memory", "64k"]
     yield "characterize again", ["characterize", imu, "-o", "report"]
     yield "model", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml"]
     yield "model json", ["model", "report/gyro_z.sensor.yaml", "--json"]
     yield "model list", ["model", "--list"]
-    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim matlab px4 json".split()
+    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim pegasus kf-gins navego matlab px4 json".split()
     for target in targets:
         yield f"export {target}", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target]
         yield f"export {target} rms", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--axes", "rms",

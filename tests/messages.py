@@ -20,6 +20,7 @@ NO_FLAGS = {
     "repeat": "key of a signal in a scene",
     "simulate": "key of a scene",
     "taps": "key of a sensor model",
+    "tau_s": "key of a sensor model",
     "unit": "key of a sensor model",
     "version": "key of a document",
 }

@@ -40,7 +40,7 @@ void read_taus(const std::string& text, AllanOptions& allan) {
     for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
   } catch (const Error&) {
     refuse("--taus",
-           "octave, decade, dense or a list of times was expected",
+           "octave, decade, dense, ten or a list of times was expected",
            text,
            "for example --taus 0.1s,1s,10s");
   }
@@ -61,19 +61,51 @@ void read_segment(const std::string& text, WelchOptions& spectrum, double& segme
 std::array<bool, kTerms> read_terms(const std::string& text) {
   std::array<bool, kTerms> wanted{};
   for (const std::string& word : words(text)) {
+    if (word == "Q")
+      refuse("--terms",
+             "Q is quantization in IEEE 952 and stood for white noise in earlier versions",
+             word,
+             "write N for white noise, or quantization in full");
     bool known = false;
     for (std::size_t t = 0; t < kTerms; ++t)
       if (word == kTermNames[t].letter || word == kTermNames[t].key) known = wanted[t] = true;
     if (!known)
       refuse("--terms",
-             "a list of Q, B, K, Qz, R (or the long names) was expected",
+             "a list of N, B, K, R (or names such as white_noise, quantization) was expected",
              word,
-             "for example --terms Q,B,K,R");
+             "for example --terms N,B,K,R");
   }
   return wanted;
 }
 
+// "auto", or "10..600" and "10s..10min".
+void read_still(const std::string& text, StillOptions& still) {
+  still = {};
+  still.search = text == "auto";
+  if (still.search) return;
+  const std::size_t dots = text.find("..");
+  try {
+    if (dots != std::string::npos) {
+      still.stretch_s =
+          Interval{parse_duration_s(text.substr(0, dots)), parse_duration_s(text.substr(dots + 2))};
+      return;
+    }
+  } catch (const Error&) {
+    // said below
+  }
+  refuse("--still", "auto or FROM..TO was expected", text, "for example --still 10s..20min");
+}
+
 }  // namespace
+
+void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
+  verb.add_parsed(
+      "--still",
+      "auto|FROM..TO",
+      [&a](const std::string& text) { read_still(text, a.options.still); },
+      "analyse only the longest stretch in which no channel moves, or the one from FROM to TO "
+      "after the first sample (s, min, h)");
+}
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_enum("--data",
@@ -99,8 +131,14 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
       "--taus",
       "TEXT",
-      [&a](const std::string& text) { read_taus(text, a.options.allan); },
-      "averaging times: octave, decade, dense, or a list such as 0.1s,1s,1min (default: octave)");
+      [&a](const std::string& text) {
+        a.options.ten_a_decade = a.ten_asked = text == "ten";
+        read_taus(text == "ten" ? "octave" : text, a.options.allan);
+      },
+      "averaging times: octave, decade, dense, ten (a decade and the octaves; octaves alone where "
+      "a "
+      "log streams), or a list such as 0.1s,1s,1min (default: " +
+          std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
   verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
   verb.add_flag("--full-overlap",
@@ -131,8 +169,9 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
       "--terms",
       "TEXT",
       [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
-      "terms offered to the fit from the start, of Q,B,K,Qz,R (default: Q,B,K; Qz and R join when "
-      "an alarm asks)");
+      "terms offered to the fit from the start, of N,B,K,R,quantization (default: N,B,K; the "
+      "others "
+      "join when an alarm asks)");
   verb.add_number("--threshold",
                   a.options.fit.threshold,
                   "likelihood ratio above which a term counts as present (default: 5.41, 1 % "
@@ -154,6 +193,11 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
     refuse("--nominal-frequency", "goes with --data frequency only", "", "");
   o.nominal_frequency = a.nominal_frequency.value_or(0);
   o.allan.type = deviation_type(a.type).value_or(DeviationType::oadev);
+  if (a.ten_asked && o.allan.type != DeviationType::oadev)
+    refuse("--taus",
+           "ten a decade goes with the overlapping Allan deviation only",
+           "ten with --type " + a.type,
+           "--taus decade or dense serve every type");
   o.allan.tau_min_s = a.tau_min_s.value_or(0);
   o.allan.tau_max_s = a.tau_max_s.value_or(0);
   o.fit.remedies = !a.no_remedies;

@@ -12,9 +12,12 @@ struct AnalysisOptions {
   libchar::CharacterizeOptions options;
   std::string type = "oadev";
   std::optional<double> nominal_frequency, tau_min_s, tau_max_s;
+  bool ten_asked = false;  ///< --taus ten
   bool no_remedies = false, no_second_opinion = false;
 };
 
+/// --still auto|FROM..TO
+void add_still_option(VerbOptions& verb, AnalysisOptions& analysis);
 /// --data, --nominal-frequency, --memory
 void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --type, --taus, --tau-min, --tau-max, --full-overlap

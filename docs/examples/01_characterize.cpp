@@ -9,13 +9,13 @@ int main() {
   const auto result = libchar::characterize("fixtures/imu_at_rest.csv", options);
   for (const libchar::ChannelResult& c : result.channels) {
     if (!c.fit) continue;  // c.problems says why
-    const libchar::Coefficient& q = (*c.fit)[libchar::Term::white];
-    std::printf("%s: Q %.3g %s·√s, 95 %% from %.3g to %.3g\n",
+    const libchar::Coefficient& n = (*c.fit)[libchar::Term::white];
+    std::printf("%s: N %.3g %s·√s, 95 %% from %.3g to %.3g\n",
                 c.channel.name.c_str(),
-                *q.value,
+                *n.value,
                 c.channel.unit.c_str(),
-                q.ci95.low,
-                q.ci95.high);
+                n.ci95.low,
+                n.ci95.high);
   }
   libchar::write_whole_file("library-report.html", libchar::html_report(result), true);
   for (const libchar::SensorModel& model : libchar::sensor_models(result))

@@ -5,7 +5,7 @@
 #include "libchar/libchar.hpp"
 
 int main() {
-  // White noise of 0.01 U at 100 Hz: Q = 0.01 / √100 = 0.001 U·√s.
+  // White noise of 0.01 U at 100 Hz: N = 0.01 / √100 = 0.001 U·√s.
   libchar::DeviateStream deviates({.seed = 7});
   std::vector<double> record(100000);
   for (double& y : record) y = 0.01 * deviates.normal();

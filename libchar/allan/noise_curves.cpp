@@ -206,4 +206,14 @@ double summed_phase_covariance(Term term, double n, double dt_s) {
   return 0;
 }
 
+double flicker_phase_spectrum(double frequency_hz, double dt_s) {
+  return 2 * std::sin(std::numbers::pi * frequency_hz * dt_s) / dt_s;
+}
+
+// x has the generalised covariance -(2/pi) H_n: its second difference at step m the variance (2/pi) (8 H_m - 2 H_2m).
+double flicker_phase_allan_variance(double m, double dt_s) {
+  const double tau_s = m * dt_s;
+  return 2 / std::numbers::pi * (4 * odd_harmonic(m) - odd_harmonic(2 * m)) / (tau_s * tau_s);
+}
+
 }  // namespace libchar

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 
 #include "libchar/characterize/detail/channel_stages.hpp"
+#include "libchar/characterize/detail/still.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {
@@ -98,12 +101,91 @@ LogInfo push_recording(const Recording& recording, BlockSink& sink, Progress& pr
   return log;
 }
 
+/// The window of `still`, and what is said of it.
+Stretch still_stretch(const CharacterizeOptions& options,
+                      const std::function<LogInfo(BlockSink& sink)>& read) {
+  StillSearch search;
+  Stretch stretch;
+  if (options.still.search) {
+    const LogInfo log = read(search);
+    stretch = search.finish(log);
+  } else {
+    stretch.from_s = options.still.stretch_s->low;
+    stretch.to_s = options.still.stretch_s->high;
+  }
+  stretch.sentence = stretch_sentence(stretch);
+  return stretch;
+}
+
+/// The log does reach to the end of the stretch, but for a sample.
+void check_reached(const Stretch& stretch, const LogInfo& log) {
+  const double rate_hz = log.time.rate_hz;
+  const double end_s = stretch.from_s + static_cast<double>(log.samples) / rate_hz;
+  if (!(rate_hz > 0) || stretch.found || stretch.to_s <= end_s + 1.5 / rate_hz) return;
+  throw Error(
+      {ErrorKind::usage,
+       "E0704",
+       log.file,
+       "the still stretch ends after the log",
+       fmt::format(
+           "{} s, the log ends at {} s", significant(stretch.to_s, 6), significant(end_s, 6)),
+       ""});
+}
+
+bool wants_still(const StillOptions& still) {
+  return still.search || still.stretch_s;
+}
+
+void note_stretch(Stretch stretch, Characterization& result) {
+  check_reached(stretch, result.log);
+  if (!stretch.whole) result.log.stretch_s = Interval{stretch.from_s, stretch.to_s};
+  result.still = std::move(stretch);
+}
+
+/// Samples of a recording between two times.
+Recording between(const Recording& recording, const Stretch& stretch) {
+  Recording part{recording.info, {}};
+  const double rate_hz = recording.info.time.rate_hz;
+  if (!(rate_hz > 0))
+    throw Error(
+        {ErrorKind::usage, "E0704", "", "the rate is not known: there are no times", "", ""});
+  for (const auto& column : recording.samples) {
+    const auto at = [&](double time_s) {
+      return column.begin() +
+             static_cast<std::ptrdiff_t>(
+                 std::min(static_cast<double>(column.size()), std::round(time_s * rate_hz)));
+    };
+    part.samples.emplace_back(at(stretch.from_s), at(stretch.to_s));
+  }
+  return part;
+}
+
 }  // namespace
 
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options,
                               Progress& progress) {
-  const ReadOptions chosen = with_temperature(options);
+  check_still(options.still, options.reading);
+  ReadOptions chosen = with_temperature(options);
+  std::optional<Stretch> stretch;
+  if (options.still.search && read_once(path))
+    throw Error({ErrorKind::usage,
+                 "E0704",
+                 path,
+                 "a still stretch is searched in a first reading, and this can be read only once",
+                 "",
+                 "save it to a file, or name the stretch"});
+  if (wants_still(options.still)) {
+    stretch = still_stretch(options, [&](BlockSink& sink) {
+      ReadOptions reading = chosen;
+      reading.hash = false;
+      return read_log(path, reading, sink, progress);
+    });
+    if (!stretch->whole) {
+      chosen.from_s = stretch->from_s;
+      chosen.to_s = stretch->to_s;
+    }
+  }
   Source source;
   source.read = [&](BlockSink& sink) { return read_log(path, chosen, sink, progress); };
   if (!read_once(path))
@@ -114,6 +196,7 @@ Characterization characterize(const std::string& path,
     };
   Characterization result = characterize_source(source, options, progress);
   if (chosen.channels.size() > options.reading.channels.size()) drop_temperature(result);
+  if (stretch) note_stretch(std::move(*stretch), result);
   return result;
 }
 
@@ -121,10 +204,19 @@ Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options,
                               Progress& progress) {
   check_columns(recording);
+  check_still(options.still, {});
+  std::optional<Stretch> stretch;
+  if (wants_still(options.still))
+    stretch = still_stretch(
+        options, [&](BlockSink& sink) { return push_recording(recording, sink, progress); });
+  const Recording part = stretch ? between(recording, *stretch) : Recording{};
+  const Recording& used = stretch ? part : recording;
   Source source;
-  source.read = [&](BlockSink& sink) { return push_recording(recording, sink, progress); };
-  source.read_again = [&](BlockSink& sink) { push_recording(recording, sink, progress); };
-  return characterize_source(source, options, progress);
+  source.read = [&](BlockSink& sink) { return push_recording(used, sink, progress); };
+  source.read_again = [&](BlockSink& sink) { push_recording(used, sink, progress); };
+  Characterization result = characterize_source(source, options, progress);
+  if (stretch) note_stretch(std::move(*stretch), result);
+  return result;
 }
 
 }  // namespace libchar

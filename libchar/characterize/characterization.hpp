@@ -10,8 +10,12 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/noise_type.hpp"
+#include "libchar/characterize/trace.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
+#include "libchar/fit/digital.hpp"
+#include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
@@ -36,15 +40,22 @@ inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind>({{SampleKi
 
 /// What is to be computed; nothing else is.
 struct Wanted {
-  bool quality = true;
+  bool quality = true;  ///< and the trace
   bool allan =
       true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
 };
 
+/// Only rest is analysed.
+struct StillOptions {
+  bool search = false;  ///< the longest stretch in which no channel moves (motion.hpp)
+  std::optional<Interval> stretch_s;  ///< this stretch, in seconds after the first sample
+};
+
 struct CharacterizeOptions {
   ReadOptions reading;
+  StillOptions still;
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
@@ -61,8 +72,19 @@ struct CharacterizeOptions {
   std::uint64_t exact_samples =
       std::uint64_t{1}
       << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
+  /// where `allan` asks for octaves and the samples are kept: ten averaging times a decade besides, for plots
+  bool ten_a_decade = false;
   bool full_overlap =
       false;  ///< every term of the overlapping Allan deviation whatever the record's length
+};
+
+/// What was analysed of a log.
+struct Stretch {
+  double from_s = 0, to_s = 0;      ///< after the first sample
+  bool found = false;               ///< as the longest still one; else as asked
+  bool whole = false;               ///< it is all of the log
+  std::vector<std::string> moving;  ///< channels that move outside
+  std::string sentence;
 };
 
 struct ChannelVerification;
@@ -71,11 +93,17 @@ struct LimitReport;
 struct ChannelResult {
   Channel channel;
   ChannelQuality quality;
+  Trace trace;             ///< of the samples as they are in the log
+  std::string trace_unit;  ///< of those
+  Motion motion;           ///< stretches in which the sensor was moved, where that was looked for
   AllanCurve
       allan;  ///< with intervals for the fitted mixture; no points when the record is too short
   Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
+  std::vector<NoiseType>
+      noise_types;  ///< by averaging time; of phase and frequency that are kept only
+  DigitalFaults digital;  ///< rails, held values, a staircase (of samples that are kept)
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
@@ -84,6 +112,7 @@ struct ChannelResult {
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
+  std::optional<Stretch> still;      ///< where `still` was asked for
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample

@@ -130,7 +130,7 @@ void remark_if(bool differ,
   if (differ) out.remarks.push_back(fmt::format("{}: {} in A, {} in B.", what, a, b));
 }
 
-std::string band_text(const ChannelSummary& c) {
+std::string band_text(const ReportedChannel& c) {
   return c.band.whole ? "the whole spectrum"
                       : fmt::format("up to {} Hz", number_text(c.band.top_hz, 3));
 }
@@ -139,7 +139,7 @@ std::string unit_or_none(const std::string& unit) {
   return unit.empty() ? "no unit" : unit;
 }
 
-void add_remarks(const ChannelSummary& a, const ChannelSummary& b, ComparedChannel& out) {
+void add_remarks(const ReportedChannel& a, const ReportedChannel& b, ComparedChannel& out) {
   remark_if(a.unit != b.unit, "Unit", unit_or_none(a.unit), unit_or_none(b.unit), out);
   if (!a.fitted || !b.fitted) {
     out.remarks.push_back(fmt::format("Without a fit in {}.",
@@ -172,7 +172,7 @@ std::optional<double> unit_factor(const std::string& a, const std::string& b) {
   return other->to_si / one->to_si;
 }
 
-ComparedChannel compared_channel(const ChannelSummary& a, const ChannelSummary& b) {
+ComparedChannel compared_channel(const ReportedChannel& a, const ReportedChannel& b) {
   ComparedChannel out;
   out.name = a.name;
   out.unit = a.unit;
@@ -196,20 +196,20 @@ ComparedChannel compared_channel(const ChannelSummary& a, const ChannelSummary& 
 }  // namespace
 
 CharacterizationComparison compare_characterizations(
-    CharacterizationSummary a,
-    CharacterizationSummary b,
+    ReportedCharacterization a,
+    ReportedCharacterization b,
     const CharacterizationCompareOptions& options) {
   CharacterizationComparison out;
   out.a = std::move(a);
   out.b = std::move(b);
-  for (const ChannelSummary& one : out.a.channels) {
-    const ChannelSummary* const other = out.b.find(one.name);
+  for (const ReportedChannel& one : out.a.channels) {
+    const ReportedChannel* const other = out.b.find(one.name);
     if (other != nullptr)
       out.channels.push_back(compared_channel(one, *other));
     else
       out.channels.push_back({one.name, one.unit, true, false, {}, {}});
   }
-  for (const ChannelSummary& one : out.b.channels)
+  for (const ReportedChannel& one : out.b.channels)
     if (out.a.find(one.name) == nullptr)
       out.channels.push_back({one.name, one.unit, false, true, {}, {}});
   std::size_t judgements = 0;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/characterize/characterization_summary.hpp"
+#include "libchar/characterize/reported_characterization.hpp"
 #include "libchar/core/enum_table.hpp"
 
 namespace libchar {
@@ -44,7 +44,7 @@ struct ComparedChannel {
 };
 
 struct CharacterizationComparison {
-  CharacterizationSummary a, b;
+  ReportedCharacterization a, b;
   std::vector<ComparedChannel> channels;
 };
 
@@ -54,8 +54,8 @@ struct CharacterizationCompareOptions {
 };
 
 CharacterizationComparison compare_characterizations(
-    CharacterizationSummary a,
-    CharacterizationSummary b,
+    ReportedCharacterization a,
+    ReportedCharacterization b,
     const CharacterizationCompareOptions& options = {});
 
 std::string comparison_verdict(const CharacterizationComparison& comparison);

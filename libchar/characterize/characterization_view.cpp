@@ -1,11 +1,15 @@
 #include "libchar/characterize/characterization_view.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
@@ -63,6 +67,7 @@ bool stands_on_log_axes(const Spectrum& s) {
 void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
   const NoiseFit& fit = *channel.fit;
   view.findings = findings(fit, view.unit);
+  view.beside_terms = findings_beside_terms(fit, view.unit);
   view.goodness = goodness_sentence(fit.goodness);
   if (const Coefficient& white = fit[Term::white]; white.value) {
     view.per_sample_sd = *white.value * std::sqrt(rate_hz);
@@ -72,7 +77,81 @@ void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
   view.allan_model = allan_model(fit, channel.allan);
   view.spectrum_model = spectrum_model(fit, channel.spectrum);
   view.other_opinions = other_opinions(fit);
+  view.plain_from_s = plain_from_s(fit, channel.allan);
   if (rate_hz > 0) view.consumers = consumer_numbers(fit.term, view.unit, rate_hz);
+}
+
+TraceMark mark_of(const Event& event, double duration_s, const std::string& unit) {
+  const std::string name(event_name(event.kind)), symbol = unit.empty() ? "" : " " + unit;
+  TraceMark mark{name,
+                 event.at_s,
+                 event.at_s,
+                 fmt::format("{} {}{}", name, number_text(event.size, 2), symbol)};
+  if (event.kind == EventKind::warm_up) {
+    mark.from_s = event.from_s;
+    mark.to_s = std::min(duration_s, event.from_s + 3 * event.tau_s);
+    mark.label += ", τ " + duration_text(event.tau_s);
+  }
+  if (event.kind == EventKind::ramp) mark = {name, 0, duration_s, mark.label};
+  return mark;
+}
+
+std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::string& unit) {
+  std::vector<TraceMark> out;
+  for (const Interval& moving : channel.motion.moving_s)
+    out.push_back({"motion", moving.low, moving.high, "motion"});
+  for (const StrengthChange& change : channel.motion.changes)
+    if (change.kind == EventKind::step)
+      out.push_back({"strength",
+                     change.at_s,
+                     change.at_s,
+                     fmt::format("noise × {}", number_text(change.factor, 3))});
+  if (!channel.fit) return out;
+  for (const Event& event : channel.fit->events)
+    out.push_back(mark_of(event, channel.fit->duration_s, unit));
+  return out;
+}
+
+std::string group_title(const std::string& unit) {
+  const auto known = find_unit(unit);
+  if (!known) return "";
+  switch (known->quantity) {
+    case Quantity::angular_rate:
+      return "Angular rate";
+    case Quantity::acceleration:
+      return "Acceleration";
+    case Quantity::magnetic_field:
+      return "Magnetic field";
+    case Quantity::pressure:
+      return "Pressure";
+    case Quantity::temperature:
+      return "Temperature";
+    case Quantity::voltage:
+      return "Voltage";
+    case Quantity::angle:
+      return "Angle";
+    case Quantity::time:
+      return "Time";
+    case Quantity::frequency:
+      return "Frequency";
+    case Quantity::concentration:
+      return "Concentration";
+    case Quantity::ratio:
+      return "Ratio";
+  }
+  return "";
+}
+
+std::vector<ChannelGroup> groups_of(const std::vector<ChannelView>& channels) {
+  std::vector<ChannelGroup> out;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const std::string& unit = channels[i].unit;
+    auto group =
+        std::find_if(out.begin(), out.end(), [&](const ChannelGroup& g) { return g.unit == unit; });
+    if (group == out.end()) group = out.insert(out.end(), {group_title(unit), unit, {}});
+    group->channels.push_back(i);
+  }
+  return out;
 }
 
 /// Shared by the channels: they have most degrees of freedom in common.
@@ -84,6 +163,10 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   ChannelView out;
   out.result = &channel;
   out.unit = usual_spelling(channel.channel.unit);
+  out.shown_unit = shown_unit(out.unit);
+  out.trace_unit = shown_unit(usual_spelling(channel.trace_unit));
+  out.summary = summary_of(channel, out.unit);
+  out.marks = trace_marks(channel, out.shown_unit);
   out.cautions = cautions(channel);
   out.allan_minimum = allan_minimum(channel.allan);
   out.draws_allan = stands_on_log_axes(channel.allan);
@@ -107,6 +190,9 @@ CharacterizationView characterization_view(const Characterization& result) {
   Factors factors;
   for (const ChannelResult& channel : result.channels)
     out.channels.push_back(channel_view(channel, rate_hz, factors));
+  for (const ChannelView& channel : out.channels)
+    out.rating = std::max(out.rating, channel.summary.rating);
+  out.groups = groups_of(out.channels);
   return out;
 }
 

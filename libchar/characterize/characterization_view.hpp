@@ -9,6 +9,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/summary.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/export/consumers.hpp"
 
@@ -27,15 +28,35 @@ struct OtherOpinion {
   std::optional<double> apart;  ///< from the first fit, in combined standard deviations
 };
 
+/// Something found in the record, at its place in time.
+struct TraceMark {
+  std::string kind;             ///< "step", "warm-up", "ramp", "motion", "strength"
+  double from_s = 0, to_s = 0;  ///< alike for an instant
+  std::string label;            ///< "step 0.0031 deg/s"
+};
+
+/// Channels of one kind, which share a plot.
+struct ChannelGroup {
+  std::string title;  ///< "Angular rate"
+  std::string unit;   ///< for its axis
+  std::vector<std::size_t> channels;
+};
+
 struct ChannelView {
   const ChannelResult* result = nullptr;
-  std::string unit;                   ///< in its usual spelling, "m/s²"; "" when nobody said one
-  std::vector<std::string> findings;  ///< sentences with numbers
-  std::vector<std::string> cautions;  ///< what asks for a look before the numbers are used
-  std::string goodness;               ///< how well the model explains the channel; "" without a fit
+  std::string unit;              ///< in its usual spelling, "m/s²"; "" when nobody said one
+  std::string shown_unit;        ///< in texts: "U" when nobody said one, "" for a ratio
+  std::string trace_unit;        ///< the same of the trace's
+  ChannelSummary summary;        ///< one sentence and its colour
+  std::vector<TraceMark> marks;  ///< in the trace
+  double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
+  std::vector<std::string> findings;      ///< sentences with numbers
+  std::vector<std::string> beside_terms;  ///< those of them that are not about a noise term
+  std::vector<std::string> cautions;      ///< what asks for a look before the numbers are used
+  std::string goodness;  ///< how well the model explains the channel; "" without a fit
   const AllanPoint* allan_minimum = nullptr;  ///< lowest reliable point; null: none
-  std::optional<double> per_sample_sd;        ///< Q·√f: what white noise alone gives in a sample
-  std::optional<double> noise_density_one_sided;          ///< √2·Q, as data sheets say it
+  std::optional<double> per_sample_sd;        ///< N·√f: what white noise alone gives in a sample
+  std::optional<double> noise_density_one_sided;          ///< √2·N, as data sheets say it
   std::vector<ReadOff> read_off;                          ///< points of the Allan curve
   std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
@@ -48,9 +69,11 @@ struct ChannelView {
 /// Points into the result that it is a view of, which must live as long.
 struct CharacterizationView {
   const Characterization* result = nullptr;
-  std::string verdict;    ///< a paragraph
-  double duration_s = 0;  ///< of the recording; 0: not known
+  std::string verdict;           ///< a paragraph
+  Rating rating = Rating::good;  ///< the worst of the channels
+  double duration_s = 0;         ///< of the recording; 0: not known
   std::vector<ChannelView> channels;
+  std::vector<ChannelGroup> groups;  ///< in the order of their first channels
 };
 
 CharacterizationView characterization_view(const Characterization& result);

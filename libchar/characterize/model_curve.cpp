@@ -90,7 +90,7 @@ std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curv
   std::vector<ReadOff> points;
   const double q2 = theta_of(fit, Term::white), b2 = theta_of(fit, Term::flicker),
                k2 = theta_of(fit, Term::walk);
-  if (q2 > 0) points.push_back({Term::white, 1, std::sqrt(q2), "Q at τ = 1 s"});
+  if (q2 > 0) points.push_back({Term::white, 1, std::sqrt(q2), "N at τ = 1 s"});
   if (b2 > 0) {
     // On the floor line, where the other two asymptotes cross (or at the curve's minimum): there
     // the floor shows best.

@@ -36,7 +36,7 @@ struct ReadOff {
   Term term = Term::white;
   double tau_s = 1;
   double deviation = 0;
-  std::string label;  ///< "Q at 1 s", "0.664·B", "K at 3 s"
+  std::string label;  ///< "N at 1 s", "0.664·B", "K at 3 s"
 };
 std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve);
 

@@ -1,6 +1,7 @@
 #include "libchar/characterize/model_from_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace libchar {
 namespace {
@@ -21,6 +22,44 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
   }
 }
 
+GaussMarkovNoise process_of(const NoiseFit& fit) {
+  if (!fit.gauss_markov || !fit.gauss_markov->in_model) return {};
+  const Coefficient &sigma = fit.gauss_markov->sigma, &tau = fit.gauss_markov->tau_s;
+  GaussMarkovNoise out{*sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}};
+  if (std::isfinite(tau.ci95.high)) out.tau_ci95_s.push_back(tau.ci95.high);
+  return out;
+}
+
+DeterministicTerm deterministic_of(const Event& event) {
+  using Kind = DeterministicTerm::Kind;
+  DeterministicTerm term;
+  term.kind = event.kind == EventKind::step      ? Kind::step
+              : event.kind == EventKind::warm_up ? Kind::warm_up
+                                                 : Kind::ramp;
+  term.size = event.size;
+  term.sd = event.sd;
+  if (event.kind == EventKind::step) term.at_s = event.at_s;
+  if (event.kind == EventKind::warm_up) term.tau_s = event.tau_s;
+  if (event.kind == EventKind::ramp) term.per_s = event.slope;
+  return term;
+}
+
+// About the mean temperature of the recording, so that the bias there is the recording's mean.
+void set_temperature_terms(SensorModel& model, const TemperatureEffect& effect) {
+  constexpr double kZeroCelsius = 273.15;
+  model.bias.tc1_per_k = effect.coefficient[0];
+  model.bias.tc2_per_k2 = effect.coefficient[1];
+  model.bias.tc3_per_k3 = effect.coefficient[2];
+  model.bias.lag_s = effect.lag_s;
+  model.reference_temperature_degc = effect.mean - (effect.unit == "K" ? kZeroCelsius : 0);
+}
+
+void set_means(SensorModel& model, const NoiseFit& fit) {
+  for (const Event& event : fit.events) model.deterministic.push_back(deterministic_of(event));
+  model.moving_s = fit.moving_s;
+  if (fit.temperature && fit.temperature->order > 0) set_temperature_terms(model, *fit.temperature);
+}
+
 }  // namespace
 
 SensorModel sensor_model_from_curve(const Channel& channel,
@@ -32,6 +71,8 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = fit.rate_hz;
   model.noise = fit.term;
+  model.gauss_markov = process_of(fit);
+  model.flicker_phase = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
@@ -39,6 +80,8 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.recording_file = source.file;
   model.recording_sha256 = source.sha256;
   model.duration_s = fit.duration_s;
+  model.stretch_s = source.stretch_s;
+  set_means(model, fit);
   model.remarks = fit.sentences;
   return model;
 }
@@ -53,6 +96,8 @@ SensorModel sensor_model_from(const Channel& channel,
   model.unit = channel.unit;
   model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
   model.noise = fit.term;
+  model.gauss_markov = process_of(fit);
+  model.flicker_phase = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.resolution = quality.resolution;
@@ -64,6 +109,8 @@ SensorModel sensor_model_from(const Channel& channel,
   model.recording_file = log.file;
   model.recording_sha256 = log.sha256;
   model.duration_s = fit.duration_s;
+  model.stretch_s = log.stretch_s;
+  set_means(model, fit);
   model.remarks = fit.sentences;
   for (const Remedy& remedy : fit.remedies)
     model.remarks.push_back(remedy.kind + ": " + remedy.action);

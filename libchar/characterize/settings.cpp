@@ -25,6 +25,7 @@ const Fields<Options>& allan_settings() {
       field<&Options::allan, &AllanOptions::taus_s>("taus_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_min_s>("tau_min_s", {.unit = "s"}),
       field<&Options::allan, &AllanOptions::tau_max_s>("tau_max_s", {.unit = "s"}),
+      field<&Options::ten_a_decade>("ten_a_decade"),
       field<&Options::full_overlap>("full_overlap"),
   };
   return rows;
@@ -82,6 +83,19 @@ const Fields<ReadOptions>& reading_settings() {
   return rows;
 }
 
+void read_still(const MapReader& at, std::string_view key, Options& options) {
+  if (!at.has(key)) return;
+  const auto ends = at.interval(key);
+  options.still.stretch_s = Interval{ends.first, ends.second};
+}
+
+void write_still(const Field& row, const Options& options, std::vector<Entry>& out) {
+  if (options.still.stretch_s)
+    out.push_back(
+        {std::string(row.key),
+         std::vector<double>{options.still.stretch_s->low, options.still.stretch_s->high}});
+}
+
 }  // namespace
 
 const Fields<CharacterizeOptions>& characterize_fields() {
@@ -98,6 +112,9 @@ const Fields<CharacterizeOptions>& characterize_fields() {
     all = always(all);
     all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}).field);
     all.rows.push_back(field<&Options::temperature>("temperature").field);
+    all.rows.push_back(field<&Options::still, &StillOptions::search>("still_search").field);
+    all.rows.push_back(
+        custom<Options, read_still, write_still>("still_s", "[low, high]", {.unit = "s"}).field);
     return all;
   }();
   return rows;

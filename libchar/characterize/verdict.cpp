@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/summary.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
@@ -13,24 +14,25 @@
 namespace libchar {
 namespace {
 
-// Below this the residuals are not what the model leads one to expect in one record of a thousand.
-constexpr double kDoubtful = 1e-3;
-
 std::string in_habitual_unit(const Coefficient& c, Term term, const std::string& unit) {
   const auto habits = habitual_units(kTermNames[static_cast<std::size_t>(term)].key, unit);
   if (habits.empty()) return "";
-  return fmt::format(" ({} {})", value_text(c, habits[0].factor), habits[0].symbol);
+  return fmt::format(" ({}{}{})",
+                     value_text(c, habits[0].factor),
+                     habits[0].symbol.empty() ? "" : " ",
+                     habits[0].symbol);
 }
 
 std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const Coefficient& c = fit[term];
   const auto& name = kTermNames[static_cast<std::size_t>(term)];
+  const std::string own = shown_term_unit(name.key, unit), title = term_title(term, unit);
   const std::string value =
-      value_text(c) + " " + term_unit(name.key, unit) + in_habitual_unit(c, term, unit);
+      value_text(c) + (own.empty() ? "" : " ") + own + in_habitual_unit(c, term, unit);
   switch (c.status) {
     case Status::detected:
       return fmt::format("{} {} = {}, known to {} %.",
-                         term_title(term),
+                         title,
                          name.letter,
                          value,
                          number_text(100 * c.relative_sd, 2));
@@ -38,18 +40,18 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
       return fmt::format(
           "{} {} = {}, but undetermined: the record cannot tell it from another term, or "
           "contradicts it.",
-          term_title(term),
+          title,
           name.letter,
           value);
     case Status::misfit:
       return fmt::format("{} {} = {}, but the noise terms do not describe the recording.",
-                         term_title(term),
+                         title,
                          name.letter,
                          value);
     case Status::not_detected:
-      return fmt::format("{} {} not detected, {} (95 %).", term_title(term), name.letter, value);
+      return fmt::format("{} {} not detected, {} (95 %).", title, name.letter, value);
     case Status::given:
-      return fmt::format("{} {} = {}, given.", term_title(term), name.letter, value);
+      return fmt::format("{} {} = {}, given.", title, name.letter, value);
     case Status::not_fitted:
       return "";
   }
@@ -69,6 +71,11 @@ std::string list_of(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+double missing_share(const ChannelQuality& quality) {
+  const std::uint64_t all = quality.samples + quality.missing;
+  return all == 0 ? 0 : static_cast<double>(quality.missing) / static_cast<double>(all);
+}
 
 std::string term_title(Term term) {
   switch (term) {
@@ -104,6 +111,23 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
     std::string sentence = finding(fit, static_cast<Term>(t), unit);
     if (!sentence.empty()) out.push_back(std::move(sentence));
   }
+  for (std::string& sentence : findings_beside_terms(fit, unit)) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit) {
+  std::vector<std::string> out;
+  if (fit.gauss_markov && fit.gauss_markov->in_model)
+    out.push_back(fmt::format(
+        "Gauss–Markov process: standard deviation σ = {} {}, correlation time τ = {}{}.",
+        value_text(fit.gauss_markov->sigma),
+        unit.empty() ? "U" : unit,
+        duration_text(*fit.gauss_markov->tau_s.value),
+        fit.gauss_markov->sigma.status == Status::detected
+            ? fmt::format(", known to {} % and {} %",
+                          number_text(100 * fit.gauss_markov->sigma.relative_sd, 2),
+                          number_text(100 * fit.gauss_markov->tau_s.relative_sd, 2))
+            : ", but the record contradicts it or the terms do not describe it"));
   if (fit.temperature && fit.temperature->order > 0)
     out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
@@ -118,7 +142,6 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit) 
 std::vector<std::string> cautions(const ChannelResult& channel) {
   std::vector<std::string> out = channel.problems;
   const ChannelQuality& q = channel.quality;
-  const double all = static_cast<double>(q.samples + q.missing);
   if (channel.fit) {
     const NoiseFit& fit = *channel.fit;
     if (!fit.converged) out.push_back("The fit did not converge.");
@@ -128,15 +151,13 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
   }
   if (channel.verification && !channel.verification->agrees)
     out.push_back(channel.verification->sentences.front());
-  if (q.saturated > 0 && q.suggestions.empty())
+  if (q.saturated > 0 && q.suggestions.empty() && channel.digital.rails.empty())
     out.push_back(
         fmt::format("{} samples stand at the end of the range.", count_text(q.saturated)));
   // Fewer cost nothing worth mentioning here: terms that touch them are left out.
-  if (all > 0 && static_cast<double>(q.missing) > 0.01 * all) {
-    out.push_back(fmt::format("{} samples ({} %) are missing.",
-                              count_text(q.missing),
-                              number_text(100 * static_cast<double>(q.missing) / all, 2)));
-  }
+  if (const double share = missing_share(q); share > 0.01)
+    out.push_back(fmt::format(
+        "{} samples ({} %) are missing.", count_text(q.missing), number_text(100 * share, 2)));
   out.insert(out.end(), q.suggestions.begin(), q.suggestions.end());
   return out;
 }
@@ -181,6 +202,7 @@ std::string verdict_of(const Characterization& result) {
   if (!unfitted.empty()) out += fmt::format(" No fit was possible for {}.", list_of(unfitted));
   if (!doubted.empty()) out += fmt::format(" Coefficients of {} are doubtful.", list_of(doubted));
   if (!noted.empty()) out += fmt::format(" Read what is said of {}.", list_of(noted));
+  if (result.still) out += " " + result.still->sentence;
   return out;
 }
 

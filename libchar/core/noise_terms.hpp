@@ -13,16 +13,15 @@ inline constexpr std::size_t kTerms = 5;
 struct TermName {
   /// in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
   std::string_view key;
-  std::string_view letter;  ///< in texts, beside the long name: Q, B, K, Qz, R
-  std::string_view ieee;    ///< IEEE 952 letter: N, B, K, Q, R
+  std::string_view letter;  ///< in texts, beside the long name; of IEEE 952
 };
-inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "Q", "N"},
-                                                             {"bias_instability", "B", "B"},
-                                                             {"random_walk", "K", "K"},
-                                                             {"quantization", "Qz", "Q"},
-                                                             {"rate_ramp", "R", "R"}}};
+inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "N"},
+                                                             {"bias_instability", "B"},
+                                                             {"random_walk", "K"},
+                                                             {"quantization", "Q"},
+                                                             {"rate_ramp", "R"}}};
 
-/// Squared coefficients theta = (Q^2, B^2, K^2, Qz^2, R^2), each >= 0; every curve is linear in them.
+/// Squared coefficients theta = (N^2, B^2, K^2, Q^2, R^2), each >= 0; every curve is linear in them.
 using Mixture = std::array<double, kTerms>;
 
 }  // namespace libchar

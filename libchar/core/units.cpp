@@ -209,4 +209,16 @@ std::string term_unit(std::string_view term, std::string_view unit) {
   return u;
 }
 
+std::string shown_unit(std::string_view unit) {
+  if (unit.empty()) return "U";
+  return unit == "1" ? "" : std::string(unit);
+}
+
+std::string shown_term_unit(std::string_view term, std::string_view unit) {
+  const std::string u = term_unit(term, unit);
+  if (unit != "1") return u;
+  if (u == "1") return "";
+  return u.starts_with("1·") ? u.substr(std::string_view("1·").size()) : u;
+}
+
 }  // namespace libchar

@@ -62,4 +62,8 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
 /// Unit text of a term's coefficient for a channel unit U: "U·√s" or "U/√Hz" for white noise, U, "U/√s", "U·s", "U/s".
 std::string term_unit(std::string_view term, std::string_view unit);
 
+/// For readers: "U" where nobody said a unit, "" for a ratio ("1"), else the unit; and the same of a term's coefficient: "√s", "1/√s".
+std::string shown_unit(std::string_view unit);
+std::string shown_term_unit(std::string_view term, std::string_view unit);
+
 }  // namespace libchar

@@ -13,6 +13,9 @@ namespace {
 
 using enum ExportNeeds;
 
+// Of the targets' `terms`.
+constexpr std::string_view kLetters[kTerms] = {"Q", "B", "K", "Qz", "R"};
+
 std::string channels_of(const SensorGroup& group) {
   std::string text;
   for (const SensorModel* m : group.all)
@@ -82,12 +85,20 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
     return channels;
   };
   for (std::size_t t = 0; t < kTerms; ++t) {
-    if (target.terms.find(kTermNames[t].letter) != std::string_view::npos) continue;
+    if (target.terms.find(kLetters[t]) != std::string_view::npos) continue;
     const std::string channels =
         among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
     if (!channels.empty())
       out.push_back(fmt::format("not in this file: {} of {}", kTermNames[t].key, channels));
   }
+  const std::string process = among([](const SensorModel& m) { return m.gauss_markov.sigma > 0; });
+  if (!process.empty() && !target.takes.gauss_markov && !target.takes.status)
+    out.push_back(fmt::format(
+        "not in this file: the correlation time of the Gauss-Markov process of {}{}",
+        process,
+        target.terms.find('K') == std::string_view::npos
+            ? ""
+            : "; as a random walk of its driving density it holds for times well below that"));
   const std::string filtered = among(
       [](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
   if (!filtered.empty() && !target.takes.low_pass)

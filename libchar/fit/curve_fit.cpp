@@ -6,6 +6,10 @@
 //   neither                 equal relative errors, estimated from the scatter about the fit;
 //                           neighbouring residuals that go the same way count as fewer points,
 //                           n (1-r)/(1+r).
+// Where stated uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
+// out, point by point, until the terms describe the rest: a sensor's filter shows there, and nearly all of the weight is there. Where
+// no half of the points is described, nothing is borne out: status misfit, and the scatter takes the place of the uncertainties, in
+// the decisions (differences of chi-square over chi-square a degree of freedom) as in the intervals.
 #include "libchar/fit/curve_fit.hpp"
 
 #include <fmt/format.h>
@@ -33,6 +37,10 @@
 namespace libchar {
 namespace {
 
+constexpr double kBarelyKnown = 0.30;  ///< relative sd above which a value is undetermined
+constexpr double kDescribed =
+    0.02;  ///< probability of the residuals from which on they are those of the stated scatter
+constexpr double kMisfitCurve = 1e-3;  ///< below which they are not
 constexpr double kDigitised =
     1e-6;  ///< relative scatter below which differences of fit mean nothing
 
@@ -135,8 +143,9 @@ struct Judge {
   double points = 0;       ///< points of the curve
   double independent = 0;  ///< fewer when neighbouring residuals go together
   double floor = 0;        ///< of the sum of squares
+  double scale = 1;  ///< variance of the whitened residuals, where it is known to be above one
   double ratio(double without, double with) const {
-    if (scatter != Scatter::estimated) return without - with;
+    if (scatter != Scatter::estimated) return (without - with) / scale;
     return points * std::log((without + floor) / (with + floor));
   }
 };
@@ -191,7 +200,8 @@ CurveDecision decide(const CurveProblem& problem,
 double upper_limit(const CurveProblem& problem,
                    const CurveDecision& decision,
                    std::size_t term,
-                   const Judge& judge) {
+                   const Judge& judge,
+                   double rise = kOneSided95) {
   const double level =
       (problem.value / problem.unit.col(static_cast<Eigen::Index>(term))).minCoeff();
   const auto excess = [&](double theta) {
@@ -199,9 +209,9 @@ double upper_limit(const CurveProblem& problem,
     start[term] = theta;
     return judge.ratio(solve_curve(problem, decision.kept, &start).sum_of_squares,
                        decision.best.sum_of_squares) -
-           kOneSided95;
+           rise;
   };
-  double low = level * 1e-12, high = level;
+  double low = std::max(level * 1e-12, decision.best.theta[term]), high = std::max(level, 2 * low);
   for (int i = 0; i < 40 && excess(high) < 0; ++i) high *= 4;
   for (int i = 0; i < 60 && high / low > 1.001; ++i) {
     const double middle = std::sqrt(low * high);
@@ -262,6 +272,30 @@ CurveJudgement judged(const CurveProblem& problem,
   return out;
 }
 
+/// Where twice the log-likelihood has fallen by its 95 % point; 0 when it has not at zero.
+Interval profiled(const CurveJudgement& found, std::size_t term) {
+  const CurveDecision& decision = found.decision;
+  TermSet others = decision.kept;
+  others[term] = false;
+  const auto excess = [&](double theta) {
+    Mixture start = decision.best.theta;
+    start[term] = theta;
+    return found.judge.ratio(solve_curve(found.problem, others, &start).sum_of_squares,
+                             decision.best.sum_of_squares) -
+           kTwoSided95;
+  };
+  CurveDecision without = decision;
+  without.kept = others;
+  const double high = upper_limit(found.problem, without, term, found.judge, kTwoSided95);
+  double low = decision.best.theta[term] * 1e-6, at = decision.best.theta[term];
+  if (!(excess(low) > 0)) return {0, high};
+  for (int i = 0; i < 60 && at / low > 1.001; ++i) {
+    const double middle = std::sqrt(low * at);
+    (excess(middle) > 0 ? low : at) = middle;
+  }
+  return {std::sqrt(at), high};
+}
+
 void report_positive_term(const CurveJudgement& found,
                           std::size_t i,
                           double threshold,
@@ -278,6 +312,11 @@ void report_positive_term(const CurveJudgement& found,
   term.relative_sd = std::sqrt(found.covariance(c, c)) / (2 * theta[i]);
   const double spread = std::exp(found.quantile * term.relative_sd);
   term.ci95 = {*term.value / spread, *term.value * spread};
+  if (term.relative_sd > kBarelyKnown) {
+    if (term.status == Status::detected) term.status = Status::undetermined;
+    term.profile = true;
+    term.ci95 = profiled(found, i);
+  }
   for (std::size_t j = 0; j < kTerms; ++j)
     if (found.positive[j])
       fit.covariance[i][j] =
@@ -341,9 +380,12 @@ void report_residuals(const DigitisedCurve& curve, const CurveJudgement& found, 
 
 }  // namespace
 
-NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
-  check(curve);
-  const TermSet offered = offered_to(curve, options);
+namespace {
+
+NoiseFit fit_points(const DigitisedCurve& curve,
+                    const TermSet& offered,
+                    const FitOptions& options,
+                    double scale) {
   if (curve.x.size() < count_of(offered)) {
     throw Error({ErrorKind::numeric,
                  "",
@@ -357,6 +399,7 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   CurveProblem problem = problem_of(curve);
   Judge judge;
   judge.points = judge.independent = static_cast<double>(curve.x.size());
+  judge.scale = scale;
   CurveSolution rough = solve_curve_thoroughly(problem, offered);
   if (!curve.relative_sd.empty()) {
     judge.scatter = Scatter::stated;
@@ -387,6 +430,97 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   report_goodness(found, fit);
   report_residuals(curve, found, fit);
   return fit;
+}
+
+/// The curve without `left_out` points of its fast end.
+DigitisedCurve slow_part(const DigitisedCurve& curve, std::size_t left_out) {
+  DigitisedCurve part = curve;
+  const auto cut = [&](std::vector<double>& values) {
+    if (values.empty()) return;
+    const auto count = static_cast<std::ptrdiff_t>(left_out);
+    if (curve.is_allan)
+      values.erase(values.begin(), values.begin() + count);
+    else
+      values.erase(values.end() - count, values.end());
+  };
+  cut(part.x);
+  cut(part.y);
+  cut(part.relative_sd);
+  return part;
+}
+
+/// What was left out stays in the residuals, outside the band.
+void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit& fit) {
+  const double edge = curve.is_allan ? curve.x[left_out] : curve.x[curve.x.size() - left_out - 1];
+  const CurveProblem problem = problem_of(curve);
+  std::vector<FitResidual> outside;
+  for (std::size_t k = 0; k < left_out; ++k) {
+    const std::size_t at = curve.is_allan ? k : curve.x.size() - left_out + k;
+    const auto j = static_cast<Eigen::Index>(at);
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i)
+      model += fit.theta[i] > 0 ? fit.theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
+    const double measured = problem.value[j];
+    outside.push_back({curve.x[at],
+                       curve.is_allan ? std::sqrt(measured) : measured,
+                       curve.is_allan ? std::sqrt(model) : model,
+                       0,
+                       0,
+                       false});
+  }
+  fit.residuals.insert(
+      curve.is_allan ? fit.residuals.begin() : fit.residuals.end(), outside.begin(), outside.end());
+  fit.band.whole = false;
+  fit.band.top_hz = curve.is_allan ? 1 / (2 * edge) : edge;
+  fit.remedies.push_back(
+      {"band",
+       "the noise terms do not describe the whole curve within its uncertainty",
+       curve.is_allan
+           ? fmt::format(
+                 "coefficients from averaging times of {:.4g} s on, {} of {} points left out",
+                 edge,
+                 left_out,
+                 curve.x.size())
+           : fmt::format("coefficients from below {:.4g} Hz, {} of {} points left out",
+                         edge,
+                         left_out,
+                         curve.x.size()),
+       left_out});
+}
+
+/// Half of the points at least, and more than there are terms.
+std::size_t fewest_points(std::size_t points, const TermSet& offered) {
+  return std::max((points + 1) / 2, count_of(offered) + 3);
+}
+
+}  // namespace
+
+NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
+  check(curve);
+  const TermSet offered = offered_to(curve, options);
+  NoiseFit whole = fit_points(curve, offered, options, 1);
+  // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length alone does not
+  // give the covariance of a part of its curve.
+  const bool judged = !curve.relative_sd.empty() || (curve.duration_s && curve.is_allan);
+  const bool divisible = !curve.relative_sd.empty() || curve.rate_hz;
+  if (!judged || whole.goodness.p >= kDescribed) return whole;
+  const std::size_t points = curve.x.size(), fewest = fewest_points(points, offered);
+  for (std::size_t left_out = 1; divisible && points - left_out >= fewest && left_out < points;
+       ++left_out) {
+    NoiseFit part = fit_points(slow_part(curve, left_out), offered, options, 1);
+    if (part.goodness.p < kDescribed) continue;
+    report_left_out(curve, left_out, part);
+    return part;
+  }
+  if (whole.goodness.p >= kMisfitCurve) return whole;
+  NoiseFit misfit =
+      fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
+  for (Coefficient& term : misfit.term)
+    if (term.value) term.status = Status::misfit;
+  misfit.sentences.push_back(
+      "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
+      "no coefficient is borne out.");
+  return misfit;
 }
 
 }  // namespace libchar

@@ -147,11 +147,12 @@ void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view uni
                     number_text(rate_hz, 4)));
   if (faults.staircase)
     faults.sentences.push_back(
-        fmt::format("The noise between samples, {}{}, is below the converter's step of {}: what is "
-                    "measured is the rounding.",
+        fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
                     faults.staircase->bounded ? "at most " : "",
                     with_unit(faults.staircase->noise, unit),
-                    with_unit(faults.staircase->step, unit)));
+                    with_unit(faults.staircase->step, unit),
+                    faults.staircase->bounded ? "what is measured is the rounding."
+                                              : "the rounding is part of what is measured."));
 }
 
 }  // namespace
@@ -180,6 +181,30 @@ DigitalFaults find_digital_faults(std::span<const double> record,
   }
   describe_faults(faults, rate_hz, unit);
   return faults;
+}
+
+void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
+  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the standard deviation.
+  constexpr double kHarmless = 0.01;
+  double clipped = 0;
+  for (const Rail& rail : faults.rails) clipped += rail.share;
+  const bool rounding = faults.staircase && faults.staircase->bounded;
+  if (!rounding && !(clipped > kHarmless)) return;
+  for (Coefficient& term : fit.term) {
+    if (term.status == Status::detected || term.status == Status::undetermined)
+      term.status = Status::misfit;
+  }
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  if (rounding && fit.rate_hz > 0) {
+    // Noise of less than .3 steps: not more is known of it.
+    const double most = faults.staircase->noise / std::sqrt(fit.rate_hz);
+    if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
+    if (white.upper95) white.upper95 = std::max(*white.upper95, most);
+  }
+  fit.sentences.push_back(fmt::format(
+      "No coefficient can be trusted, however well the curves agree: they are those of the "
+      "{}, not of the noise.",
+      rounding ? "converter's rounding" : "clipped samples"));
 }
 
 }  // namespace libchar

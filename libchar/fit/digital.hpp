@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/fit/noise_fit.hpp"
+
 namespace libchar {
 
 /// Samples at the largest or smallest value, more than a tail of noise puts there.
@@ -43,5 +45,9 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step = {},
                                   std::string_view unit = {});
+
+/// Coefficients of a record that shows the converter's rounding (a staircase) or its rails instead of the noise are a misfit: their
+/// intervals reach to what the noise may be.
+void doubt_digital(const DigitalFaults& faults, NoiseFit& fit);
 
 }  // namespace libchar

@@ -358,6 +358,19 @@ int further_steps(const Search& search, const Hypothesis& now) {
   return places;
 }
 
+Interval longest_without_steps(const std::vector<Event>& events,
+                               double start_s,
+                               double duration_s) {
+  std::vector<double> at = {start_s, start_s + duration_s};
+  for (const Event& event : events)
+    if (event.kind == EventKind::step) at.push_back(event.at_s);
+  std::sort(at.begin(), at.end());
+  Interval longest{at[0], at[1]};
+  for (std::size_t i = 1; i < at.size(); ++i)
+    if (at[i] - at[i - 1] > longest.high - longest.low) longest = {at[i - 1], at[i]};
+  return longest;
+}
+
 /// What many steps are.
 void judge_many(const Search& search,
                 const Hypothesis& now,
@@ -378,9 +391,14 @@ void judge_many(const Search& search,
         unit,
         telegraph.jumps));
   } else if (found.more) {
+    const Interval quiet = longest_without_steps(found.events, search.series.start_s, duration_s);
     found.sentences.push_back(fmt::format(
-        "There are more than {} steps and drifts: the record is no noise with a few of them.",
-        search.options.most));
+        "There are more than {} steps and drifts: the record is no noise with a few of them, but "
+        "handled, moved, or shaken by what happens around it; they stay in. The longest stretch "
+        "without a step that was found is from {:.6g} to {:.6g} s.",
+        search.options.most,
+        quiet.low,
+        quiet.high));
   }
 }
 
@@ -464,7 +482,14 @@ std::string event_sentence(const Event& event, std::string_view unit) {
                              event.at_ci95.low,
                              event.at_ci95.high);
   if (event.kind == EventKind::warm_up)
-    text = fmt::format("A warm-up of {} with a time constant of {:.3g} s", size, event.tau_s);
+    text = event.tau_ci95.high > 0 || !(event.tau_ci95.low > 0)
+               ? fmt::format("A warm-up of {} with a time constant of {:.3g} s", size, event.tau_s)
+               : fmt::format(
+                     "A warm-up that is not over, with a time constant of at least {:.3g} "
+                     "s ({} at {:.3g} s)",
+                     event.tau_ci95.low,
+                     size,
+                     event.tau_s);
   if (event.kind == EventKind::ramp)
     text = fmt::format("A straight drift of {} over the record ({}{} /s)",
                        size,

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 
 namespace libchar {
 namespace {
@@ -24,6 +25,33 @@ Json term_json(const Coefficient& term, std::size_t i, const std::string& unit) 
   json["bound_relative_sd"] = json_number(term.bound);
   json["seconds_for_10_percent"] = json_number(term.seconds_for_10_percent);
   return json;
+}
+
+Json gauss_markov_json(const GaussMarkovFit& process, const std::string& unit) {
+  const auto figure = [](const Coefficient& c) {
+    return Json{{"value", json_number(c.value)},
+                {"ci95", c.ci95.high > 0 ? pair_of(c.ci95) : Json(nullptr)},
+                {"relative_sd", c.relative_sd > 0 ? json_number(c.relative_sd) : Json(nullptr)}};
+  };
+  return {{"status", name_of(process.sigma.status)},
+          {"in_model", process.in_model},
+          {"sigma", figure(process.sigma)},
+          {"sigma_unit", unit},
+          {"tau_s", figure(process.tau_s)},
+          {"likelihood_ratio", json_number(process.sigma.likelihood_ratio)}};
+}
+
+Json power_laws_json(const NoiseFit& fit) {
+  Json list = Json::array();
+  for (const PowerLaw& law : power_laws(fit))
+    list.push_back({{"alpha", law.alpha},
+                    {"name", law.name},
+                    {"stable32", law.abbreviation},
+                    {"h", json_number(law.h.value)},
+                    {"ci95", law.h.value ? pair_of(law.h.ci95) : Json(nullptr)},
+                    {"upper95", json_number(law.h.upper95)},
+                    {"status", name_of(law.h.status)}});
+  return list;
 }
 
 Json goodness_json(const Goodness& goodness) {
@@ -76,7 +104,12 @@ Json events_json(const std::vector<Event>& events) {
       json["at_ci95"] = pair_of(event.at_ci95);
       json["in_gap"] = event.in_gap;
     }
-    if (event.kind == EventKind::warm_up) json["tau_s"] = json_number(event.tau_s);
+    if (event.kind == EventKind::warm_up) {
+      json["tau_s"] = json_number(event.tau_s);
+      json["tau_ci95"] =
+          Json::array({json_number(event.tau_ci95.low),
+                       event.tau_ci95.high > 0 ? json_number(event.tau_ci95.high) : Json(nullptr)});
+    }
     if (event.kind == EventKind::ramp) json["slope_per_s"] = json_number(event.slope);
     json["not_told_from"] = Json::array();
     for (const EventKind other : event.not_told_from)
@@ -146,6 +179,9 @@ Json noise_fit_json(const std::string& name,
   json["shape"] = shape_json(fit.shape);
   json["bandwidth_hz"] = json_number(fit.bandwidth_hz);
   json["bandwidth_ci95"] = fit.bandwidth_ci95 ? pair_of(*fit.bandwidth_ci95) : Json(nullptr);
+  json["gauss_markov"] =
+      fit.gauss_markov ? gauss_markov_json(*fit.gauss_markov, unit) : Json(nullptr);
+  if (fit.flicker_phase) json["power_laws"] = power_laws_json(fit);
   json["second_opinion"] = fit.second_opinion ? second_json(*fit.second_opinion) : Json(nullptr);
   json["goodness"] = goodness_json(fit.goodness);
   json["remedies"] = Json::array();
@@ -156,6 +192,8 @@ Json noise_fit_json(const std::string& name,
                                 {"count", remedy.count}});
   }
   json["events"] = events_json(fit.events);
+  json["moving_s"] = Json::array();
+  for (const Interval& stretch : fit.moving_s) json["moving_s"].push_back(pair_of(stretch));
   json["temperature"] = fit.temperature ? temperature_json(*fit.temperature) : Json(nullptr);
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;

@@ -21,11 +21,14 @@
 #include "libchar/fit/detail/bridge.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/contradiction.hpp"
+#include "libchar/fit/detail/flicker_phase_means.hpp"
+#include "libchar/fit/detail/gauss_markov_fit.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/record_means.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/power_bins.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
 
@@ -80,6 +83,7 @@ Attempt attempt(const std::vector<PowerBin>& bins,
                 const FitOptions& options) {
   Attempt out{&bins, std::move(band), options, {}, 0};
   if (out.band.quantized) out.options.terms[kQuantization] = true;
+  if (out.band.tau_s) out.options.terms[kRamp] = true;
   const BinProblem problem = problem_of(bins, out.band, rate_hz);
   require_enough(static_cast<std::size_t>(problem.size()), out.options.terms);
   const Decision decision = decide(problem, out.options.terms, options.threshold);
@@ -89,7 +93,7 @@ Attempt attempt(const std::vector<PowerBin>& bins,
   fit.duration_s = static_cast<double>(samples) / rate_hz;
   fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
   const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
-  report_bounds(decision.kept, fit);
+  if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
   describe_band(bins, out.band, problem, best, rate_hz, fit);
   fit.goodness =
       goodness_of(inside_of(fit.residuals),
@@ -210,7 +214,7 @@ double largest_possible(Term term, const AllanCurve& allan) {
 void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
   AllanCurve curve = allan != nullptr ? *allan : AllanCurve{};
   if (deviation_row(curve.type).is_allan())
-    add_intervals(curve, fit.theta);
+    add_fit_intervals(curve, fit);
   else
     curve.points.clear();
   const double wider =
@@ -263,6 +267,64 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       worst->frequency_hz));
 }
 
+/// After the decisions: the process that was needed gets its intervals, one that is as likely a sentence.
+void answer_process(const std::vector<PowerBin>& bins,
+                    const Band& band,
+                    GaussMarkovChoice& process,
+                    NoiseFit& fit) {
+  if (!process.needed) return report_not_needed(process, fit);
+  process.band = band;
+  settle_gauss_markov(bins, process, fit);
+}
+
+/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's covariance says.
+void settle_flicker_phase(NoiseFit& fit) {
+  for (Coefficient& term : fit.term)
+    if (term.value) term.bound = term.relative_sd;
+  fit.flicker_phase = fit.term[kRamp];
+  fit.term[kRamp] = {};
+  fit.theta[kRamp] = 0;
+  for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][kRamp] = fit.covariance[kRamp][i] = 0;
+}
+
+NoiseFit fit_offered(const std::vector<PowerBin>& bins,
+                     double rate_hz,
+                     std::uint64_t samples,
+                     const AllanCurve* allan,
+                     const FitOptions& options,
+                     FitWorkspace* workspace) {
+  Band band;
+  if (options.remedies)
+    band = find_band(bins, rate_hz, options.terms);
+  else
+    band = whole_band(bins, rate_hz);
+  std::optional<GaussMarkovChoice> process;
+  if (options.remedies && options.gauss_markov && !options.clock)
+    process = choose_gauss_markov(
+        bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
+  if (process && process->needed) band = process->band;
+  Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
+  if (now.band.tau_s) {  // once more at the best correlation time of the terms that stay
+    process->tau_s = *(now.band.tau_s = likeliest_tau(bins, now.band, rate_hz, now.fit.theta));
+    now = attempt(bins, now.band, rate_hz, samples, options);
+  }
+  if (options.remedies) {
+    report_band(now.band, bins, now.fit);
+    answer_low_frequencies(now);
+  }
+  judge(now.fit, now.band.passes, allan);
+  if (process) answer_process(bins, now.band, *process, now.fit);
+  if (options.clock) settle_flicker_phase(now.fit);
+  const bool terms_alone = !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
+                           !(now.fit.flicker_phase && now.fit.flicker_phase->value);
+  if (options.second_opinion && allan != nullptr && terms_alone)
+    now.fit.second_opinion =
+        second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
+  if (allan != nullptr) answer_contradictions(now.fit, *allan);
+  now.fit.bins = bins;
+  return std::move(now.fit);
+}
+
 }  // namespace
 
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
@@ -271,23 +333,13 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         const AllanCurve* allan,
                         const FitOptions& options,
                         FitWorkspace* workspace) {
-  Band band;
-  if (options.remedies)
-    band = find_band(bins, rate_hz, options.terms);
-  else
-    band = whole_band(bins, rate_hz);
-  Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
-  if (options.remedies) {
-    report_band(now.band, bins, now.fit);
-    answer_low_frequencies(now);
-  }
-  judge(now.fit, now.band.passes, allan);
-  if (options.second_opinion && allan != nullptr)
-    now.fit.second_opinion =
-        second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
-  if (allan != nullptr) answer_contradictions(now.fit, *allan);
-  now.fit.bins = bins;
-  return std::move(now.fit);
+  if (!options.clock) return fit_offered(bins, rate_hz, samples, allan, options, workspace);
+  std::vector<PowerBin> lent = bins;
+  const std::vector<double> units = flicker_phase_units(bins, rate_hz);
+  for (std::size_t j = 0; j < lent.size(); ++j) lent[j].unit[kRamp] = units[j];
+  FitOptions offered = options;
+  offered.terms[kRamp] = offered.terms[kQuantization] = true;
+  return fit_offered(lent, rate_hz, samples, allan, offered, workspace);
 }
 
 namespace {

@@ -58,6 +58,14 @@ struct FitBand {
       left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
 };
 
+/// A first-order Gauss-Markov process (core/gauss_markov.hpp) in the record.
+struct GaussMarkovFit {
+  Coefficient sigma;  ///< standard deviation, in the channel's unit
+  Coefficient tau_s;  ///< correlation time; an interval without an upper end is infinite
+  /// false: looked for and not needed. Undetermined: with white noise alone it is as likely as the terms, which are the model.
+  bool in_model = true;
+};
+
 struct NoiseFit {
   Coefficients term;  ///< indexed by Term
   FitBand band;
@@ -65,6 +73,9 @@ struct NoiseFit {
       shape;  ///< what multiplies the terms' density: of a filter inside the band, of whatever was measured outside
   std::optional<double> bandwidth_hz;  ///< corner of the first-order low-pass, when it was needed
   std::optional<Interval> bandwidth_ci95;
+  std::optional<GaussMarkovFit> gauss_markov;
+  /// of a clock: F of flicker phase noise, y_t = F (x_t - x_{t-1})/dt with x unit flicker (power_laws.hpp)
+  std::optional<Coefficient> flicker_phase;
   Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
   /// of ln(theta) of the terms with a value
   std::array<std::array<double, kTerms>, kTerms> covariance{};
@@ -73,6 +84,8 @@ struct NoiseFit {
   std::vector<Remedy> remedies;
   std::vector<Event>
       events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
+  std::vector<Interval>
+      moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
   std::vector<FitResidual> residuals;
   std::vector<PowerBin>
@@ -97,6 +110,10 @@ struct FitOptions {
       false};  ///< offered from the start; quantization and ramp are added on alarm
   /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
   bool remedies = true;
+  /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
+  bool gauss_markov = true;
+  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
+  bool clock = false;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
   /// its effect is taken out before the noise is fitted (a record that is kept only); null: none

@@ -19,6 +19,8 @@ struct PowerBin {
   double dof = 0;           ///< number of coefficients averaged
   std::array<double, kTerms> unit{};  ///< E[energy] for theta_term = 1
   double low_hz = 0, high_hz = 0;     ///< edges
+  /// its coefficients first..end-1 of a transform of `length` means of `spacing` samples
+  std::uint64_t first = 0, end = 0, length = 0, spacing = 1;
 };
 
 /// Bins without the coefficients of spectral lines.

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/gauss_markov_curves.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/detail/low_pass.hpp"
 
@@ -24,6 +26,29 @@ double ratio_at(const NoiseFit& fit, double frequency_hz, double dt_s) {
   double ratio = shape_ratio(fit.shape, frequency_hz, 1 / dt_s);
   if (fit.bandwidth_hz) ratio *= low_pass_gain(frequency_hz, *fit.bandwidth_hz, 1 / dt_s).gain;
   return ratio;
+}
+
+bool has_process(const NoiseFit& fit) {
+  return fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value;
+}
+
+double flicker_phase_theta(const NoiseFit& fit) {
+  const double f = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
+  return f * f;
+}
+
+double plain_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
+  const double terms = spectrum(fit.theta, frequency_hz, dt_s) +
+                       flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
+  if (!has_process(fit)) return terms;
+  const double sigma = *fit.gauss_markov->sigma.value;
+  return terms +
+         sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
+}
+
+double plain_variance(const NoiseFit& fit, double m, double dt_s) {
+  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s) +
+         flicker_phase_theta(fit) * flicker_phase_allan_variance(m, dt_s);
 }
 
 bool has_shape(const NoiseFit& fit) {
@@ -49,7 +74,7 @@ double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_h
     const double f = low_hz + width * (i + 0.5) / nodes;
     const double sine = std::sin(kPi * f * m * dt_s), step = m * std::sin(kPi * f * dt_s);
     const double transfer = (many ? 0.375 : sine * sine * sine * sine) / (step * step);
-    sum += (ratio_at(fit, f, dt_s) - 1) * spectrum(fit.theta, f, dt_s) * transfer;
+    sum += (ratio_at(fit, f, dt_s) - 1) * plain_density(fit, f, dt_s) * transfer;
   }
   return 4 * sum * width / nodes;
 }
@@ -57,11 +82,11 @@ double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_h
 }  // namespace
 
 double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  return spectrum(fit.theta, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s);
+  return plain_density(fit, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s);
 }
 
 double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s) {
-  double variance = allan_variance(fit.theta, m, dt_s);
+  double variance = plain_variance(fit, m, dt_s);
   if (!has_shape(fit)) return variance;
   const double lowest_hz = shape_from_hz(fit, dt_s), step = std::exp2(-kStretch);
   for (double high = 0.5 / dt_s; high > lowest_hz; high *= step)
@@ -69,12 +94,39 @@ double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s) {
   return std::max(variance, 0.0);
 }
 
+double process_allan_variance(const NoiseFit& fit, double m, double dt_s) {
+  if (!has_process(fit)) return 0;
+  const double sigma = *fit.gauss_markov->sigma.value;
+  return sigma * sigma * gauss_markov_allan_variance(*fit.gauss_markov->tau_s.value, m, dt_s);
+}
+
+void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
+  if (!has_process(fit)) {
+    Mixture theta = fit.theta;  // flicker phase has the degrees of freedom of white phase, nearly
+    theta[static_cast<std::size_t>(Term::quantization)] += flicker_phase_theta(fit);
+    return add_intervals(curve, theta);
+  }
+  constexpr double kRises = 1, kFalls = 4;  // averaging times in correlation times
+  AllanCurve one = curve;
+  for (AllanPoint& point : curve.points) {
+    const auto m = static_cast<double>(point.m);
+    const double across = m * curve.dt_s / *fit.gauss_markov->tau_s.value;
+    const Term like = across < kRises ? Term::walk : across < kFalls ? Term::flicker : Term::white;
+    Mixture theta = fit.theta;
+    theta[static_cast<std::size_t>(like)] +=
+        process_allan_variance(fit, m, curve.dt_s) / unit_allan_variance(like, m, curve.dt_s);
+    one.points = {point};
+    add_intervals(one, theta);
+    point = one.points.front();
+  }
+}
+
 double plain_from_s(const NoiseFit& fit, const AllanCurve& curve) {
   if (!has_shape(fit)) return 0;
   double from_s = 0;
   for (const AllanPoint& point : curve.points) {
     const auto m = static_cast<double>(point.m);
-    const double plain = allan_variance(fit.theta, m, curve.dt_s);
+    const double plain = plain_variance(fit, m, curve.dt_s);
     if (std::abs(shaped_allan_variance(fit, m, curve.dt_s) - plain) > kSameWithin * plain)
       from_s = point.tau_s * (1 + 1e-9);
   }

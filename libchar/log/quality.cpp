@@ -45,14 +45,17 @@ class DistinctValues {
   std::vector<double> values_;
 };
 
-// Samples at one extreme (sign = +1: the maximum, -1: the minimum), counted when they stand in runs
-// of three or more.
+// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It is an end of the range when three and
+// more stand in a row, and it has more than twice as many as its neighbour, which the tail of a coarsely rounded signal has not: then all
+// of them are saturated.
 struct Extreme {
-  double sign = 1, value = -__builtin_inf();
-  std::uint64_t run = 0, in_runs = 0;
+  double sign = 1, value = -__builtin_inf(), next = -__builtin_inf();
+  std::uint64_t run = 0, count = 0, at_next = 0;
+  bool runs = false;
 
+  std::uint64_t saturated() const { return runs && count > 2 * at_next ? count : 0; }
   void block(const double* x, std::size_t n, double block_extreme) {
-    if (sign * block_extreme < value) {  // nothing here reaches it: nearly every block of noise
+    if (sign * block_extreme < next) {  // nothing here reaches it: nearly every block of noise
       run = 0;
       return;
     }
@@ -60,11 +63,19 @@ struct Extreme {
   }
   void step(double v) {
     if (v > value) {
+      next = value;
+      at_next = count;
       value = v;
-      run = in_runs = 0;
+      run = count = 0;
+      runs = false;
+    } else if (v > next && v < value) {
+      next = v;
+      at_next = 0;
     }
+    at_next += v == next ? 1 : 0;
     run = v == value ? run + 1 : 0;
-    if (run >= kSaturatedRun) in_runs += run == kSaturatedRun ? run : 1;
+    count += v == value ? 1 : 0;
+    runs = runs || run >= kSaturatedRun;
   }
 };
 
@@ -533,7 +544,8 @@ ChannelQuality QualityMeter::finish() const {
   }
   q.distinct_values = state.distinct.values().size();
   q.longest_stuck = state.longest_run;
-  if (state.top.value > -state.bottom.value) q.saturated = state.top.in_runs + state.bottom.in_runs;
+  if (state.top.value > -state.bottom.value)
+    q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();
   q.difference_sd = state.differences.standard_deviation();
   q.counter = state.counter.sentence();

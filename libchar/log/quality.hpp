@@ -20,7 +20,7 @@ struct ChannelQuality {
       resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
   std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
   std::uint64_t saturated =
-      0;  ///< samples in runs of >= 3 at the minimum or maximum (or at a round full scale)
+      0;  ///< samples at the minimum or maximum, where three stand in a row and the value next to it has less than half as many
   std::uint64_t longest_stuck = 0;  ///< longest run of one value
   double difference_kurtosis = 3;   ///< kurtosis of first differences: 3 Gaussian, above = spikes
   double difference_sd = 0;         ///< standard deviation of first differences

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/interval.hpp"
 #include "libchar/core/warnings.hpp"
 
 namespace libchar {
@@ -51,6 +52,8 @@ struct LogInfo {
   std::uint64_t first_line = 0;  ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
   TimeBase time;
+  /// what was used of the log, in seconds after its first stamp, where that is not all of it
+  std::optional<Interval> stretch_s;
   Warnings warnings;  ///< every repair, counted by kind with its first places
   std::vector<std::string>
       guesses;  ///< what was inferred and not read, in sentences ("time unit: us, from the magnitude of the stamps")

@@ -1,5 +1,7 @@
 #include "libchar/model/model_fields.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "libchar/core/text.hpp"
@@ -124,6 +126,22 @@ const Fields<NoiseShape>& noise_shape_fields() {
   return rows;
 }
 
+const Fields<GaussMarkovNoise>& gauss_markov_fields() {
+  static const Fields<GaussMarkovNoise> rows = {
+      field<&GaussMarkovNoise::sigma>(
+          "sigma", {.unit = "U", .range = kNotNegative, .meaning = "standard deviation"}),
+      field<&GaussMarkovNoise::tau_s>(
+          "tau_s", {.unit = "s", .range = kNotNegative, .meaning = "correlation time"}),
+      field<&GaussMarkovNoise::sigma_ci95>("sigma_ci95",
+                                           {.unit = "U", .meaning = "95 % interval of sigma"}),
+      field<&GaussMarkovNoise::tau_ci95_s>(
+          "tau_ci95_s",
+          {.unit = "s",
+           .meaning = "95 % interval of tau_s; the lower end alone: no upper end known"}),
+  };
+  return rows;
+}
+
 const Fields<Nonlinearity>& nonlinearity_fields() {
   static const Fields<Nonlinearity> rows = {
       field<&Nonlinearity::quadratic>("quadratic", {.unit = "1/U", .meaning = "c₁"}),
@@ -144,6 +162,11 @@ const Fields<Bias>& bias_fields() {
                             .meaning = "standard deviation from device to device"}),
       field<&Bias::tc1_per_k>("tc1_per_k", {.unit = "U/K", .meaning = "linear in ΔT"}),
       field<&Bias::tc2_per_k2>("tc2_per_k2", {.unit = "U/K²", .meaning = "square in ΔT"}),
+      field<&Bias::tc3_per_k3>("tc3_per_k3", {.unit = "U/K³", .meaning = "cube of ΔT"}),
+      field<&Bias::lag_s>("lag_s",
+                          {.unit = "s",
+                           .range = kNotNegative,
+                           .meaning = "time constant by which ΔT lags behind the temperature"}),
   };
   return rows;
 }
@@ -157,6 +180,119 @@ const Fields<Sensitivity>& sensitivity_fields() {
   return rows;
 }
 
+const Fields<DeterministicTerm>& deterministic_fields() {
+  using T = DeterministicTerm;
+  static const Fields<T> rows = {
+      field<&T::kind>("kind", {.meaning = "what it is", .written = Written::always}),
+      field<&T::size>("size",
+                      {.unit = "U",
+                       .meaning = "step: after less before; warm-up: at the first sample; ramp: "
+                                  "over the recording",
+                       .written = Written::always}),
+      field<&T::sd>("sd", {.unit = "U", .range = kNotNegative, .meaning = "standard deviation"}),
+      field<&T::at_s>("at_s", {.unit = "s", .meaning = "step: from the first sample"}),
+      field<&T::tau_s>("tau_s",
+                       {.unit = "s", .range = kNotNegative, .meaning = "warm-up: time constant"}),
+      field<&T::per_s>("per_s", {.unit = "U/s", .meaning = "ramp: slope"}),
+  };
+  return rows;
+}
+
+// A key of another kind would say nothing.
+void check_deterministic(const MapReader& at, const DeterministicTerm& term) {
+  using Kind = DeterministicTerm::Kind;
+  const auto only = [&](std::string_view key, Kind kind) {
+    if (at.has(key) && term.kind != kind)
+      at.refuse(key, fmt::format("is no key of a {}", name_of(term.kind)));
+    if (!at.has(key) && term.kind == kind)
+      at.refuse("kind", fmt::format("a {} needs `{}`", name_of(kind), key));
+  };
+  if (!at.has("kind")) at.refuse("kind", "is missing: step, warm-up or ramp");
+  only("at_s", Kind::step);
+  only("tau_s", Kind::warm_up);
+  only("per_s", Kind::ramp);
+  if (term.kind == Kind::warm_up && !(term.tau_s > 0)) at.refuse("tau_s", "must be above 0");
+}
+
+void read_deterministic(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (!at.has(key)) return;
+  std::size_t i = 0;
+  for (const Document& element : at.list(key)) {
+    const MapReader one(element,
+                        at.file(),
+                        fmt::format("{}[{}]", at.path_of(key), i++),
+                        keys_of(deterministic_fields()));
+    DeterministicTerm term;
+    read_fields(deterministic_fields(), one, term);
+    check_deterministic(one, term);
+    model.deterministic.push_back(term);
+  }
+}
+
+void write_deterministic(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
+  if (model.deterministic.empty()) return;
+  std::vector<Entry> terms;
+  for (const DeterministicTerm& term : model.deterministic) {
+    std::vector<Entry> keys;
+    for (Entry& entry : entries_of(always(deterministic_fields()), term)) {
+      const bool other = (entry.key == "at_s" && term.kind != DeterministicTerm::Kind::step) ||
+                         (entry.key == "tau_s" && term.kind != DeterministicTerm::Kind::warm_up) ||
+                         (entry.key == "per_s" && term.kind != DeterministicTerm::Kind::ramp);
+      if (!other) keys.push_back(std::move(entry));
+    }
+    terms.push_back(part_entry("", std::move(keys), Entry::Form::flow));
+  }
+  out.push_back(part_entry(std::string(row.key), std::move(terms), Entry::Form::list));
+  out.back().comment = row.text.comment;
+}
+
+void read_moving(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (!at.has(key)) return;
+  std::size_t i = 0;
+  for (const Document& element : at.list(key)) {
+    const MapReader one(
+        element, at.file(), fmt::format("{}[{}]", at.path_of(key), i++), {"from_s", "to_s"});
+    const Interval stretch{one.number("from_s"), one.number("to_s")};
+    if (!(stretch.low < stretch.high)) one.refuse("to_s", "must be after from_s");
+    model.moving_s.push_back(stretch);
+  }
+}
+
+void write_moving(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
+  if (model.moving_s.empty()) return;
+  std::vector<Entry> stretches;
+  for (const Interval& stretch : model.moving_s)
+    stretches.push_back(part_entry(
+        "",
+        {{"from_s", finite_or_null(stretch.low)}, {"to_s", finite_or_null(stretch.high)}},
+        Entry::Form::flow));
+  out.push_back(part_entry(std::string(row.key), std::move(stretches), Entry::Form::list));
+  out.back().comment = row.text.comment;
+}
+
+void read_stretch(const MapReader& at, std::string_view key, SensorModel& model) {
+  if (!at.has(key)) return;
+  const auto ends = at.interval(key);
+  model.stretch_s = Interval{ends.first, ends.second};
+}
+
+void write_stretch(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
+  if (model.stretch_s)
+    out.push_back(
+        {std::string(row.key), std::vector<double>{model.stretch_s->low, model.stretch_s->high}});
+}
+
+Row<SensorModel> deterministic_row() {
+  auto row = custom<SensorModel, read_deterministic, write_deterministic>(
+      "deterministic",
+      "list of maps",
+      {.comment = "no noise, and of this recording: simulated only when asked",
+       .meaning = "steps, warm-up, ramp of the recording; simulated only with `deterministic`",
+       .otherwise = "none"});
+  row.field.below = deterministic_fields().rows;
+  return row;
+}
+
 const Fields<SensorModel>& recording_fields() {
   static const Fields<SensorModel> rows = {
       field<&SensorModel::recording_file>("file", {.meaning = "name", .written = Written::always}),
@@ -165,6 +301,11 @@ const Fields<SensorModel>& recording_fields() {
       field<&SensorModel::duration_s>(
           "duration_s",
           {.unit = "s", .range = kNotNegative, .meaning = "length", .written = Written::always}),
+      custom<SensorModel, read_stretch, write_stretch>(
+          "stretch_s",
+          "[low, high]",
+          {.meaning = "what was used of it, in seconds after its first sample",
+           .otherwise = "all of it"}),
   };
   return rows;
 }
@@ -210,11 +351,27 @@ const Fields<SensorModel>& head_fields() {
 // The noise, and how a simulation makes it.
 const Fields<SensorModel>& noise_fields() {
   static const Fields<SensorModel> rows = {
-      term_row(Term::white, "Q; each term has these keys"),
+      term_row(Term::white, "N; each term has these keys"),
       term_row(Term::flicker, "B"),
       term_row(Term::walk, "K"),
-      term_row(Term::quantization, "Qz"),
+      term_row(Term::quantization, "Q"),
       term_row(Term::ramp, "R"),
+      part<&SensorModel::gauss_markov>(
+          "gauss_markov",
+          gauss_markov_fields(),
+          {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: density "
+                      "2 sigma^2 tau / (1 + (2 pi f tau)^2)",
+           .meaning = "first-order Gauss–Markov process beside the terms",
+           .otherwise = "none",
+           .form = Entry::Form::flow}),
+      field<&SensorModel::flicker_phase>(
+          "flicker_phase",
+          {.unit = "U·s",
+           .range = kNotNegative,
+           .comment =
+               "of a clock: flicker phase noise, one-sided density 4 pi value^2 f of the frequency",
+           .meaning = "of a clock: flicker phase noise",
+           .otherwise = "0"}),
       field<&SensorModel::noise_sampling>("noise_sampling",
                                           {.words = kSamplings,
                                            .meaning = "see below",
@@ -276,8 +433,8 @@ const Fields<SensorModel>& signal_path_fields() {
       part<&SensorModel::bias>(
           "bias",
           bias_fields(),
-          {.comment = "N(value, spread) a device, plus tc1 dT + tc2 dT^2, in {U}",
-           .meaning = "N(value, spread) a device + tc1 ΔT + tc2 ΔT², in U",
+          {.comment = "N(value, spread) a device, plus tc1 dT + tc2 dT^2 + tc3 dT^3, in {U}",
+           .meaning = "N(value, spread) a device + tc1 ΔT + tc2 ΔT² + tc3 ΔT³, in U",
            .otherwise = "0",
            .form = Entry::Form::flow}),
       field<&SensorModel::reference_temperature_degc>(
@@ -333,6 +490,12 @@ const Fields<SensorModel>& origin_fields() {
           "valid_tau_s",
           "[low, high]",
           {.comment = "averaging times, in seconds, that the recording covers reliably"}),
+      deterministic_row(),
+      custom<SensorModel, read_moving, write_moving>(
+          "moving",
+          "list of {from_s, to_s}",
+          {.meaning = "stretches of the recording in motion or handled, in seconds",
+           .otherwise = "none"}),
       custom<SensorModel, read_remarks, write_remarks>(
           "remarks", "list of texts", {.meaning = "conversions, findings of the fit"}),
   };

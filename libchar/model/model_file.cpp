@@ -9,9 +9,7 @@
 namespace libchar {
 
 std::string model_yaml(const SensorModel& model) {
-  return "# Noise of one sensor channel. Long keys name each term; a bare Q is white noise here "
-         "and "
-         "quantization in IEEE 952.\n" +
+  return "# Noise of one sensor channel. Keys name each term in full.\n" +
          yaml_of(model_entries(model));
 }
 

@@ -1,5 +1,7 @@
 #include "libchar/model/model_reader.hpp"
 
+#include <fmt/format.h>
+
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
 #include "libchar/model/model_fields.hpp"
@@ -11,10 +13,17 @@ void check_shape(const SensorModel& model, const MapReader& at) {
   const NoiseShape& shape = model.noise_shape;
   const MapReader part = at.map("noise_shape", {"kind", "taps", "frequency_hz", "ratio"});
   using Kind = NoiseShape::Kind;
+  const bool averages = shape.kind == Kind::boxcar || shape.kind == Kind::bartlett;
+  const auto only = [&](std::string_view key, bool used) {
+    if (part.has(key) && !used)
+      part.refuse(key, fmt::format("says nothing of a shape of kind {}", name_of(shape.kind)));
+  };
+  only("taps", averages);
+  only("frequency_hz", shape.kind == Kind::measured);
+  only("ratio", shape.kind == Kind::measured);
   if (shape.kind != Kind::none && model.noise_sampling == NoiseSampling::band_limited)
     part.refuse("kind", "noise with a shape is made sample by sample, not band-limited");
-  if ((shape.kind == Kind::boxcar || shape.kind == Kind::bartlett) &&
-      (shape.taps < 2 || shape.taps > 4096))
+  if (averages && (shape.taps < 2 || shape.taps > 4096))
     part.refuse("kind", "a moving average needs `taps` from 2 to 4096");
   if (shape.kind != Kind::measured) return;
   if (shape.ratio.empty() || shape.ratio.size() != shape.frequency_hz.size())
@@ -24,6 +33,16 @@ void check_shape(const SensorModel& model, const MapReader& at) {
     if (!(shape.frequency_hz[i] > (i == 0 ? 0 : shape.frequency_hz[i - 1])))
       part.refuse("frequency_hz", "frequencies must be above 0 and rise");
   }
+}
+
+void check_process(const GaussMarkovNoise& process, const MapReader& at) {
+  const MapReader part = at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s"});
+  if (process.sigma > 0 && !(process.tau_s > 0))
+    part.refuse("sigma", "a Gauss-Markov process needs `tau_s`, its correlation time, above 0");
+  if (!process.sigma_ci95.empty() && process.sigma_ci95.size() != 2)
+    part.refuse("sigma_ci95", "expected [low, high]");
+  if (process.tau_ci95_s.size() > 2)
+    part.refuse("tau_ci95_s", "expected [low, high], or [low] where no upper end is known");
 }
 
 }  // namespace
@@ -37,6 +56,7 @@ SensorModel sensor_model_of(const Document& node,
   read_fields(model_fields(), at, model);
   if (model.noise_sampling == NoiseSampling::band_limited && !model.bandwidth_hz)
     at.refuse("noise_sampling", "band-limited noise needs bandwidth_hz");
+  if (at.has("gauss_markov")) check_process(model.gauss_markov, at);
   if (at.has("noise_shape")) check_shape(model, at);
   if (model.sensitivity.gain == 0)
     at.map("sensitivity", {"gain", "unit"}).refuse("gain", "a gain of 0 leaves no output");

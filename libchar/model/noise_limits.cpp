@@ -52,8 +52,8 @@ Row<LimitBlock> term_row() {
   Row<LimitBlock> row = custom<LimitBlock, check_term, write_no_term>(
       kTermNames[T].key,
       "number or map",
-      {.meaning =
-           T == 0 ? "N, the most that is allowed; each term has these keys" : kTermNames[T].ieee});
+      {.meaning = T == 0 ? "N, the most that is allowed; each term has these keys"
+                         : kTermNames[T].letter});
   if (T == 0) row.field.below = limit_keys().rows;
   return row;
 }

@@ -13,6 +13,9 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/enum_table.hpp"
+#include "libchar/core/gauss_markov.hpp"
+#include "libchar/core/interval.hpp"
 #include "libchar/core/noise_shape.hpp"
 #include "libchar/core/noise_terms.hpp"
 
@@ -36,12 +39,15 @@ struct Nonlinearity {
   bool operator==(const Nonlinearity&) const = default;
 };
 
-/// Block 3: beta = N(value, spread) + tc1 dT + tc2 dT^2, drawn once a device; all in U.
+/// Block 3: beta = N(value, spread) + tc1 dT + tc2 dT^2 + tc3 dT^3, drawn once a device; all in U. dT is that of a first-order lag behind
+/// the temperature where there is one.
 struct Bias {
   double value = 0;
   double spread = 0;
   double tc1_per_k = 0;   ///< U/K
   double tc2_per_k2 = 0;  ///< U/K^2
+  double tc3_per_k3 = 0;  ///< U/K^3
+  double lag_s = 0;       ///< time constant of the lag
   bool operator==(const Bias&) const = default;
 };
 
@@ -65,6 +71,25 @@ enum class NoiseStart {
   zero,        ///< it starts at the first sample, as published [RV app. A]
 };
 
+/// What was no noise in the recording that the model is from: a mean with a sign, at an instant of that recording. A simulation has it only
+/// when asked.
+struct DeterministicTerm {
+  enum class Kind { step, warm_up, ramp };
+  Kind kind = Kind::step;
+  double at_s = 0;  ///< step: when, from the first sample
+  double size =
+      0;  ///< in U. step: after less before; warm-up: at the first sample; ramp: over the recording
+  double sd = 0;     ///< of `size`
+  double tau_s = 0;  ///< warm-up: size exp(-t / tau)
+  double per_s = 0;  ///< ramp: U/s
+  bool operator==(const DeterministicTerm&) const = default;
+};
+template <>
+inline constexpr auto enum_table<DeterministicTerm::Kind> =
+    enum_words<DeterministicTerm::Kind>({{DeterministicTerm::Kind::step, "step"},
+                                         {DeterministicTerm::Kind::warm_up, "warm-up"},
+                                         {DeterministicTerm::Kind::ramp, "ramp"}});
+
 struct SensorModel {
   std::string channel;
   std::string unit;
@@ -77,6 +102,9 @@ struct SensorModel {
   Bias bias;
   double reference_temperature_degc = 25;
   Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
+  GaussMarkovNoise gauss_markov;  ///< in U, beside the terms; sigma 0: none
+  double flicker_phase =
+      0;  ///< of a clock's frequency: differences of flicker over the sampling interval, times this
   NoiseSampling noise_sampling = NoiseSampling::per_sample;
   NoiseStart noise_start = NoiseStart::stationary;
   std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"
@@ -90,6 +118,9 @@ struct SensorModel {
   std::optional<double>
       resolution;  ///< quantization step of the output (LSB), in the output's unit
 
+  std::vector<DeterministicTerm> deterministic;  ///< of the recording
+  std::vector<Interval> moving_s;  ///< stretches of the recording in motion or handled
+
   double mean = 0;  ///< of the recording, removed before analysis: contains the true input at rest
   double tau_min_s = 0,
          tau_max_s = 0;  ///< range of averaging times that the coefficients were fitted on
@@ -97,6 +128,8 @@ struct SensorModel {
   std::string method;
   std::string recording_file, recording_sha256;
   double duration_s = 0;
+  std::optional<Interval>
+      stretch_s;  ///< of the recording that was used, where that is not all of it
   std::vector<std::string> remarks;  ///< conversions on reading, findings of the fit
 
   const Coefficient& operator[](Term t) const { return noise[static_cast<std::size_t>(t)]; }

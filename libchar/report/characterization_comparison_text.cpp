@@ -14,7 +14,7 @@
 namespace libchar {
 namespace {
 
-Json summary_json(const CharacterizationSummary& s) {
+Json summary_json(const ReportedCharacterization& s) {
   return {{"file", json_text(s.file)},
           {"format", s.format},
           {"program", s.program.empty() ? Json(nullptr) : Json(json_text(s.program))},

@@ -9,7 +9,8 @@
 
 namespace libchar {
 
-std::string characterization_text(const Characterization& result) {
+std::string characterization_text(const CharacterizationView& view) {
+  const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
   const std::string length =
@@ -24,8 +25,12 @@ std::string characterization_text(const Characterization& result) {
                                  length,
                                  log.time.gaps,
                                  log.time.gaps == 1 ? "" : "s");
-  for (const ChannelResult& c : result.channels) {
+  if (result.still) text += printable(result.still->sentence) + "\n";
+  for (const ChannelView& channel : view.channels) {
+    const ChannelResult& c = *channel.result;
     text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    text += fmt::format(
+        "  {}: {}\n", rating_word(channel.summary.rating), printable(channel.summary.sentence));
     if (c.verification)
       for (const std::string& sentence : c.verification->sentences)
         text += fmt::format("  {}\n", printable(sentence));
@@ -33,6 +38,10 @@ std::string characterization_text(const Characterization& result) {
   }
   if (result.limits) text += limits_text(*result.limits);
   return text;
+}
+
+std::string characterization_text(const Characterization& result) {
+  return characterization_text(characterization_view(result));
 }
 
 }  // namespace libchar

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "libchar/characterize/summary.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 
 namespace libchar {
 
@@ -34,6 +37,14 @@ std::string in_habitual_units(const Coefficient& term, std::size_t i, const std:
   return text;
 }
 
+// "N angle random walk": the letter of IEEE 952 and the field's name.
+std::string named(Term term, const std::string& unit) {
+  std::string title = term_title(term, unit);
+  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
+    title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return fmt::format("{} {}", kTermNames[static_cast<std::size_t>(term)].letter, title);
+}
+
 std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const std::string& unit) {
   const std::string value = term.value     ? significant(*term.value, 5)
                             : term.upper95 ? "≤ " + significant(*term.upper95, 3)
@@ -44,23 +55,60 @@ std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const st
           : "";
   std::string status(name_of(term.status));
   std::replace(status.begin(), status.end(), '_', ' ');
-  return {fmt::format("{} {}", kTermNames[i].key, kTermNames[i].letter),
+  return {named(static_cast<Term>(i), unit),
           value,
           interval,
-          term_unit(kTermNames[i].key, printable(unit)),
+          shown_term_unit(kTermNames[i].key, printable(unit)),
           status,
           term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "",
           term.seconds_for_10_percent ? rounded_length(*term.seconds_for_10_percent) : "",
           in_habitual_units(term, i, unit)};
 }
 
+std::vector<std::string> process_row(const Coefficient& c,
+                                     const std::string& name,
+                                     const std::string& unit) {
+  const std::string high = std::isfinite(c.ci95.high) ? significant(c.ci95.high, 4) : "no end";
+  std::string status(name_of(c.status));
+  std::replace(status.begin(), status.end(), '_', ' ');
+  return {name,
+          significant(*c.value, 5),
+          fmt::format("{} … {}", significant(c.ci95.low, 4), high),
+          unit,
+          status,
+          c.bound ? fmt::format("{} %", significant(100 * *c.bound, 2)) : "",
+          "",
+          ""};
+}
+
+std::string power_laws_text(const NoiseFit& fit) {
+  std::vector<std::vector<std::string>> rows = {
+      {"S_y(f), one-sided", "noise type", "h", "95 % interval", "status"}};
+  for (const PowerLaw& law : power_laws(fit)) {
+    std::string status(name_of(law.h.status));
+    std::replace(status.begin(), status.end(), '_', ' ');
+    rows.push_back({fmt::format("h{} f^{}", law.alpha, law.alpha),
+                    fmt::format("{} {}", law.name, law.abbreviation),
+                    law.h.value     ? significant(*law.h.value, 4)
+                    : law.h.upper95 ? "≤ " + significant(*law.h.upper95, 3)
+                                    : "–",
+                    law.h.value ? fmt::format("{} … {}",
+                                              significant(law.h.ci95.low, 3),
+                                              significant(law.h.ci95.high, 3))
+                                : "",
+                    status});
+  }
+  return rows.size() > 1 ? text_table(rows, "  ", true) : "";
+}
+
 }  // namespace
 
 std::string fit_text(const Channel& channel, const NoiseFit& fit) {
-  std::string text =
-      fmt::format("{}{}\n",
-                  printable(channel.name),
-                  channel.unit.empty() ? "" : fmt::format(" [{}]", printable(channel.unit)));
+  std::string text = fmt::format("{}{}\n",
+                                 printable(channel.name),
+                                 shown_unit(channel.unit).empty() || channel.unit.empty()
+                                     ? ""
+                                     : fmt::format(" [{}]", printable(channel.unit)));
   std::vector<std::vector<std::string>> rows = {{"term",
                                                  "value",
                                                  "95 % interval",
@@ -73,7 +121,13 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
     if (fit.term[i].status != Status::not_fitted)
       rows.push_back(row_of(fit.term[i], i, channel.unit));
   }
+  if (fit.gauss_markov && fit.gauss_markov->in_model) {
+    const std::string unit = channel.unit.empty() ? "U" : printable(channel.unit);
+    rows.push_back(process_row(fit.gauss_markov->sigma, "gauss_markov sigma", unit));
+    rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
+  }
   text += text_table(rows, "  ", true);
+  text += power_laws_text(fit);
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
                         significant(*fit.bandwidth_hz, 4),

@@ -19,6 +19,7 @@
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_channel.hpp"
 #include "libchar/report/detail/html_page.hpp"
+#include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/limits_pieces.hpp"
@@ -42,89 +43,131 @@ std::string facts(const CharacterizationView& view) {
                        html_text(duration_text(view.duration_s)));
   }
   if (log.time.gaps > 0) {
-    out += fmt::format(" · <b>{}</b> gaps, <b>{}</b> samples missing",
+    out += fmt::format(" · <b>{}</b> {}, <b>{}</b> {} missing",
                        count_text(log.time.gaps),
-                       count_text(log.time.missing_samples));
+                       log.time.gaps == 1 ? "gap" : "gaps",
+                       count_text(log.time.missing_samples),
+                       log.time.missing_samples == 1 ? "sample" : "samples");
   } else {
     out += " · no gaps";
   }
   return out + "</p>\n";
 }
 
-// The coefficient in the first of the field's units, or in its own.
-std::string overview_cell(const ChannelView& view, Term term) {
+std::string overview_cell(const ChannelView& view, Term term, std::string_view label) {
   const ChannelResult& c = *view.result;
-  if (!c.fit) return "<td>–</td>";
+  if (!c.fit) return card_cell(label, "–", "");
   const Coefficient& k = (*c.fit)[term];
-  if (!k.value && !k.upper95) return "<td>–</td>";
-  const auto key = kTermNames[static_cast<std::size_t>(term)].key;
-  const auto habits = habitual_units(key, view.unit);
-  // The field has no shorter way to say it than the coefficient itself when its first habit is only
-  // a factor of ours.
-  const bool known = habits.size() > 1;
-  const double factor = known ? habits[0].factor : 1;
-  const std::string unit = known ? habits[0].symbol : term_unit(key, view.unit);
+  if (!k.value && !k.upper95) return card_cell(label, "–", "");
+  const FieldUnit field = field_unit(term, view.unit);
   const std::string mark = k.status == Status::undetermined || k.status == Status::misfit
                                ? "<span class=\"dim\"> ?</span>"
                                : "";
-  const std::string whole = coefficient_text(k, factor);
+  const std::string whole = coefficient_text(k, field.factor);
   const std::string interval =
       k.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
-  return fmt::format("<td class=\"n{}\">{} <span class=\"dim\">{}</span>{}{}</td>",
-                     k.value ? "" : " limit",
-                     html_text(value_text(k, factor)),
-                     html_text(unit),
-                     mark,
-                     interval);
+  return card_cell(label,
+                   fmt::format("{} <span class=\"dim\">{}</span>{}{}",
+                               html_text(value_text(k, field.factor)),
+                               html_text(field.symbol),
+                               mark,
+                               interval),
+                   k.value ? "n" : "n limit");
 }
 
 std::string overview_row(const ChannelView& view, std::size_t index, double rate_hz) {
   const ChannelResult& c = *view.result;
-  const std::string unit = view.unit.empty() ? "U" : view.unit;
   std::string out = fmt::format(
       "<tr><th scope=\"row\"><a href=\"#channel-{}\">{}</a> <span class=\"dim\">{}</span></th>",
       index,
       html_text(c.channel.name),
-      html_text(unit));
-  for (const Term term : {Term::white, Term::flicker, Term::walk}) out += overview_cell(view, term);
+      html_text(view.shown_unit));
+  for (const Term term : {Term::white, Term::flicker, Term::walk})
+    out += overview_cell(view,
+                         term,
+                         term_title(term, view.unit) + " " +
+                             std::string(kTermNames[static_cast<std::size_t>(term)].letter));
   const AllanPoint* lowest = view.allan_minimum;
-  out += lowest == nullptr ? "<td>–</td>"
-                           : fmt::format("<td class=\"n\">{} <span class=\"dim\">at {}</span></td>",
-                                         html_text(number_text(lowest->deviation, 3)),
-                                         html_text(duration_text(lowest->tau_s)));
+  out += card_cell("Allan minimum",
+                   lowest == nullptr ? "–"
+                                     : fmt::format("{} <span class=\"dim\">at {}</span>",
+                                                   html_text(number_text(lowest->deviation, 3)),
+                                                   html_text(duration_text(lowest->tau_s))),
+                   "n");
   const bool white = c.fit && (*c.fit)[Term::white].value;
-  out += white ? "<td class=\"n\">" +
-                     html_text(value_text((*c.fit)[Term::white], std::sqrt(rate_hz))) + "</td>"
-               : "<td>–</td>";
-  out += c.fit ? "<td class=\"n\">" + html_text(probability_text(c.fit->goodness.p)) + "</td>"
-               : "<td>no fit</td>";
-  out +=
-      view.cautions.empty()
-          ? "<td><span class=\"chip detected\">clear</span></td>"
-          : fmt::format("<td><a class=\"chip unsure\" href=\"#channel-{}\">{} to look at</a></td>",
-                        index,
-                        view.cautions.size());
-  return out + "</tr>\n";
+  out += card_cell("Sample sd N·√f",
+                   white ? html_text(value_text((*c.fit)[Term::white], std::sqrt(rate_hz))) : "–",
+                   "n");
+  out += card_cell(
+      "Goodness of fit", c.fit ? html_text(probability_text(c.fit->goodness.p)) : "no fit", "n");
+  return out + card_cell("Verdict", rating_badge(view.summary.rating), "") + "</tr>\n";
 }
 
-std::string overview(const CharacterizationView& view) {
-  std::string out = "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(view.verdict) +
-                    "</p>\n" + facts(view) + "<div class=\"wide\"><table class=\"overview\">\n" +
+std::string overview_table(const CharacterizationView& view) {
+  std::string out = "<div class=\"wide\"><table class=\"overview cards\">\n" +
                     table_head({"Channel",
-                                "White noise Q",
-                                "Bias instability B",
-                                "Random walk K",
+                                "N (angle random walk, white noise)",
+                                "B (bias instability)",
+                                "K (random walk)",
                                 "Allan minimum",
-                                "Sample sd Q·√f",
-                                "Fit",
-                                "Cautions"});
+                                "Sample sd N·√f",
+                                "Goodness of fit",
+                                "Verdict"});
   for (std::size_t i = 0; i < view.channels.size(); ++i)
     out += overview_row(view.channels[i], i, view.result->log.time.rate_hz);
   return out +
          "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
          "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or "
-         "contradicts it. "
-         "All else stands with each channel.</p>\n</section>\n";
+         "contradicts it; or the noise terms do not describe the recording.</p>\n";
+}
+
+// The sensor first: a sentence a channel, with its colour.
+std::string sentences(const CharacterizationView& view) {
+  std::string out = "<ul class=\"sensors\">\n";
+  for (std::size_t i = 0; i < view.channels.size(); ++i) {
+    const ChannelView& c = view.channels[i];
+    out += fmt::format("<li class=\"{}\">{} <a href=\"#channel-{}\">{}</a> {}</li>\n",
+                       name_of(c.summary.rating),
+                       rating_badge(c.summary.rating),
+                       i,
+                       html_text(c.result->channel.name),
+                       html_text(c.summary.sentence));
+  }
+  return out + "</ul>\n";
+}
+
+// Traces of more channels than these stand with each channel.
+constexpr std::size_t kTracesInGroup = 6;
+
+std::string group_part(const CharacterizationView& view, const ChannelGroup& group) {
+  std::string out = "<div class=\"plots group\">\n";
+  if (view.channels.size() > 1) out += group_plot(view, group);
+  if (group.channels.size() <= kTracesInGroup) {
+    out += group.channels.size() > 3 ? "<div class=\"traces many\">\n" : "<div class=\"traces\">\n";
+    for (const std::size_t i : group.channels)
+      out += trace_plot(view.channels[i], i, view.result->log);
+    out += "</div>\n";
+  }
+  const std::string title =
+      group.title.empty() ? group.unit.empty() ? "Unit not stated" : group.unit : group.title;
+  const std::string unit = group.title.empty() ? "" : shown_unit(group.unit);
+  return fmt::format(
+             "<h2>{} <span class=\"unit\">{}</span></h2>\n", html_text(title), html_text(unit)) +
+         out + "</div>\n";
+}
+
+constexpr std::size_t kUnfoldedRows = 12;
+
+std::string overview(const CharacterizationView& view) {
+  std::string out = fmt::format("<section id=\"overview\">\n<p class=\"verdict {}\">{} ",
+                                name_of(view.rating),
+                                rating_badge(view.rating)) +
+                    html_text(view.verdict) + "</p>\n" + facts(view) + sentences(view);
+  for (const ChannelGroup& group : view.groups) out += group_part(view, group);
+  out += folded("All coefficients in a table",
+                overview_table(view),
+                view.channels.size() > 1 && view.channels.size() <= kUnfoldedRows);
+  return out + "</section>\n";
 }
 
 std::string time_base(const LogInfo& log) {
@@ -141,11 +184,12 @@ std::string time_base(const LogInfo& log) {
          duration_text(t.jitter_s) + " (robust standard deviation of stamp against grid)"});
     out += table_row({"Largest deviation", duration_text(t.max_deviation_s)});
   }
-  out += table_row(
-      {"Gaps",
-       t.gaps == 0
-           ? "none"
-           : fmt::format("{}, {} samples", count_text(t.gaps), count_text(t.missing_samples))});
+  out += table_row({"Gaps",
+                    t.gaps == 0 ? "none"
+                                : fmt::format("{}, {} {}",
+                                              count_text(t.gaps),
+                                              count_text(t.missing_samples),
+                                              t.missing_samples == 1 ? "sample" : "samples")});
   return out + "</tbody></table>\n";
 }
 
@@ -177,11 +221,18 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
   const Characterization& result = *view.result;
   std::string body = overview(view);
   if (result.limits) body += limits_section(*result.limits);
-  for (std::size_t i = 0; i < view.channels.size(); ++i)
-    body += channel_section(view.channels[i], result.log, i);
+  body += "<section id=\"channels\">\n<h2>Channel by channel</h2>\n";
+  for (const ChannelGroup& group : view.groups)
+    for (const std::size_t i : group.channels)
+      body += channel_section(
+          view.channels[i],
+          result.log,
+          i,
+          {.open = view.channels.size() == 1, .trace = group.channels.size() > kTracesInGroup});
+  body += "</section>\n";
   body += provenance(result);
   return html_page(
-      {"Sensor noise", result.log.file, std::string(page_js()), std::string(page_css())},
+      {"Sensor noise", result.log.file, std::string(page_js()), std::string(page_css()), true},
       body,
       json_in_script(without_times));
 }

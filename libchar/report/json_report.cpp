@@ -2,6 +2,8 @@
 
 #include "libchar/report/json_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -39,11 +41,26 @@ Json derived_json(const ChannelView& view) {
     out["allan_minimum"] = {{"deviation", lowest->deviation}, {"tau_s", lowest->tau_s}};
   }
   out["read_off_points"] = read_off_json(view.read_off);
+  out["plain_from_s"] = view.plain_from_s;
+  return out;
+}
+
+Json digital_json(const DigitalFaults& faults) {
+  Json out = {{"rails", Json::array()}, {"held", nullptr}, {"staircase", nullptr}};
+  for (const Rail& rail : faults.rails)
+    out["rails"].push_back({{"value", rail.value}, {"high", rail.high}, {"share", rail.share}});
+  if (faults.held)
+    out["held"] = {{"times", faults.held->times}, {"sensor_rate_hz", faults.held->sensor_rate_hz}};
+  if (faults.staircase)
+    out["staircase"] = {{"step", faults.staircase->step},
+                        {"noise", faults.staircase->noise},
+                        {"bounded", faults.staircase->bounded}};
   return out;
 }
 
 Json quality_json(const ChannelResult& channel) {
   Json out = channel_json(channel.channel, channel.quality);
+  out["digital"] = digital_json(channel.digital);
   out["lines"] = Json::array();
   for (const SpectralLine& line : channel.lines) {
     out["lines"].push_back({{"frequency_hz", line.frequency_hz},
@@ -56,6 +73,53 @@ Json quality_json(const ChannelResult& channel) {
   return out;
 }
 
+// Enough digits for a picture.
+Json for_drawing(const std::vector<double>& values, int digits) {
+  Json out = Json::array();
+  for (const double value : values)
+    out.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, digits)))
+                                       : Json(nullptr));
+  return out;
+}
+
+// The record in blocks, with what was found in it.
+Json trace_json(const ChannelView& view) {
+  const ChannelResult& channel = *view.result;
+  const Trace& trace = channel.trace;
+  double least = INFINITY, most = -INFINITY;
+  for (std::size_t i = 0; i < trace.low.size(); ++i) {
+    if (trace.low[i] < least) least = trace.low[i];
+    if (trace.high[i] > most) most = trace.high[i];
+  }
+  const double largest = std::max(std::fabs(least), std::fabs(most));
+  const double digits = most > least ? std::ceil(std::log10(largest / (most - least))) + 4 : 4;
+  Json out = {{"name", json_text(channel.channel.name)},
+              {"unit", json_text(channel.trace_unit)},
+              {"samples_per_block", trace.block}};
+  const int enough = std::isfinite(digits) ? static_cast<int>(std::clamp(digits, 4.0, 17.0)) : 17;
+  out["low"] = for_drawing(trace.low, enough);
+  out["high"] = for_drawing(trace.high, enough);
+  out["missing"] = Json::array();
+  for (std::size_t i = 0; i < trace.missing.size(); ++i)
+    if (trace.missing[i] > 0) out["missing"].push_back({i, trace.missing[i]});
+  out["marks"] = Json::array();
+  for (const TraceMark& mark : view.marks)
+    out["marks"].push_back({{"kind", mark.kind},
+                            {"from_s", mark.from_s},
+                            {"to_s", mark.to_s},
+                            {"label", json_text(mark.label)}});
+  return out;
+}
+
+Json summary_json(const ChannelView& view) {
+  Json spoils = Json::array();
+  for (const std::string& phrase : view.summary.spoils) spoils.push_back(json_text(phrase));
+  return {{"name", json_text(view.result->channel.name)},
+          {"rating", name_of(view.summary.rating)},
+          {"sentence", json_text(view.summary.sentence)},
+          {"spoils", std::move(spoils)}};
+}
+
 // A channel that could not be fitted keeps its place: null, with the reason in "problems".
 Json fit_or_reason(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
@@ -66,6 +130,16 @@ Json fit_or_reason(const ChannelView& view) {
   return out;
 }
 
+Json noise_types_json(const std::vector<NoiseType>& types) {
+  Json list = Json::array();
+  for (const NoiseType& type : types)
+    list.push_back({{"tau_s", json_number(type.tau_s)},
+                    {"alpha", type.alpha},
+                    {"estimate", json_number(type.estimate)},
+                    {"name", noise_type_name(type.alpha)}});
+  return list;
+}
+
 }  // namespace
 
 Json json_without_times(const CharacterizationView& view) {
@@ -73,6 +147,8 @@ Json json_without_times(const CharacterizationView& view) {
   Json out = document_head("characterization", result.command, {&result.log});
   out["config"] = json_of(result.settings);
   out["verdict"] = json_text(view.verdict);
+  out["summary"] = {{"rating", name_of(view.rating)}, {"channels", Json::array()}};
+  for (const ChannelView& v : view.channels) out["summary"]["channels"].push_back(summary_json(v));
 
   std::vector<ChannelQuality> qualities;
   LogInfo log = result.log;
@@ -82,6 +158,12 @@ Json json_without_times(const CharacterizationView& view) {
     qualities.push_back(c.quality);
   }
   out["recording"] = recording_json(log, qualities);
+  if (result.still)
+    out["still"] = {{"from_s", result.still->from_s},
+                    {"to_s", result.still->to_s},
+                    {"found", result.still->found},
+                    {"whole", result.still->whole},
+                    {"sentence", json_text(result.still->sentence)}};
 
   Json allan = json_frame("allan"), spectrum = json_frame("spectrum"),
        fit = noise_fit_document(Json::array()), quality = Json::object();
@@ -94,6 +176,8 @@ Json json_without_times(const CharacterizationView& view) {
     const ChannelResult& c = *v.result;
     allan["channels"].push_back(
         allan_channel_json(c.channel, c.allan, v.allan_model ? &*v.allan_model : nullptr));
+    if (!c.noise_types.empty())
+      allan["channels"].back()["noise_types"] = noise_types_json(c.noise_types);
     spectrum["channels"].push_back(spectrum_channel_json(
         c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
     fit["channels"].push_back(fit_or_reason(v));
@@ -103,6 +187,8 @@ Json json_without_times(const CharacterizationView& view) {
   out["spectrum"] = std::move(spectrum);
   out["fit"] = std::move(fit);
   out["quality"] = std::move(quality);
+  out["trace"] = {{"rate_hz", json_number(result.log.time.rate_hz)}, {"channels", Json::array()}};
+  for (const ChannelView& v : view.channels) out["trace"]["channels"].push_back(trace_json(v));
   if (std::any_of(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
         return c.verification != nullptr;
       })) {

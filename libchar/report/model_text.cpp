@@ -61,6 +61,11 @@ std::string model_text(const SensorModel& m) {
     if (m.noise[t].status == Status::not_fitted && !m.noise[t].value) continue;
     rows.push_back(term_row(m.noise[t], t, m.unit));
   }
+  if (m.gauss_markov.sigma > 0) {
+    const std::string u = m.unit.empty() ? "U" : printable(m.unit);
+    rows.push_back({"gauss_markov sigma", significant(m.gauss_markov.sigma, 5), "", u, "", ""});
+    rows.push_back({"gauss_markov tau", significant(m.gauss_markov.tau_s, 5), "", "s", "", ""});
+  }
   text += rows.size() > 1 ? text_table(rows, "  ", true) : "  no noise\n";
   text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
   if (m.bandwidth_hz)

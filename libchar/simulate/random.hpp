@@ -26,6 +26,9 @@ enum class Purpose : std::uint64_t {
   fault = 10,
   low_pass_start = 11,
   bootstrap = 12,
+  gauss_markov = 13,
+  flicker_phase = 14,
+  flicker_phase_start = 15,
 };
 
 /// Names one stream. Streams of different keys are independent: seed and sensor are the key of the

@@ -128,8 +128,9 @@ struct ArraySimulator::State {
       truth_low_pass.assign(spec.truth.size(), LowPass{a, 0, false, spec.low_pass_starts_at_zero});
     }
     for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
-      chains.emplace_back(spec.sensors[i].model,
-                          ChainOptions{rate, spec.seed, i, spec.low_pass_starts_at_zero});
+      chains.emplace_back(
+          spec.sensors[i].model,
+          ChainOptions{rate, spec.seed, i, spec.low_pass_starts_at_zero, spec.deterministic});
       draws.push_back(chains.back().draw());
       std::vector<SensorFault> own;
       for (const SensorFault& fault : spec.faults)

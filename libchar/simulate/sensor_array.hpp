@@ -35,6 +35,8 @@ struct ArraySimulation {
   std::vector<SensorFault> faults;
   /// as published; else in the steady state of the first sample
   bool low_pass_starts_at_zero = false;
+  /// with the steps, warm-ups and ramps of the recordings that the models are from
+  bool deterministic = false;
 };
 
 /// Throws Error(input) with one sentence when the parts do not fit together (no sensors, h of

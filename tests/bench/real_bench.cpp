@@ -56,7 +56,7 @@ void print_fit(const std::string& name, const NoiseFit& fit) {
   fmt::print("\n");
 }
 
-/// Gyroscopes of the first recording: ranges of B and K in which two unlike methods agree (../shared/reference/real.md, 2).
+/// Gyroscopes of the first recording: ranges that two unlike methods agree on, a shape on the whole spectrum and a cut without one.
 struct Agreed {
   Interval q, b, k;
 };

@@ -31,11 +31,11 @@ Coefficient limit(double upper) {
   return c;
 }
 
-CharacterizationSummary summary(const Coefficient& white,
-                                const Coefficient& flicker,
-                                const std::string& unit = "deg/s") {
-  CharacterizationSummary out;
-  ChannelSummary c;
+ReportedCharacterization summary(const Coefficient& white,
+                                 const Coefficient& flicker,
+                                 const std::string& unit = "deg/s") {
+  ReportedCharacterization out;
+  ReportedChannel c;
   c.name = "x";
   c.unit = unit;
   c.fitted = true;

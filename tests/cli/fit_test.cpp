@@ -45,3 +45,47 @@ TEST_CASE("fit CURVE --curve allan") {
   CHECK(channel["random_walk"]["value"].get<double>() == Approx(1e-4).epsilon(1e-8));
   CHECK(channel["bias_instability"]["value"].is_null());
 }
+
+TEST_CASE("fit of a stretch, beside a temperature; neither goes with a curve") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "log.csv").string();
+  test::NoiseSource source(20000, 100, 4);
+  std::string text = "gx[deg/s],temp[degC]\n";
+  std::size_t t = 0;
+  for (const double y : source.record(1e-2, 0, 0)) {
+    const double celsius = 20 + 5 * std::sin(static_cast<double>(t++) / 2000);
+    text += shortest(y + 0.1 * celsius) + "," + shortest(celsius) + "\n";
+  }
+  std::ofstream(path) << text;
+  const auto still = test::run({"fit", path, "--rate", "100", "--still", "20s..1min", "--json"});
+  REQUIRE(still.code == 0);
+  const Json stretch = parse_json(still.out, "stdout");
+  CHECK(stretch["stretch_s"] == Json::array({20, 60}));
+  CHECK(stretch["channels"][0]["samples"] == 4000);
+  CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as asked.") !=
+        std::string::npos);
+  const auto warm = test::run(
+      {"fit", path, "--rate", "100", "--channel", "gx", "--temperature", "temp", "--json"});
+  REQUIRE(warm.code == 0);
+  const Json channels = parse_json(warm.out, "stdout")["channels"];
+  REQUIRE(channels.size() == 1);
+  const Json& temperature = channels[0]["temperature"];
+  CHECK(temperature["channel"] == "temp");
+  CHECK(temperature["coefficients"][0].get<double>() == Approx(0.1).epsilon(0.05));
+  CHECK(temperature["without"].contains("random_walk"));
+  const std::vector<std::vector<std::string>> refused = {
+      {"--curve", "allan", "--still", "auto"},
+      {"--curve", "allan", "--temperature", "temp"},
+      {"--still", "40..20"},
+      {"--still", "soon"},
+      {"--still", "10..20", "--from", "5"},
+      {"--temperature", "gx"}};
+  for (const auto& more : refused) {
+    std::vector<std::string> words = {"fit", path, "--rate", "100"};
+    words.insert(words.end(), more.begin(), more.end());
+    INFO(more.back());
+    const auto ran = test::run(words);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+  }
+}

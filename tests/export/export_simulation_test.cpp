@@ -242,6 +242,121 @@ TEST_CASE("simulated: Gazebo's stddev a sample and Ornstein-Uhlenbeck bias; Roto
 
 namespace {
 
+// A device whose record showed a Gauss-Markov process: gyroscope 0.02 rad/s, 30 s; accelerometer 0.3 m/s^2, 12 s.
+constexpr double kGyroSigma = 0.02, kGyroTau = 30, kAccSigma = 0.3, kAccTau = 12;
+
+std::vector<SensorModel> with_process() {
+  auto models = test::imu({known(kGyroQ), at_most(1e-3), at_most(1e-4)},
+                          {known(kAccQ), at_most(1e-2), at_most(1e-3)},
+                          kRate);
+  for (SensorModel& m : models) {
+    const bool gyro = m.unit == "rad/s";
+    m.gauss_markov = {gyro ? kGyroSigma : kAccSigma, gyro ? kGyroTau : kAccTau, {}, {}};
+  }
+  return models;
+}
+
+// y' = -y/T + q w as a consumer steps it has the steady deviation q sqrt(T/2).
+void keeps(double driving, double correlation_s, double sigma, double tau_s) {
+  CHECK(correlation_s == Approx(tau_s).epsilon(1e-6));
+  CHECK(driving * std::sqrt(correlation_s / 2) == Approx(sigma).epsilon(1e-6));
+}
+
+}  // namespace
+
+TEST_CASE("a Gauss-Markov process goes to who has one, by the rule of each") {
+  const double degree = M_PI / 180;
+  const std::string sdf = exported("sdf", with_process()).text;
+  keeps(number_after(sdf, "dynamic_bias_stddev"),
+        number_after(sdf, "dynamic_bias_correlation_time"),
+        kGyroSigma,
+        kGyroTau);
+  const std::string rotors = exported("rotors", with_process()).text;
+  keeps(number_after(rotors, "accelerometerRandomWalk"),
+        number_after(rotors, "accelerometerBiasCorrelationTime"),
+        kAccSigma,
+        kAccTau);
+  const std::string pegasus = exported("pegasus", with_process()).text;
+  keeps(number_after(pegasus, "random_walk"),
+        number_after(pegasus, "bias_correlation_time"),
+        kGyroSigma,
+        kGyroTau);
+  const std::string gnss = exported("gnss-ins-sim", with_process()).text;
+  CHECK(number_after(gnss, "'gyro_b_stability") * degree / 3600 == Approx(kGyroSigma));
+  CHECK(number_after(gnss, "'accel_b_corr") == Approx(kAccTau));
+  // simulation/noise_b_dyn.m: b <- exp(-dt/T) b + s sqrt(1 - exp(-2 dt/T)) w
+  const std::string navego = exported("navego", with_process()).text;
+  CHECK(number_after(navego, "imu.gb_dyn") * degree == Approx(kGyroSigma));
+  CHECK(number_after(navego, "imu.gb_corr") == Approx(kGyroTau));
+  CHECK(number_after(navego, "imu.ab_dyn") * 9.80665e-3 == Approx(kAccSigma));
+  CHECK(number_after(navego, "imu.ab_corr") == Approx(kAccTau));
+}
+
+TEST_CASE("KF-GINS: one correlation time for all, the driving density of each") {
+  const YAML::Node noise = YAML::Load(exported("kf-gins", with_process()).text)["imunoise"];
+  const double degree = M_PI / 180, corr_time = noise["corrtime"].as<double>() * 3600;
+  CHECK(corr_time == Approx(kGyroTau));
+  for (std::size_t i = 0; i < 3; ++i) {
+    // Qc of gi_engine.cpp: 2/corr_time * std^2.
+    const double gyro = noise["gbstd"][i].as<double>() * degree / 3600;
+    const double accel = noise["abstd"][i].as<double>() * 1e-5;
+    CHECK(2 / corr_time * gyro * gyro == Approx(2 / kGyroTau * kGyroSigma * kGyroSigma));
+    CHECK(2 / corr_time * accel * accel == Approx(2 / kAccTau * kAccSigma * kAccSigma));
+    CHECK(noise["arw"][i].as<double>() * degree / 60 == Approx(kGyroQ));
+    CHECK(noise["vrw"][i].as<double>() / 60 == Approx(kAccQ));
+    CHECK(noise["gsstd"][i].as<double>() == 0);
+  }
+  CHECK(test::has(exported("kf-gins", with_process()).text, "driving density kept"));
+}
+
+TEST_CASE(
+    "who only knows a random walk gets the driving density of a Gauss-Markov process, with a "
+    "sentence") {
+  const double driving = kGyroSigma * std::sqrt(2 / kGyroTau);
+  const std::string kalibr = exported("kalibr", with_process()).text;
+  CHECK(number_after(kalibr, "gyroscope_random_walk") == Approx(driving));
+  CHECK(test::has(kalibr, "correlation time of the Gauss-Markov process"));
+  const Json airsim = parse_json(exported("airsim", with_process()).text, "s");
+  const Json& imu = airsim["DefaultSensors"]["Imu"];
+  CHECK(imu["GyroBiasStability"].get<double>() / 3600 * M_PI / 180 /
+            std::sqrt(imu["GyroBiasStabilityTau"].get<double>()) ==
+        Approx(driving));
+  // A walk beside it adds its own density.
+  auto models = with_process();
+  for (SensorModel& m : models)
+    if (m.unit == "rad/s") m.noise[2] = known(driving);
+  CHECK(number_after(exported("kalibr", models).text, "gyroscope_random_walk") ==
+        Approx(std::sqrt(2.0) * driving));
+  ExportOptions longer;
+  longer.correlation_s = 120;
+  const std::string rotors = exported("rotors", with_process(), longer).text;
+  CHECK(number_after(rotors, "gyroscopeBiasRandomWalk") == Approx(driving));
+  CHECK(number_after(rotors, "gyroscopeBiasCorrelationTime") == Approx(120));
+}
+
+TEST_CASE("simulated: the steps of Pegasus and NaveGo give the coefficients back") {
+  const std::string pegasus = exported("pegasus", device()).text;
+  const double root_dt = std::sqrt(1 / kRate);
+  recovers(ornstein_uhlenbeck(number_after(pegasus, "noise_density") / root_dt,
+                              number_after(pegasus, "random_walk"),
+                              number_after(pegasus, "bias_correlation_time")),
+           kGyroQ,
+           kGyroK,
+           84);
+  const std::string navego = exported("navego", device()).text;
+  const double corr = number_after(navego, "imu.gb_corr");
+  const double sigma = number_after(navego, "imu.gb_dyn") * M_PI / 180;
+  recovers({number_after(navego, "imu.arw") / 60 * M_PI / 180 / root_dt,
+            sigma * std::sqrt(1 - std::exp(-2 / kRate / corr)),
+            std::exp(-1 / kRate / corr),
+            kRate},
+           kGyroQ,
+           kGyroK,
+           85);
+}
+
+namespace {
+
 // gnss-ins-sim after the correction of its issue 19; numbers of the gyroscope in deg/h and
 // deg/sqrt(h).
 Discrete gnss_ins_sim(double white, double stability, double correlation_s, double rate_hz) {

@@ -118,8 +118,18 @@ TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {
       200,
       "deg/h",
       "mg");
-  for (const char* target :
-       {"kalibr", "vins", "gtsam", "ros", "sdf", "rotors", "gnss-ins-sim", "px4", "orbslam3"}) {
+  for (const char* target : {"kalibr",
+                             "vins",
+                             "gtsam",
+                             "ros",
+                             "sdf",
+                             "rotors",
+                             "gnss-ins-sim",
+                             "pegasus",
+                             "kf-gins",
+                             "navego",
+                             "px4",
+                             "orbslam3"}) {
     CAPTURE(target);
     // Ten digits of every number agree, and nothing else differs.
     CHECK(exported(target, si).text == exported(target, habit).text);

@@ -260,6 +260,35 @@ class Others(unittest.TestCase):
         self.assertAlmostEqual(values["gyro_arw"][0], 1.6968e-4 * 60 * 180 / math.pi, delta=1e-9)
         self.assertAlmostEqual(values["accel_b_stability"][2], 3e-3 * math.sqrt(72000 / 2), delta=1e-9)
 
+    def test_pegasus(self):
+        with Device() as device:
+            tree = ast.parse(device.export("pegasus"))
+        config = ast.literal_eval(next(node.value for node in tree.body if isinstance(node, ast.Assign)))
+        self.assertEqual(config["update_rate"], 200)
+        for sensor, (_, q, k) in (("gyroscope", GYRO), ("accelerometer", ACCEL)):
+            self.assertAlmostEqual(config[sensor]["noise_density"], q)
+            self.assertAlmostEqual(config[sensor]["random_walk"], k)
+            self.assertEqual(config[sensor]["bias_correlation_time"], 72000)
+
+    def test_kf_gins(self):
+        with Device() as device:
+            noise = yaml.safe_load(device.export("kf-gins"))["imunoise"]
+        self.assertEqual(set(noise), {"arw", "vrw", "gbstd", "abstd", "gsstd", "asstd", "corrtime"})  # all that loadConfig asks for
+        self.assertEqual(noise["corrtime"], 20)  # h: ten records
+        steady = math.sqrt(20 * 3600 / 2)
+        for i in range(3):
+            self.assertAlmostEqual(noise["arw"][i] * math.pi / 180 / 60 / GYRO[1], 1, delta=1e-8)
+            self.assertAlmostEqual(noise["vrw"][i] / 60 / ACCEL[1], 1, delta=1e-8)
+            self.assertAlmostEqual(noise["gbstd"][i] * math.pi / 180 / 3600 / (GYRO[2] * steady), 1, delta=1e-8)
+            self.assertAlmostEqual(noise["abstd"][i] * 1e-5 / (ACCEL[2] * steady), 1, delta=1e-8)
+
+    def test_navego(self):
+        with Device() as device:
+            text = device.export("navego")
+        values = {key: [float(v) for v in row.split()] for key, row in re.findall(r"^imu\.(\w+) = \[(.*?)\];", text, re.M)}
+        self.assertEqual(set(values), {"arw", "vrw", "arrw", "vrrw", "gb_sta", "gb_dyn", "gb_corr", "ab_sta", "ab_dyn", "ab_corr"})
+        self.assertAlmostEqual(values["ab_dyn"][1] * 1e-3 * 9.80665 / (ACCEL[2] * math.sqrt(36000)), 1, delta=1e-8)
+
     def test_gtsam_compiles_as_a_snippet(self):
         with Device() as device:
             text = device.export("gtsam", "--gravity", "9.81")

@@ -36,7 +36,7 @@ double number_after(const std::string& text, const std::string& key) {
   for (const char c : key) escaped += std::string(c == '.' ? "\\" : "") + c;
   const std::regex pattern(
       "(?:^|[\\s<'\">])" + escaped +
-      "(?:>|'?:\\s*(?:np\\.array\\()?\\[?|', \\[?| = [A-Za-z_0-9:]+ \\* |\": \\[?\\s*|\\s)" +
+      "(?:>|'?:\\s*(?:np\\.array\\()?\\[?|', \\[?| = [A-Za-z_0-9:]+ \\* | = \\[|\": \\[?\\s*|\\s)" +
       kNumber);
   std::smatch match;
   if (!std::regex_search(text, match, pattern)) {
@@ -190,7 +190,8 @@ TEST_CASE("terms that the consumer has no word for are named") {
   models[1].noise[3] = known(1e-6);
   const std::string b = "not in this file: bias_instability of gyr_x, acc_y",
                     qz = "not in this file: quantization of acc_x";
-  const std::set<std::string> with_b = {"sdf", "rotors", "gnss-ins-sim", "matlab", "json"};
+  const std::set<std::string> with_b = {
+      "sdf", "rotors", "gnss-ins-sim", "pegasus", "kf-gins", "navego", "matlab", "json"};
   for (const ExportTarget& target : export_targets()) {
     CAPTURE(target.name);
     const Export made = export_models(target, models);

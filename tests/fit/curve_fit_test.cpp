@@ -129,6 +129,44 @@ TEST_CASE("stated uncertainties: intervals cover, wrong ones are said to be wron
   CHECK(fit_curve(wrong).goodness.p < 1e-6);
 }
 
+TEST_CASE("a curve whose fast end is a filter's is fitted from where the terms hold") {
+  test::Gaussian gauss(11);
+  int left_out = 0, covered = 0;
+  for (int round = 0; round < 40; ++round) {
+    DigitisedCurve curve = allan_of({25e-6, 4e-6, 0, 0, 0}, std::nullopt);
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      // A low-pass of .03 s takes white noise away below it; a point is known to 1e-3·2^(i/2).
+      const double sd = std::min(0.5, 1e-3 * std::exp2(0.5 * static_cast<double>(i)));
+      curve.y[i] *=
+          std::exp(sd * gauss()) / std::sqrt(1 + 0.03 / curve.x[i] * std::exp(-curve.x[i] / 0.03));
+      curve.relative_sd.push_back(sd);
+    }
+    const NoiseFit fit = fit_curve(curve);
+    left_out += fit.band.whole ? 0 : 1;
+    CHECK(fit.goodness.p >= 0.02);
+    REQUIRE(fit[Term::white].value);
+    CHECK(fit[Term::white].status == Status::detected);
+    covered += fit[Term::white].ci95.low <= 5e-3 && 5e-3 <= fit[Term::white].ci95.high;
+    CHECK(fit.residuals.size() == curve.x.size());
+  }
+  CHECK(left_out == 40);
+  CHECK(covered >= 32);
+}
+
+TEST_CASE("a curve that no half of its points lets the terms describe is a misfit") {
+  DigitisedCurve curve = allan_of({25e-6, 4e-6, 1e-8, 0, 0}, std::nullopt);
+  for (std::size_t i = 0; i < curve.y.size(); ++i) {
+    curve.y[i] *= std::exp(0.3 * std::sin(1.7 * static_cast<double>(i)));
+    curve.relative_sd.push_back(0.01);
+  }
+  const NoiseFit fit = fit_curve(curve);
+  CHECK(fit.goodness.p < 1e-3);
+  for (const Coefficient& c : fit.term)
+    if (c.value) CHECK(c.status == Status::misfit);
+  REQUIRE(fit[Term::white].value);
+  CHECK(fit[Term::white].relative_sd > 0.03);  // of the scatter, not of the stated 1 %
+}
+
 TEST_CASE("bad curves are refused in a sentence") {
   DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 0}, std::nullopt);
   DigitisedCurve broken = curve;
@@ -179,6 +217,7 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
   for (const auto& [name, log] : logs) {
     std::ifstream in(test::shared("data/avarcurve_" + name + "_published.csv"));
     std::map<std::string, DigitisedCurve> curves;
+    std::map<std::string, std::vector<double>> relative_sd;
     std::string line;
     std::getline(in, line);
     while (std::getline(in, line)) {
@@ -189,6 +228,7 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
       while (std::getline(row, cell, ',')) values.push_back(std::stod(cell));
       curves[channel].x.push_back(values[0]);
       curves[channel].y.push_back(values[2]);
+      relative_sd[channel].push_back(values[3]);
     }
     REQUIRE(curves.size() == 6);
     for (auto& [channel, curve] : curves) {
@@ -196,6 +236,9 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
       const NoiseFit alone = fit_curve(curve);
       curve.duration_s = log.second / log.first;
       const NoiseFit weighted = fit_curve(curve);
+      curve.duration_s = std::nullopt;
+      curve.relative_sd = relative_sd[channel];
+      const NoiseFit stated = fit_curve(curve);
       std::ostringstream text;
       for (const NoiseFit* fit : {&alone, &weighted}) {
         for (const Coefficient& c : fit->term)
@@ -203,6 +246,15 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
         text << "rms " << rms_log10(*fit) << " p " << fit->goodness.p << "\n";
       }
       UNSCOPED_INFO(name << " " << channel << "\n" << text.str());
+      // What is known is said: a value counts as detected only where the terms describe the points and it is known to 30 %.
+      for (const NoiseFit* fit : {&alone, &weighted, &stated})
+        for (const Coefficient& c : fit->term) {
+          if (c.status == Status::detected) {
+            CHECK(c.relative_sd <= 0.30);
+            CHECK(fit->goodness.p >= 1e-3);
+          }
+          if (c.value) CHECK(c.ci95.high / *c.value < 1e3);
+        }
       CHECK(alone.converged);
       CHECK(weighted.converged);
       CHECK(rms_log10(alone) < 0.13);

@@ -222,6 +222,26 @@ TEST_CASE("events: a warm-up has its size and time constant") {
   CHECK(event.tau_s == Approx(60).epsilon(0.5));
 }
 
+TEST_CASE("events: a warm-up that outlasts the record leaves no drift and no walk behind") {
+  test::NoiseSource source(kSamples, kRate, 29);
+  constexpr double kLasts = kSamples / kRate;
+  int one = 0, walks = 0;
+  for (const double tau : {0.45 * kLasts, 0.75 * kLasts}) {
+    for (int r = 0; r < 5; ++r) {
+      std::vector<double> y = source.record(kQ, 0, 0);
+      for (std::size_t t = 0; t < y.size(); ++t)
+        y[t] += 10 * kSigma * std::exp(-static_cast<double>(t) / kRate / tau);
+      const EventSearch found = search(y);
+      one += found.events.size() == 1 && found.events[0].kind == EventKind::warm_up ? 1 : 0;
+      FitOptions options;
+      options.second_opinion = false;
+      walks += fit_record(y, kRate, nullptr, options)[Term::walk].status == Status::detected;
+    }
+  }
+  CHECK(one >= 9);
+  CHECK(walks == 0);
+}
+
 TEST_CASE("events: a ramp has a sign and an honest interval") {
   test::NoiseSource source(kSamples, kRate, 24);
   int covered = 0, told = 0;

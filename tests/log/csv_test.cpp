@@ -243,6 +243,18 @@ TEST_CASE("missing cells are counted by column with their places") {
   CHECK(r.samples[1][3] == 5);
 }
 
+TEST_CASE("a last column that is mostly empty is a slow channel, not the end of the line") {
+  std::string text = "t[s],x,temp[degC]\n";
+  for (int i = 0; i < 600; ++i)
+    text += std::to_string(i) + "," + std::to_string(i % 7) + (i % 50 == 0 ? ",21.5\n" : ",\n");
+  const Recording r = read_text(text);
+  REQUIRE(r.samples.size() == 2);
+  CHECK(r.info.channels[1].unit == "degC");
+  CHECK(r.samples[1][50] == 21.5);
+  CHECK(std::isnan(r.samples[1][51]));
+  CHECK(count(r, "trailing_delimiter") == 0);
+}
+
 TEST_CASE("values, warnings and errors depend on neither block size nor threads") {
   std::mt19937_64 random(5);
   std::string text = "t[s];x (g);y\r\n";

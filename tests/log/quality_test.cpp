@@ -78,11 +78,10 @@ TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {
   CHECK(meter(x).longest_stuck == 1);
   CHECK(meter(x).difference_kurtosis == Approx(3).margin(0.15));
   auto clipped = x;
-  std::uint64_t in_runs = 0;
-  for (std::size_t i = 1000; i < 1100; ++i) clipped[i] = 8, ++in_runs;
-  for (std::size_t i = 7000; i < 7005; ++i) clipped[i] = -8, ++in_runs;
-  clipped[9000] = 8;  // alone: no run
-  CHECK(meter(clipped).saturated == in_runs);
+  for (std::size_t i = 1000; i < 1100; ++i) clipped[i] = 8;
+  for (std::size_t i = 7000; i < 7005; ++i) clipped[i] = -8;
+  clipped[9000] = 8;  // alone, and at the end of the range all the same
+  CHECK(meter(clipped).saturated == 100 + 5 + 1);
   CHECK(meter(clipped).longest_stuck == 100);
   CHECK(suggests(meter(clipped), "saturated"));
   auto spiky = x;
@@ -98,6 +97,22 @@ TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
   CHECK(meter(ramp).difference_kurtosis == 3);
   CHECK(*meter(ramp).resolution == 1);
+}
+
+TEST_CASE("every clipped sample is counted, and coarse rounding is no end of a range") {
+  auto clipped = gaussian(50000, 1);
+  std::uint64_t beyond = 0;
+  for (double& value : clipped) {
+    beyond += std::abs(value) > 1 ? 1 : 0;
+    value = std::clamp(value, -1.0, 1.0);
+  }
+  CHECK(meter(clipped).saturated == beyond);
+  for (const double step : {0.5, 1.0, 1.5}) {
+    auto coarse = gaussian(50000, 1);
+    for (double& value : coarse) value = std::round(value / step) * step;
+    INFO("step " << step);
+    CHECK(meter(coarse).saturated == 0);
+  }
 }
 
 TEST_CASE("missing samples are counted, break runs and leave the differences out") {

@@ -8,6 +8,7 @@
 
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/model/model_reader.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
@@ -107,4 +108,53 @@ TEST_CASE("model file: hostile text stays text") {
   const YAML::Node file = YAML::Load(model_yaml(model_of(quoted, 0)));
   CHECK(file["channel"].as<std::string>() == "a \"b\" \\ c: #d");
   CHECK(file["unit"].IsNull());
+}
+
+TEST_CASE(
+    "model file: a Gauss-Markov process reads back, and one that is not there is not written") {
+  const auto result = test::synthetic_imu();
+  SensorModel m = model_of(result, 0);
+  CHECK(model_yaml(m).find("gauss_markov") == std::string::npos);
+  m.gauss_markov = {0.02, 61.25, {0.017, 0.025}, {40}};
+  const SensorModel read = parse_sensor_model(model_yaml(m), "model.yaml");
+  CHECK(read.gauss_markov == m.gauss_markov);
+}
+
+TEST_CASE("model file: what was no noise in the recording is data, and reads back") {
+  auto result = test::synthetic_imu();
+  NoiseFit& fit = *result.channels[0].fit;
+  Event step, warm, ramp;
+  step.at_s = 12.5;
+  step.size = -0.25;
+  step.sd = 0.01;
+  warm.kind = EventKind::warm_up;
+  warm.size = 1;
+  warm.tau_s = 300;
+  ramp.kind = EventKind::ramp;
+  ramp.size = -3;
+  ramp.slope = -1e-3;
+  fit.events = {step, warm, ramp};
+  fit.moving_s = {{10, 20.5}, {30, 31}};
+  TemperatureEffect effect;
+  effect.order = 2;
+  effect.mean = 31;
+  effect.coefficient = {0.01, -0.002, 0};
+  effect.lag_s = 60;
+  fit.temperature = effect;
+  result.log.stretch_s = Interval{100, 700};
+  const SensorModel m = model_of(result, 0);
+  const SensorModel read = parse_sensor_model(model_yaml(m), "m.yaml");
+  REQUIRE(read.deterministic.size() == 3);
+  CHECK(read.deterministic == m.deterministic);
+  CHECK(read.deterministic[0].at_s == 12.5);
+  CHECK(read.deterministic[1].kind == DeterministicTerm::Kind::warm_up);
+  CHECK(read.deterministic[2].per_s == -1e-3);
+  REQUIRE(read.moving_s.size() == 2);
+  CHECK(read.moving_s[0].high == 20.5);
+  CHECK(read.bias == m.bias);
+  CHECK(read.bias.tc2_per_k2 == -0.002);
+  CHECK(read.bias.lag_s == 60);
+  CHECK(read.reference_temperature_degc == 31);
+  REQUIRE(read.stretch_s);
+  CHECK(read.stretch_s->high == 700);
 }

@@ -136,7 +136,22 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1]}\n", "5:");
   starts("noise_shape: {kind: measured, frequency_hz: [2, 1], ratio: [1, 1]}\n", "5:");
   starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1, -1]}\n", "5:");
+  starts("gauss_markov: {sigma: 1}\n", "5:23: error E0545");
+  starts("gauss_markov: {sigma: -1, tau_s: 3}\n", "5:");
+  starts("gauss_markov: {sigma: 1, tau_s: 3, sigma_ci95: [1]}\n", "5:");
+  starts("gauss_markov: {sigma: 1, tau_s: 3, tau_ci95_s: [1, 2, 3]}\n", "5:");
   starts("noise_shape: {kind: triangle, taps: 3}\n", "5:21: error E0544");
+  // A key that the kind does not use would be believed to say something.
+  starts("noise_shape: {kind: boxcar, taps: 4, ratio: [1]}\n", "5:45: error E0545");
+  starts("noise_shape: {kind: none, taps: 4}\n", "5:33: error E0545");
+  starts("noise_shape: {kind: measured, taps: 4, frequency_hz: [1], ratio: [1]}\n",
+         "5:37: error E0545");
+  starts("deterministic: [{kind: step, size: 1}]\n", "5:24: error E0545");
+  starts("deterministic: [{kind: ramp, size: 1, per_s: 1, at_s: 3}]\n", "5:");
+  starts("deterministic: [{kind: warm-up, size: 1, tau_s: 0}]\n", "5:");
+  starts("deterministic: [{size: 1, at_s: 3}]\n", "5:");
+  starts("deterministic: [{kind: stp, size: 1, at_s: 3}]\n", "5:24: error E0544");
+  starts("moving: [{from_s: 4, to_s: 3}]\n", "5:");
   CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
                 "\"g·√s\"}\n")
             .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));

@@ -5,10 +5,12 @@ MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT th
 beside them are opened as well.
 The browser is driven over plain HTTP (the WebDriver protocol), with Python's standard library only.
 """
+import base64
 import contextlib
 import http.client
 import json
 import pathlib
+import re
 import shutil
 import socket
 import subprocess
@@ -96,6 +98,7 @@ INJECTED = "return document.querySelectorAll('img, svg, iframe, object, embed, l
 DRAWN = "return Object.keys(Chart.instances).length"
 PLOTS = "return document.querySelectorAll('figure.plot').length"
 DRAW_ALL = "window.dispatchEvent(new Event('beforeprint')); return Object.keys(Chart.instances).length"
+UNFOLD = "document.querySelectorAll('details').forEach((d) => { d.open = true; })"
 
 faults = []
 
@@ -118,7 +121,12 @@ def check_page(browser, page, plots=None, replay=False):
         expect(browser.until(DRAWN), f"{page}: no plot drawn in view")
     if count > 30:
         expect(first < count / 3, f"{page}: {first} of {count} plots were drawn at once")
-    expect(browser.run(DRAW_ALL) == count, f"{page}: printing does not draw every plot")
+    shown = browser.run("return Array.from(document.querySelectorAll('figure.plot')).filter((f) => !f.closest('details:not([open])')).length")
+    drawn = browser.run(DRAW_ALL)
+    expect(replay or drawn >= shown, f"{page}: printing draws {drawn} of the {shown} plots that are not folded")
+    browser.run(UNFOLD)
+    expect(browser.until(f"return Object.keys(Chart.instances).length == {count}"), f"{page}: unfolding does not draw every plot")
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
     ink = browser.run(INKED.replace("INK", COLOURED if replay else BLUE))
     expect(all(blue > 50 for blue in ink), f"{page}: empty plots, ink {ink}")
     expect(browser.run("return document.querySelectorAll('script').length") == 3, f"{page}: a script was added")
@@ -231,12 +239,75 @@ def check_download(browser, page):
     expect(browser.run("return window.name_taken") == "report.json", f"{page}: the download has another name")
 
 
-def check_narrow(browser, page):
-    browser.protocol("Emulation.setDeviceMetricsOverride", {"width": 420, "height": 800, "deviceScaleFactor": 1, "mobile": False})
-    browser.open(page.resolve().as_uri())
-    wide = browser.run("return document.documentElement.scrollWidth")
-    expect(wide <= 420, f"{page}: {wide} pixels wide in a window of 420")
+def check_widths(browser, page, widths=(420,)):
+    """No window scrolls sideways, folded or not."""
+    for width in widths:
+        browser.protocol("Emulation.setDeviceMetricsOverride", {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+        browser.open(page.resolve().as_uri())
+        for state in ("folded", "unfolded"):
+            wide = browser.run("return document.documentElement.scrollWidth")
+            expect(wide <= width, f"{page}: {wide} pixels wide in a window of {width}, {state}")
+            if len(widths) == 1:
+                break
+            browser.run(UNFOLD)
     browser.protocol("Emulation.clearDeviceMetricsOverride")
+
+
+def check_folded(browser, page, most):
+    """However many channels there are, the page that opens can be overlooked."""
+    browser.protocol("Emulation.setDeviceMetricsOverride", {"width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+    browser.open(page.resolve().as_uri())
+    height = browser.run("return document.documentElement.scrollHeight")
+    expect(height <= most, f"{page}: {height} pixels tall, more than {most}")
+    target = browser.run("const link = document.querySelector('ul.sensors a'); link.click(); return document.getElementById(link.getAttribute('href').slice(1)).open")
+    expect(target, f"{page}: a link to a channel does not unfold it")
+    browser.protocol("Emulation.clearDeviceMetricsOverride")
+
+
+def check_dark(browser, page):
+    """On a dark screen plots and page are dark and readable; paper stays white."""
+    media = lambda scheme: browser.protocol("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+    corner = """const canvas = document.querySelector('figure.plot canvas'), p = canvas.getContext('2d').getImageData(1, 1, 1, 1).data; return p[0] + p[1] + p[2];"""
+    media("dark")
+    browser.open(page.resolve().as_uri())
+    browser.until(DRAWN)
+    expect(browser.run(corner) < 150, f"{page}: plots stay white on a dark screen")
+    lightness = browser.run("return [getComputedStyle(document.body).backgroundColor, getComputedStyle(document.body).color].map((c) => c.match(/\\d+/g).slice(0, 3).reduce((a, b) => a + Number(b), 0))")
+    expect(lightness[0] < 150 < 500 < lightness[1], f"{page}: dark colours are {lightness}")
+    browser.run("window.dispatchEvent(new Event('beforeprint'))")
+    expect(browser.run(corner) == 765, f"{page}: paper is dark")
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
+    expect(browser.run(corner) < 150, f"{page}: the screen stays white after printing")
+    media("light")
+    expect(browser.until("return getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'"), f"{page}: the light colours do not come back")
+    browser.protocol("Emulation.setEmulatedMedia", {"features": []})
+    browser.console()  # has advice about our reading of pixels
+
+
+def check_saving(browser, page):
+    """Every plot can be saved: SVG that parses and holds the drawing, PNG that is one."""
+    browser.open(page.resolve().as_uri())
+    browser.run(UNFOLD)
+    browser.run("""window.saved = []; window.types = [];
+      URL.createObjectURL = (blob) => { window.types.push(blob.type); blob.arrayBuffer().then((bytes) => window.saved.push(new Uint8Array(bytes))); return 'blob:none'; };
+      HTMLAnchorElement.prototype.click = function () {};
+      document.querySelectorAll('.save button').forEach((b) => b.click());""")
+    wanted = 2 * browser.run(PLOTS)
+    expect(browser.until(f"return window.saved.length === {wanted}"), f"{page}: {browser.run('return window.saved.length')} of {wanted} plots saved")
+    texts = browser.run("return window.saved.map((bytes) => new TextDecoder('latin1').decode(bytes.slice(0, 8)) + '').filter((t) => !t.startsWith('<svg') && !t.includes('PNG'))")
+    expect(not texts, f"{page}: saved {texts[:3]}")
+    wrong = browser.run("""return window.saved.filter((bytes) => bytes[0] === 60).map((bytes) => new DOMParser().parseFromString(new TextDecoder().decode(bytes), 'image/svg+xml'))
+      .filter((svg) => svg.querySelector('parsererror') || svg.querySelectorAll('path').length < 8 || svg.querySelectorAll('text').length < 4 || svg.querySelector('script, image, a')).length""")
+    expect(wrong == 0, f"{page}: {wrong} saved drawings are empty, broken or hold something else")
+    console = browser.console()
+    expect(not console, f"{page}: saving says {console[:3]}")
+
+
+def check_paper(browser, page, most):
+    browser.open(page.resolve().as_uri())
+    pdf = base64.b64decode(browser.protocol("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})["data"])
+    pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
+    expect(0 < pages <= most, f"{page}: {pages} pages of paper, more than {most}")
 
 
 def check_without_script(browser, page):
@@ -255,16 +326,22 @@ def main():
         folder = pathlib.Path(name)
         browser = Browser(folder / "profile")
         try:
-            for kind, plots in {"imu": 18, "hostile": 36, "many": 144, "empty": 1}.items():
+            for kind, plots in {"imu": 26, "hostile": 60, "many": 193, "empty": 3}.items():
                 subprocess.run([sys.argv[1], kind, str(folder / kind)], check=True)
                 check_page(browser, folder / kind / "report.html", plots)
-            check_narrow(browser, folder / "imu/report.html")
+            for kind in ("imu", "hostile"):
+                check_widths(browser, folder / kind / "report.html", (390, 800, 1400))
+                check_saving(browser, folder / kind / "report.html")
+            check_folded(browser, folder / "imu/report.html", 3500)
+            check_folded(browser, folder / "many/report.html", 7000)
+            check_dark(browser, folder / "imu/report.html")
+            check_paper(browser, folder / "imu/report.html", 2)
             check_without_script(browser, folder / "imu/report.html")
             for kind, plots in {"plain": 8, "large": 8, "inputs": 8, "blind": 5, "nothing": 1, "hostile": 7}.items():
                 subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)
                 check_page(browser, folder / ("replay-" + kind) / "report.html", plots, replay=True)
-            check_narrow(browser, folder / "replay-plain/report.html")
-            check_narrow(browser, folder / "replay-hostile/report.html")
+            check_widths(browser, folder / "replay-plain/report.html")
+            check_widths(browser, folder / "replay-hostile/report.html")
             check_without_script(browser, folder / "replay-plain/report.html")
             for given in sys.argv[3:]:
                 check_page(browser, pathlib.Path(given), replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])

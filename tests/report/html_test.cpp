@@ -73,8 +73,8 @@ TEST_CASE("html: every number of a channel stands in a table too") {
   const auto result = test::synthetic_imu();
   const std::string page = without_assets(html_report(result));
   CHECK(test::count(page, "<noscript>") == 1);
-  CHECK(test::count(page, "<section class=\"channel\"") == result.channels.size());
-  CHECK(test::count(page, "Overlapping Allan deviation</h3>") == result.channels.size());
+  CHECK(test::count(page, "<details class=\"channel\"") == result.channels.size());
+  CHECK(test::count(page, "Overlapping Allan deviation</h3>") == result.channels.size() + 2);
   CHECK(test::count(page, "One-sided power spectral density</h3>") == result.channels.size());
   CHECK(test::count(page, result.log.sha256) >= 1);
   CHECK(test::count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it

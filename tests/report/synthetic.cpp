@@ -123,6 +123,19 @@ NoiseFit synthetic_fit(const Truth& t, std::mt19937_64& random) {
   return fit;
 }
 
+Trace synthetic_trace(const Truth& t, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Trace trace;
+  trace.block = t.samples / 400;
+  const double sd = t.q * std::sqrt(t.rate_hz);
+  for (int i = 0; i < 400; ++i) {
+    trace.low.push_back(0.0123 - sd * (3 + 0.3 * std::abs(normal(random))));
+    trace.high.push_back(0.0123 + sd * (3 + 0.3 * std::abs(normal(random))));
+    trace.missing.push_back(i == 200 ? 37 : 0);
+  }
+  return trace;
+}
+
 ChannelResult synthetic_channel(const std::string& name,
                                 const std::string& unit,
                                 const Truth& t,
@@ -133,6 +146,8 @@ ChannelResult synthetic_channel(const std::string& name,
   c.allan = synthetic_allan(t, random);
   c.spectrum = synthetic_spectrum(t, random);
   c.fit = synthetic_fit(t, random);
+  c.trace = synthetic_trace(t, random);
+  c.trace_unit = unit;
   ChannelQuality& q = c.quality;
   q.samples = t.samples;
   q.mean = 0.0123;
@@ -177,6 +192,11 @@ Characterization synthetic_imu() {
   result.channels.push_back(synthetic_channel("acc_x", "m/s^2", accelerometer, 4));
   result.channels.push_back(synthetic_channel("acc_y", "m/s^2", accelerometer, 5));
   result.channels.push_back(synthetic_channel("acc_z", "m/s^2", accelerometer, 6));
+  Event step;
+  step.at_s = 300;
+  step.size = 0.02;
+  result.channels[1].fit->events = {step};
+  result.channels[3].motion.moving_s = {{120, 180}};
   ChannelResult& bad = result.channels.back();
   bad.fit->goodness = {412.0, 125, 3e-33};
   bad.fit->second_opinion->agrees = false;
@@ -230,7 +250,7 @@ Characterization hostile() {
   for (const std::string& name : hostile_names()) {
     ChannelResult c = model;
     c.channel.name = name;
-    c.channel.unit = name;
+    c.channel.unit = c.trace_unit = name;
     c.fit->method = c.fit->second_opinion->sentence = name;
     c.fit->sentences = {name};
     c.fit->remedies = {{name, name, name, 1}};

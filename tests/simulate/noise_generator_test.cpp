@@ -381,3 +381,29 @@ TEST_CASE("the samples of a seed stay what they are") {
   CHECK(x[1] == Approx(5.0632809997355848).epsilon(1e-12));
   CHECK(x[999] == Approx(250.77387683495408).epsilon(1e-12));
 }
+
+TEST_CASE(
+    "a Gauss-Markov process is simulated with its variance and covariance, from the first sample "
+    "on") {
+  NoiseDesign design;
+  design.rate_hz = 4;
+  design.gauss_markov_sigma = 0.3;
+  design.gauss_markov_tau_s = 2;
+  const std::vector<double> y = record(design, 3, 0, 400000);
+  const double phi = std::exp(-1 / 8.0);
+  for (const std::size_t lag : {0U, 1U, 8U, 24U}) {
+    double sum = 0;
+    for (std::size_t t = lag; t < y.size(); ++t) sum += y[t] * y[t - lag];
+    // sd of the estimate: sigma² sqrt((1 + phi²)/(1 - phi²)/n) = 0.0004 at lag 0
+    CHECK(std::abs(sum / static_cast<double>(y.size() - lag) -
+                   0.09 * std::pow(phi, static_cast<double>(lag))) < 0.0025);
+  }
+  double first = 0;
+  for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {
+    const double start = record(design, 5, sensor, 1)[0];
+    first += start * start / 2000;
+  }
+  CHECK(first == Approx(0.09).epsilon(0.13));  // four standard deviations
+  design.gauss_markov_tau_s = 0;
+  CHECK_THROWS_WITH(NoiseGenerator(design, 1, 0), Catch::Matchers::Contains("Gauss-Markov"));
+}

@@ -128,3 +128,45 @@ TEST_CASE("sensor chain: a missing input does not stop the filter") {
   CHECK(std::isnan(y[2]));
   CHECK(y[4] == Approx(1));
 }
+
+TEST_CASE("sensor chain: the bias follows a lagging temperature, to the third order") {
+  SensorModel m;
+  m.rate_hz = 1000;
+  m.reference_temperature_degc = 20;
+  m.bias.tc1_per_k = 2;
+  m.bias.tc3_per_k3 = 0.5;
+  SensorChain instant(m, {1000, 1, 0});
+  std::vector<double> y(2, 0.0);
+  instant.run(y, std::vector<double>{20, 22});
+  CHECK(y[0] == 0);
+  CHECK(y[1] == Approx(2 * 2 + 0.5 * 8));
+  m.bias.lag_s = 0.5;
+  m.bias.tc3_per_k3 = 0;
+  SensorChain lagging(m, {1000, 1, 0});
+  std::vector<double> temperature(2001, 21.0), z(2001, 0.0);
+  temperature[0] = 20;
+  lagging.run(z, temperature);
+  CHECK(z[0] == 0);
+  CHECK(z[500] == Approx(2 * (1 - std::exp(-1.0))).epsilon(1e-9));
+  CHECK(z[2000] == Approx(2 * (1 - std::exp(-4.0))).epsilon(1e-9));
+}
+
+TEST_CASE("sensor chain: steps, warm-ups and ramps only when asked, across blocks") {
+  SensorModel m;
+  m.rate_hz = 10;
+  using Kind = DeterministicTerm::Kind;
+  m.deterministic = {
+      {Kind::step, 5, 2, 0, 0, 0}, {Kind::warm_up, 0, 1, 0, 3, 0}, {Kind::ramp, 0, 0, 0, 0, 0.1}};
+  ChainOptions options{10, 1, 0};
+  std::vector<double> none(100, 0.0), all(100, 0.0);
+  SensorChain(m, options).run(none, {});
+  CHECK(none == std::vector<double>(100, 0.0));
+  options.deterministic = true;
+  SensorChain chain(m, options);
+  chain.run(std::span(all).first(37), {});
+  chain.run(std::span(all).subspan(37), {});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double t = static_cast<double>(i) / 10;
+    CHECK(all[i] == Approx((t >= 5 ? 2 : 0) + std::exp(-t / 3) + 0.1 * t));
+  }
+}

@@ -116,7 +116,7 @@ void run_one_by_one(Session& session,
       documents.push_back(json_report(view));
       continue;
     }
-    print_text(characterization_text(result));
+    print_text(characterization_text(view));
     say_written(outputs);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
@@ -251,6 +251,7 @@ void run_characterize(Session& session, const CharacterizeVerb& verb) {
 
 std::function<void()> characterize_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CharacterizeVerb>();
+  verb->analysis.options.ten_a_decade = true;
   options
       .add_texts("LOG",
                  verb->logs,
@@ -291,6 +292,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 "outliers (lot.html, lot.json)")
       .excludes(pool);
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_allan_options(options, verb->analysis);
   add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);

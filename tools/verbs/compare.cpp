@@ -87,7 +87,7 @@ void compare_two_characterizations(Session& session, const CompareVerb& verb) {
                  ""});
   std::vector<GrowthCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
-  const CharacterizationSummary a = read_characterization_report(verb.a);  // A is refused before B
+  const ReportedCharacterization a = read_characterization_report(verb.a);  // A is refused before B
   const CharacterizationComparison comparison =
       compare_characterizations(a, read_characterization_report(verb.b));
   std::vector<std::string> failed;

@@ -46,6 +46,7 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
       .quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
   Characterization result = characterize(verb.input, options, session.terminal);
   log = result.log;
+  if (result.still) session.terminal.note(printable(result.still->sentence));
   std::vector<ChannelFit> fits;
   for (ChannelResult& c : result.channels) {
     for (const std::string& problem : c.problems)
@@ -151,7 +152,22 @@ void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, cons
   write_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
+// A curve has neither samples nor times.
+void refuse_with_curve(const FitVerb& verb) {
+  const CharacterizeOptions& o = verb.analysis.options;
+  if (verb.curve == "none") return;
+  const bool still = o.still.search || o.still.stretch_s;
+  if (still || !o.temperature.empty())
+    throw Error({ErrorKind::usage,
+                 "",
+                 still ? "--still" : "--temperature",
+                 "goes with a recording, not with --curve",
+                 "",
+                 ""});
+}
+
 void run_fit(Session& session, const FitVerb& verb) {
+  refuse_with_curve(verb);
   LogInfo log;
   const std::vector<ChannelFit> fits =
       verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
@@ -173,6 +189,7 @@ void run_fit(Session& session, const FitVerb& verb) {
     for (const ChannelFit& c : fits)
       channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
     document.update(noise_fit_document(std::move(channels)));
+    if (log.stretch_s) document["stretch_s"] = {log.stretch_s->low, log.stretch_s->high};
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits)
@@ -231,6 +248,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   options.add_flag("--force", verb->force, "overwrite the output files");
   options.add_flag("--json", verb->json, "one JSON document instead of a table");
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_fit_options(options, verb->analysis);
   return [&session, verb] { run_fit(session, *verb); };

@@ -47,6 +47,7 @@ struct SimulateVerb {
   std::optional<double> duration_s, rate_hz;
   std::uint64_t samples = 0, seed = 1, devices = 1, oversampling = 1;
   bool seed_given = false, no_truth = false, no_scene = false, json = false, allow_outside = false;
+  bool deterministic = false;
   WritingOptions writing;
 };
 
@@ -132,6 +133,7 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
   set_length(verb, simulation);
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
+  simulation.deterministic = verb.deterministic;
   set_signals(verb, simulation);
   add_faults(verb, simulation);
   Warnings warnings;
@@ -263,6 +265,10 @@ void add_input_options(VerbOptions& options, SimulateVerb& verb) {
                 "temperature in degC, a signal as well (default: the models' reference)")
       .value_name("SIGNAL");
   options.add_texts("--fault", verb.faults, kFaultHelp).value_name("FAULT");
+  options.add_flag("--deterministic",
+                   verb.deterministic,
+                   "put in the steps, warm-ups and ramps that the models' recordings had, at their "
+                   "times (default: they are of that recording, not of the sensor)");
   options.add_count("--oversampling",
                     verb.oversampling,
                     "signals and noise are made so many times faster than the samples (default: 1)",

@@ -7,9 +7,11 @@
 #include <new>
 
 #include "libchar/allan/confidence.hpp"
+#include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 
 namespace libchar {
@@ -68,7 +70,10 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
-  if (!second) quality_.push(samples);
+  if (!second) {
+    quality_.push(samples);
+    if (options_->wanted.quality) trace_.push(samples);
+  }
   if (options_->data == SampleKind::frequency) {
     as_rate(samples);
     stream(fractional_);
@@ -157,7 +162,12 @@ AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
 
 AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
   const bool exact = kept_.size() <= options_->exact_samples || !options_->full_overlap;
-  if (octaves_only(options_->allan) && exact) return limited(octaves, options_->allan);
+  if (octaves_only(options_->allan) && exact) {
+    AllanCurve curve = limited(octaves, options_->allan);
+    if (options_->ten_a_decade)
+      add_ten_a_decade(kept_, options_->allan, options_->exact_samples, curve);
+    return curve;
+  }
   AllanOptions allan = options_->allan;
   allan.data = DataKind::rate;  // `as_rate` has differenced phase data
   return allan_deviation(kept_, 1 / rate_hz, allan);
@@ -172,8 +182,28 @@ void ChannelStage::difference_kept(double rate_hz) {
     if (!phase.empty()) phase.pop_back();
   };
   if (options_->fit.remedies && wants_fit()) despiked_ = without_spikes(kept_);
+  noise_types_ = types_of_kept(rate_hz);
   difference(despiked_.samples);
   difference(kept_);
+}
+
+// Of a clock: its phase, or the sum of its frequency.
+std::vector<NoiseType> ChannelStage::types_of_kept(double rate_hz) const {
+  if (!keeping_ || !wants_fit() || options_->data == SampleKind::rate) return {};
+  if (options_->data == SampleKind::phase)
+    return lag1_noise_types(despiked_.samples.empty() ? kept_ : despiked_.samples, 1 / rate_hz);
+  std::vector<double> phase(kept_.size() + 1, 0.0);
+  for (std::size_t t = 0; t < kept_.size(); ++t) phase[t + 1] = phase[t] + kept_[t] / rate_hz;
+  if (std::isnan(phase.back())) return {};
+  return lag1_noise_types(phase, 1 / rate_hz);
+}
+
+void ChannelStage::name_noise_types(ChannelResult& result) const {
+  result.noise_types = noise_types_;
+  if (!result.fit || noise_types_.empty()) return;
+  result.fit->sentences.push_back(
+      "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
+      noise_types_text(noise_types_) + ".");
 }
 
 NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
@@ -181,6 +211,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                                    const std::string& unit) const {
   FitOptions options = options_->fit;
   options.unit = unit;
+  options.clock = options_->data != SampleKind::rate;
   options.temperature = temperature_;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
@@ -205,13 +236,15 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz)
     cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
+  FitOptions options = options_->fit;
+  options.clock = options_->data != SampleKind::rate;
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,
                             octaves.points.empty() ? nullptr
                             : cleaned              ? &cleaned_allan
                                                    : &octaves,
-                            options_->fit,
+                            options,
                             &workspace_->fit);
   add_spike_answer(answer, fit);
   return fit;
@@ -234,17 +267,27 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
 
 // A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves throughout, and a sentence
 // where a stretch of it does.
-bool ChannelStage::is_at_rest(ChannelResult& result, double rate_hz) const {
+bool ChannelStage::is_at_rest(ChannelResult& result,
+                              double rate_hz,
+                              std::vector<Interval>& moving_s) const {
   if (options_->data != SampleKind::rate || !options_->wanted.fit || !options_->fit.remedies)
     return true;
   // Filled gaps are stiller than any sensor.
   const std::uint64_t missing = found_.missing;
   if (kept_.size() < kFewestForMotion || missing * 100 > kept_.size()) return true;
-  const Motion motion = find_motion(event_series(kept_, rate_hz));
-  for (const std::string& sentence : motion.sentences) result.problems.push_back(sentence);
-  if (motion.whole)
+  result.motion = find_motion(event_series(kept_, rate_hz));
+  for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
+  moving_s = result.motion.moving_s;
+  if (result.motion.whole)
     result.problems.push_back("no noise fit: the recording holds a signal throughout");
-  return !motion.whole;
+  return !result.motion.whole;
+}
+
+// Of samples as the log has them: those of other kinds are differences or ratios.
+void ChannelStage::find_digital(ChannelResult& result, double rate_hz) const {
+  if (options_->data != SampleKind::rate || !options_->wanted.fit) return;
+  result.digital = find_digital_faults(kept_, rate_hz, found_.resolution, result.channel.unit);
+  for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
 }
 
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
@@ -260,9 +303,13 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
           result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
   if (!is_noise(result)) return;
+  find_digital(result, rate_hz);
   attempt(result, "noise fit", [&] {
-    if (is_at_rest(result, rate_hz))
-      result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
+    std::vector<Interval> moving_s;
+    if (!is_at_rest(result, rate_hz, moving_s)) return;
+    result.fit = fit_of_kept(octaves, rate_hz, result.channel.unit);
+    result.fit->moving_s = std::move(moving_s);
+    doubt_digital(result.digital, *result.fit);
   });
 }
 
@@ -316,7 +363,11 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
   found_ = quality_.finish();
-  if (options_->wanted.quality) result.quality = quality_of_rate();
+  if (options_->wanted.quality) {
+    result.quality = quality_of_rate();
+    result.trace = trace_.finish();
+    result.trace_unit = channel.unit;
+  }
   if (rate_hz <= 0) {
     result.problems.push_back(
         "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
@@ -324,8 +375,13 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
     return result;
   }
   if (options_->data == SampleKind::phase) difference_kept(rate_hz);
+  if (options_->data == SampleKind::frequency) noise_types_ = types_of_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
-  add_intervals(result.allan, result.fit ? result.fit->theta : white_alone(result.allan));
+  name_noise_types(result);
+  if (result.fit)
+    add_fit_intervals(result.allan, *result.fit);
+  else
+    add_intervals(result.allan, white_alone(result.allan));
   kept_ = {};
   despiked_ = {};
   return result;

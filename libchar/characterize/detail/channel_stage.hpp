@@ -80,23 +80,28 @@ class ChannelStage {
   AllanCurve octaves_of_kept(double rate_hz) const;
   AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
   void difference_kept(double rate_hz);
+  std::vector<NoiseType> types_of_kept(double rate_hz) const;
+  void name_noise_types(ChannelResult& result) const;
   NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, const std::string& unit) const;
   NoiseFit fit_of_streams(const AllanCurve& octaves, double rate_hz);
   Quantization quantization() const;
   ChannelQuality quality_of_rate() const;
   bool is_noise(ChannelResult& result) const;
-  bool is_at_rest(ChannelResult& result, double rate_hz) const;
+  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) const;
+  void find_digital(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
   void finish_streams(ChannelResult& result, double rate_hz);
 
   const CharacterizeOptions* options_;
   CharacterizeWorkspace* workspace_;
   QualityMeter quality_;
+  TraceMeter trace_;
   ChannelQuality found_;  // by quality_, at the end
   bool keeping_ = true;
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
   std::vector<double> fractional_;           // scratch of as_rate
+  std::vector<NoiseType> noise_types_;
   DespikedRecord despiked_;  // rate of the phase without its spikes, when it has some
   std::uint64_t samples_ = 0;
   std::shared_ptr<const TemperatureRecord> temperature_;

@@ -4,6 +4,7 @@
 // whose maximum lies at tau = 1.8926 Tc with a deviation of 0.43654 q sqrt(Tc) = 0.61736 s, s = q
 // sqrt(Tc/2) its steady state. Put on the flicker floor 0.66428 B at the middle of its flat part:
 //   Tc = tau_floor / 1.8926,  s = 1.0760 B,  q = s sqrt(2 / Tc).
+// A model with a Gauss-Markov process of its own needs no match; who only knows a random walk gets its driving density.
 
 #include "libchar/export/detail/export_figures.hpp"
 
@@ -26,23 +27,33 @@ constexpr double kSteadyOverB = 1.0759975729152143;  // 0.6642825 / 0.6173643
 struct AxisNumber {
   std::optional<double> value, limit;
   Status status = Status::not_fitted;
+  bool driven = false;  // the driving density of a Gauss-Markov process is in it
 };
+
+double driving_density(const GaussMarkovNoise& process) {
+  return process.sigma > 0 ? process.sigma * std::sqrt(2 / process.tau_s) : 0;
+}
 
 AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   const Coefficient& c = (*placed.model)[term];
   const double factor = placed.to_si * inflate;
-  AxisNumber out{std::nullopt, std::nullopt, c.status};
+  AxisNumber out{std::nullopt, std::nullopt, c.status, false};
   // A stated 0 says that the term is absent, and bounds nothing.
   if (c.value && *c.value > 0) out.value = *c.value * factor;
   if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
+  const double driving = driving_density(placed.model->gauss_markov);
+  if (term != Term::walk || !(driving > 0)) return out;
+  out.value = std::hypot(out.value.value_or(0), driving * factor);
+  out.driven = true;
   return out;
 }
 
 std::string said(const AxisNumber& n) {
   if (n.value)
-    return significant(*n.value, 4) + (n.status == Status::undetermined ? " (undetermined)"
-                                       : n.status == Status::misfit     ? " (misfit)"
-                                                                        : "");
+    return significant(*n.value, 4) + (n.driven ? " (Gauss-Markov driving density)"
+                                       : n.status == Status::undetermined ? " (undetermined)"
+                                       : n.status == Status::misfit       ? " (misfit)"
+                                                                          : "");
   if (n.limit) return "<= " + significant(*n.limit, 3);
   return "unknown";
 }
@@ -54,13 +65,20 @@ std::string absence(const AxisNumber& n) {
 }
 
 Figure one_axis(const AxisNumber& n, Absent absent) {
+  if (n.driven)
+    return {n.value,
+            false,
+            "driving density sigma sqrt(2/tau) of the Gauss-Markov process: as a walk it holds for "
+            "times well below tau"};
   if (n.value) {
     if (n.status == Status::misfit)
       return {n.value, false, "misfit: the noise terms do not describe the recording"};
     const bool doubtful = n.status == Status::undetermined;
     return {n.value,
             false,
-            doubtful ? "undetermined: the record cannot tell it from another term" : ""};
+            doubtful
+                ? "undetermined: the record cannot tell it from another term, or contradicts it"
+                : ""};
   }
   if (absent == Absent::zero)
     return {0.0,
@@ -191,8 +209,30 @@ Figure positive_figure(const SensorTriad& triad,
                    name.key)});
 }
 
+namespace {
+
+/// The process that the record itself showed. Another correlation time keeps its driving density: short times stay right.
+GaussMarkov own_process(const PlacedModel& placed, const ExportOptions& options) {
+  const SensorModel& m = *placed.model;
+  GaussMarkov out;
+  out.correlation_s = options.correlation_s.value_or(m.gauss_markov.tau_s);
+  out.driving = driving_density(m.gauss_markov) * placed.to_si * options.inflate;
+  out.steady_sd = out.driving * std::sqrt(out.correlation_s / 2);
+  out.origin = fmt::format("Gauss-Markov process of the record, sigma {}, tau {} s",
+                           significant(m.gauss_markov.sigma * placed.to_si * options.inflate, 4),
+                           significant(m.gauss_markov.tau_s, 4));
+  if (options.correlation_s) out.origin += "; its driving density with your correlation time";
+  for (const Term term : {Term::flicker, Term::walk})
+    if (m[term].value.value_or(0) > 0)
+      out.origin += fmt::format("; {} is left out", kTermNames[static_cast<std::size_t>(term)].key);
+  return out;
+}
+
+}  // namespace
+
 GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options) {
   const SensorModel& m = *placed.model;
+  if (m.gauss_markov.sigma > 0) return own_process(placed, options);
   const double q = positive(number_of(placed, Term::white, options.inflate).value);
   const double b = positive(number_of(placed, Term::flicker, options.inflate).value);
   const double k = positive(number_of(placed, Term::walk, options.inflate).value);

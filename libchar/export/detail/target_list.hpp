@@ -18,6 +18,9 @@
   TARGET(rotors) \
   TARGET(airsim) \
   TARGET(gnss_ins_sim) \
+  TARGET(pegasus) \
+  TARGET(kf_gins) \
+  TARGET(navego) \
   TARGET(matlab) \
   TARGET(px4) \
   TARGET(json)

@@ -15,6 +15,7 @@
 #include <limits>
 #include <span>
 
+#include "libchar/fit/detail/gauss_markov_means.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 
@@ -28,6 +29,7 @@ constexpr double kBandStep = 0.5;  ///< octaves
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
 constexpr double kNull = 0.01;  ///< of a filter's power gain
 constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
+constexpr auto kLentTerm = static_cast<std::size_t>(Term::ramp);  ///< to a Gauss-Markov process
 
 double mean_ratio(const NoiseShape& filter, const PowerBin& bin, double rate_hz) {
   constexpr int kNodes = 17;
@@ -99,6 +101,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins,
   trial.index = members(bins, band);
   if (trial.index.size() < kFewestBins) return std::nullopt;
   if (band.quantized) terms[kQuantizationTerm] = true;
+  if (band.tau_s) terms[kLentTerm] = true;
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
   const BinProblem problem = bin_problem(inside, band.orders, band.top_hz);
   const ScoringResult best = score(problem, terms, start, 1e-6);
@@ -138,6 +141,7 @@ std::optional<Trial> named_filter(const std::vector<PowerBin>& bins,
   for (const auto kind : {NoiseShape::Kind::boxcar, NoiseShape::Kind::bartlett})
     for (const std::uint64_t taps : kTaps) {
       Band band = whole_band(bins, rate_hz);
+      band.tau_s = options.tau_s;
       band.filter.kind = kind;
       band.filter.taps = taps;
       leave_out_nulls(bins, rate_hz, band);
@@ -237,6 +241,8 @@ std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& ban
   std::vector<PowerBin> inside;
   for (std::size_t j = 0; j < bins.size(); ++j)
     if (band.inside[j] != 0) inside.push_back(bins[j]);
+  if (band.tau_s)
+    for (PowerBin& bin : inside) bin.unit[kLentTerm] = gauss_markov_unit(bin, *band.tau_s, rate_hz);
   inside = filtered(std::move(inside), band.filter, rate_hz);
   return band.low_pass ? low_passed(std::move(inside), band.low_pass->corner_hz, rate_hz) : inside;
 }
@@ -246,6 +252,7 @@ Band find_band(const std::vector<PowerBin>& bins,
                const TermSet& terms,
                const BandOptions& options) {
   Band whole = whole_band(bins, rate_hz);
+  whole.tau_s = options.tau_s;
   Search search{bins, rate_hz, terms, options, std::nullopt};
   const std::optional<Trial> plain = search.at(whole);
   if (!plain) return whole;
@@ -260,7 +267,9 @@ Band find_band(const std::vector<PowerBin>& bins,
   if (const auto named = named_filter(bins, rate_hz, terms, options); named && named->band.passes)
     return named->band;
   Band low_pass = whole;
-  low_pass.low_pass = fit_low_pass(bins, rate_hz, terms);
+  TermSet offered = terms;
+  offered[kLentTerm] = offered[kLentTerm] || options.tau_s;
+  low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
   if (low_pass.low_pass)
     if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
   std::optional<Band> best = search.widest(whole, rate_hz / 2);

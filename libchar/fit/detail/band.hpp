@@ -19,9 +19,11 @@ struct Band {
   int orders = 0;                      ///< of the polynomial of the shape beyond that
   bool quantized = false;              ///< quantization noise is among the terms
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
-  bool passes = true;                  ///< the residuals are those of noise, or too few to judge
-  Goodness goodness;                   ///< of the band, its slowest coefficients left out
-  Goodness top;                        ///< of its top octave and a half
+  /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
+  std::optional<double> tau_s;
+  bool passes = true;  ///< the residuals are those of noise, or too few to judge
+  Goodness goodness;   ///< of the band, its slowest coefficients left out
+  Goodness top;        ///< of its top octave and a half
 };
 
 struct BandOptions {
@@ -30,6 +32,7 @@ struct BandOptions {
   double probability_plain =
       0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
   int most_orders = 4;
+  std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
 };
 
 /// Every bin, without a shape.

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "libchar/fit/detail/coefficients.hpp"
+#include "libchar/fit/detail/flicker_phase_means.hpp"
+#include "libchar/fit/detail/gauss_markov_means.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 
 namespace libchar {
@@ -125,9 +127,18 @@ void add_lines(const std::vector<PowerBin>& clipped,
   };
   std::vector<ShapePoint> points;
   bool any = false;
+  const bool flicker_phase = fit.flicker_phase && fit.flicker_phase->value;
+  const std::vector<double> phase_units =
+      flicker_phase ? flicker_phase_units(full, fit.rate_hz) : std::vector<double>{};
   for (const PowerBin& bin : full) {
     double terms = 0;
     for (std::size_t i = 0; i < kTerms; ++i) terms += fit.theta[i] * bin.unit[i];
+    if (flicker_phase)
+      terms += *fit.flicker_phase->value * *fit.flicker_phase->value *
+               phase_units[static_cast<std::size_t>(&bin - full.data())];
+    if (fit.gauss_markov && fit.gauss_markov->in_model)
+      terms += *fit.gauss_markov->sigma.value * *fit.gauss_markov->sigma.value *
+               gauss_markov_unit(bin, *fit.gauss_markov->tau_s.value, fit.rate_hz);
     if (fit.bandwidth_hz) terms *= low_pass_gain(bin, *fit.bandwidth_hz, fit.rate_hz).gain;
     const bool counts = bin.dof > 4 && bin.energy > kCounts * without_lines(bin);
     any = any || counts;

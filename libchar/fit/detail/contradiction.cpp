@@ -46,7 +46,7 @@ std::size_t largest_term(const Mixture& theta, double m, double dt_s) {
 // The point where the model stands highest above what was measured.
 std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const AllanCurve& allan) {
   AllanCurve curve = allan;
-  add_intervals(curve, fit.theta);
+  add_fit_intervals(curve, fit);
   std::optional<Contradiction> worst;
   for (const AllanPoint& point : curve.points) {
     if (point.edf < kFewestDof || !(point.deviation > 0)) continue;
@@ -61,26 +61,37 @@ std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const Alla
   return worst;
 }
 
+bool mostly_process(const NoiseFit& fit, double m, double dt_s) {
+  return process_allan_variance(fit, m, dt_s) > 0.5 * shaped_allan_variance(fit, m, dt_s);
+}
+
+// Of a term, or of none (kTerms).
 void doubt(NoiseFit& fit, std::size_t term, const std::string& sentence) {
   fit.sentences.push_back(sentence);
-  if (fit.term[term].status == Status::detected) fit.term[term].status = Status::undetermined;
+  if (term < kTerms && fit.term[term].status == Status::detected)
+    fit.term[term].status = Status::undetermined;
 }
 
 }  // namespace
 
 void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
   if (!deviation_row(allan.type).is_allan()) return;
-  if (const auto worst = worst_contradiction(fit, allan))
+  if (const auto worst = worst_contradiction(fit, allan)) {
+    const bool of_process = mostly_process(fit, worst->tau_s / allan.dt_s, allan.dt_s);
+    if (of_process)
+      fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
     doubt(fit,
-          worst->term,
-          fmt::format("At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
-                      "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
-                      "{} is not borne out there and is marked undetermined.",
-                      worst->tau_s,
-                      worst->model,
-                      worst->measured.low,
-                      worst->measured.high,
-                      long_name(static_cast<Term>(worst->term))));
+          of_process ? kTerms : worst->term,
+          fmt::format(
+              "At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
+              "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
+              "{} is not borne out there and is marked undetermined.",
+              worst->tau_s,
+              worst->model,
+              worst->measured.low,
+              worst->measured.high,
+              of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));
+  }
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& first = fit.term[t];

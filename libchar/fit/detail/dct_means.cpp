@@ -64,7 +64,7 @@ double flicker_ratio(double k) {
 }
 
 // H_n = sum_{i=1..n} 1/(2i-1).
-long double odd_harmonic(std::uint64_t n) {
+long double long_odd_harmonic(std::uint64_t n) {
   if (n < 64) {
     long double sum = 0;
     for (std::uint64_t i = n; i >= 1; --i) sum += 1.0L / static_cast<long double>(2 * i - 1);
@@ -80,7 +80,8 @@ long double odd_harmonic(std::uint64_t n) {
 // Generalised covariance of the phase of unit flicker, s_F(n) = [(4n^2-1) H_n - 3n^2] / (4 pi).
 long double flicker_phase_covariance(std::uint64_t n) {
   const auto x = static_cast<long double>(n);
-  return ((4 * x * x - 1) * odd_harmonic(n) - 3 * x * x) / (4 * std::numbers::pi_v<long double>);
+  return ((4 * x * x - 1) * long_odd_harmonic(n) - 3 * x * x) /
+         (4 * std::numbers::pi_v<long double>);
 }
 
 // Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m,

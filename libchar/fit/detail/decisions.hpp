@@ -11,7 +11,7 @@ struct Decision {
   double half_deviance = 0;
   /// 2 (lnL with - lnL without): of a kept term within the model, of a dropped one when it is added
   Mixture likelihood_ratio{};
-  Mixture ratio_in_all{};  ///< the same within the model of all offered terms
+  Mixture ratio_in_all{};        ///< the same within the model of all offered terms
   bool flicker_or_walk = false;  ///< neither is needed when the other is there, but one of them is
   int iterations = 0;
   bool converged = true;

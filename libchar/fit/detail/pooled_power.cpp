@@ -105,6 +105,10 @@ void append_bins_of(const PooledPower& power,
         hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
     bin.energy = sum / static_cast<double>(kept);
     bin.dof = static_cast<double>(kept * power.pooled);
+    bin.first = lo;
+    bin.end = hi;
+    bin.length = power.length;
+    bin.spacing = power.spacing;
     bin.unit = average_unit(lo, hi, clipped, power.first, kept, smooth, unit_at);
     bins.push_back(bin);
   }

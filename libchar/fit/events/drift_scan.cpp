@@ -11,6 +11,7 @@ namespace libchar {
 namespace {
 
 constexpr double kTauStep = 1.25;
+constexpr double kLongest = 1.02;  ///< of the record: what takes longer is a ramp and its curvature
 
 std::size_t room_for(double tau, const SeriesGrid& grid) {
   const double n = static_cast<double>(grid.points);
@@ -43,7 +44,7 @@ WarmUpScan scan_warm_ups(const Regression& beside,
   WarmUpScan scan;
   const double n = static_cast<double>(grid.points);
   std::vector<double> before;
-  for (double tau = std::max(8.0, n / 1000); tau < n / 2 * 1.0001; tau *= kTauStep) {
+  for (double tau = std::max(8.0, n / 1000); tau < kLongest * n; tau *= kTauStep) {
     std::vector<double> column = warm_up_column(tau, grid);
     scan.tau.push_back(tau);
     scan.score.push_back(score_of(beside, column, weight).value());

@@ -19,18 +19,24 @@ bool numeric(const Field& field, char delimiter, char* mark) {
 }
 
 Score score(const std::vector<Line>& lines, char delimiter) {
-  std::vector<std::size_t> counts;
-  std::size_t cells = 0, numbers = 0;
+  std::vector<std::size_t> counts, ending_empty;
+  std::size_t cells = 0, numbers = 0, widest = 0;
   for (const Line& line : lines) {
     const auto fields = split(line.text, delimiter);
-    std::size_t n = fields.size();
-    if (n > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ') --n;
-    counts.push_back(n);
+    const std::size_t n = fields.size();
+    if (n > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ') {
+      ending_empty.push_back(n);
+    } else {
+      counts.push_back(n);
+      widest = std::max(widest, n);
+    }
     for (const Field& field : fields) {
       ++cells;
       numbers += numeric(field, delimiter);
     }
   }
+  // An empty last cell is missing where other lines have one there; else a delimiter ends the line.
+  for (const std::size_t n : ending_empty) counts.push_back(n == widest ? n : n - 1);
   Score result{delimiter, 1, 0};
   if (counts.empty()) return result;
   std::vector<std::size_t> sorted = counts;

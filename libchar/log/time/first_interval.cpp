@@ -1,4 +1,6 @@
-// Two estimates of the sampling interval: the common step (the median of the first differences),
+// Exact stamps of which rows are missing at random: all steps are whole multiples of the least one, and of 1, 2, 3… times it there are as
+// many as where each row is missing with one probability p, (1 - p) p^(m-1). That lattice is the sampling, however many are missing.
+// Else two estimates of the sampling interval: the common step (the median of the first differences),
 // right in a log with gaps, and span / (rows - 1), right wherever each row is a sample. Where they
 // differ by more than 2 % one of three things explains it, or the log is refused:
 //   coarse   all steps are multiples of the clock's step q, and every stamp stands within
@@ -104,6 +106,31 @@ double tick_of(std::vector<double> steps) {
   return tick;
 }
 
+/// Steps on a lattice with rows missing at random: its interval, or 0. Few missing rows need no such care.
+double lattice_of(const FirstSteps& steps) {
+  constexpr double kFewest = 100, kOff = 0.01, kLeastMissing = 0.15, kMostMissing = 0.9;
+  const auto count = static_cast<double>(steps.rising.size());
+  if (count < kFewest || steps.equal > 0 || steps.back) return 0;
+  const double least = *std::min_element(steps.rising.begin(), steps.rising.end());
+  double time = 0, multiples = 0, once = 0, twice = 0;
+  for (const double step : steps.rising) {
+    const double multiple = std::round(step / least);
+    if (std::fabs(step - multiple * least) > kOff * least) return 0;
+    time += step;
+    multiples += multiple;
+    once += multiple == 1 ? 1 : 0;
+    twice += multiple == 2 ? 1 : 0;
+  }
+  const double missing = 1 - count / multiples;
+  if (missing < kLeastMissing || missing > kMostMissing) return 0;
+  const auto as_expected = [&](double found, double share) {
+    return std::fabs(found - count * share) <= 5 * std::sqrt(count * share) + 0.1 * count * share;
+  };
+  const bool at_random =
+      as_expected(once, 1 - missing) && as_expected(twice, (1 - missing) * missing);
+  return at_random ? time / multiples : 0;
+}
+
 /// The line through the stamps by least squares: ns a row, and how far they spread about it.
 struct StampLine {
   double slope = 0, spread = 0;
@@ -173,6 +200,10 @@ FirstInterval first_interval(const std::vector<std::int64_t>& stamps,
   const StampPattern as_it_is = common.equal ? StampPattern::equal : StampPattern::steps;
   FirstInterval result{common.ns, common.longest, as_it_is, common.ns, common.ns};
   if (steps.back || stamps.size() <= kLeastOdd) return result;
+  const double lattice = lattice_of(steps);
+  if (lattice > 0 && (!rate_hz || same_rate(1e9 / *rate_hz, lattice)) &&
+      !on_one_line(line_through(stamps), steps, lattice))
+    return {lattice, 1.5 * lattice, StampPattern::steps, lattice, lattice};
 
   const StampLine line = line_through(stamps);
   const auto rows = static_cast<double>(stamps.size());

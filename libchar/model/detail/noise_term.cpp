@@ -249,11 +249,8 @@ void write_term(const Field& row, const SensorModel& model, std::vector<Entry>& 
   const Coefficient& c = model.noise[t];
   const TermName& name = kTermNames[t];
   Entry term{std::string(row.key)};
-  term.comment = fmt::format("{} here, {} in IEEE 952: {}; {}",
-                             name.letter,
-                             name.ieee,
-                             kTexts[t].meaning,
-                             kTexts[t].curve);
+  term.comment =
+      fmt::format("{} in IEEE 952: {}; {}", name.letter, kTexts[t].meaning, kTexts[t].curve);
   term.form = Entry::Form::block;
   term.below = {{"value"}, {"unit", term_unit(name.key, model.unit.empty() ? "U" : model.unit)}};
   if (c.value) term.below[0].value = *c.value;

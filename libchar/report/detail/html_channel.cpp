@@ -12,6 +12,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/power_laws.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"
@@ -54,75 +55,137 @@ std::string in_field_units(const Coefficient& c, std::size_t term, const std::st
 std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::string& unit) {
   const Coefficient& c = fit.term[t];
   const TermName& name = kTermNames[t];
+  const std::string whole = coefficient_text(c);
   const std::string interval =
-      c.value ? coefficient_text(c).substr(coefficient_text(c).find('[')) : "–";
+      c.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
   const std::string known = c.value ? "±" + number_text(100 * c.relative_sd, 2) + " %" : "–";
-  return fmt::format(
-      "<tr><th scope=\"row\">{} <b>{}</b><span class=\"dim\"> IEEE 952: {}</span></th><td "
-      "class=\"n\"><b>{}</b></td><td class=\"n\">{}</td>"
-      "<td class=\"u\">{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td "
-      "class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-      term_title(static_cast<Term>(t)),
-      name.letter,
-      name.ieee,
-      html_text(value_text(c)),
-      html_text(interval),
-      html_text(term_unit(name.key, unit)),
-      in_field_units(c, t, unit),
-      status_chip(c.status),
-      known,
-      c.bound ? "±" + number_text(100 * *c.bound, 2) + " %" : "–",
-      c.seconds_for_10_percent ? html_text(duration_text(*c.seconds_for_10_percent)) : "–");
+  std::string out = fmt::format("<tr><th scope=\"row\">{} <b>{}</b></th>",
+                                html_text(term_title(static_cast<Term>(t), unit)),
+                                name.letter);
+  out += card_cell("Value",
+                   fmt::format("<b>{}</b> <span class=\"dim\">{}</span>{}",
+                               html_text(value_text(c)),
+                               html_text(shown_term_unit(name.key, unit)),
+                               interval),
+                   "n");
+  out += card_cell("As the field says it", in_field_units(c, t, unit), "");
+  out += card_cell("Status", status_chip(c.status), "");
+  out += card_cell("Known to", html_text(known), "n");
+  out +=
+      card_cell("Best possible", c.bound ? "±" + number_text(100 * *c.bound, 2) + " %" : "–", "n");
+  out += card_cell(
+      "Record for 10 %",
+      c.seconds_for_10_percent ? html_text(duration_text(*c.seconds_for_10_percent)) : "–",
+      "n");
+  return out + "</tr>\n";
+}
+
+std::string derived_row(const std::string& name,
+                        const std::string& value,
+                        const std::string& interval,
+                        const std::string& unit,
+                        const std::string& what) {
+  return fmt::format("<tr class=\"derived\"><th scope=\"row\">{}</th>", html_text(name)) +
+         card_cell(
+             "Value",
+             fmt::format(
+                 "<b>{}</b> <span class=\"dim\">{}</span>{}",
+                 html_text(value),
+                 html_text(unit),
+                 interval.empty() ? "" : "<span class=\"ci\">" + html_text(interval) + "</span>"),
+             "n") +
+         fmt::format("<td colspan=\"5\">{}</td></tr>\n", html_text(what));
+}
+
+std::string process_rows(const GaussMarkovFit& process, const std::string& unit) {
+  const auto row = [&](const char* name, const Coefficient& c, const std::string& of) {
+    const std::string high = std::isfinite(c.ci95.high) ? number_text(c.ci95.high, 4) : "no end";
+    return fmt::format(
+        "<tr><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td class=\"n\">[{}, "
+        "{}]</td><td "
+        "class=\"u\">{}</td><td></td><td>{}</td><td class=\"n\">±{} %</td><td "
+        "class=\"n\">–</td><td "
+        "class=\"n\">–</td></tr>\n",
+        name,
+        html_text(value_text(c)),
+        number_text(c.ci95.low, 4),
+        high,
+        html_text(of),
+        status_chip(c.status),
+        number_text(100 * c.relative_sd, 2));
+  };
+  return row("Gauss–Markov <b>σ</b><span class=\"dim\"> standard deviation</span>",
+             process.sigma,
+             unit.empty() ? "U" : unit) +
+         row("Gauss–Markov <b>τ</b><span class=\"dim\"> correlation time</span>",
+             process.tau_s,
+             "s");
 }
 
 std::string derived_rows(const ChannelView& view, double rate_hz) {
   const ChannelResult& c = *view.result;
-  const std::string unit = view.unit.empty() ? "U" : view.unit;
+  const std::string& unit = view.shown_unit;
   std::string out;
   const Coefficient& white = (*c.fit)[Term::white];
-  const auto row = [&](const std::string& name, const std::string& value, const std::string& what) {
-    out += fmt::format(
-        "<tr class=\"derived\"><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td></td><td "
-        "class=\"u\">{}</td><td colspan=\"5\">{}</td></tr>\n",
-        html_text(name),
-        html_text(value),
-        html_text(unit),
-        html_text(what));
-  };
   if (white.value) {
-    row("Noise of a single sample",
+    out += derived_row(
+        "Noise of a single sample",
         value_text(white, std::sqrt(rate_hz)),
-        fmt::format("Q·√f: what white noise alone gives at f = {} Hz; the samples of this "
+        "",
+        unit,
+        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this "
                     "recording have a standard deviation of {} {}",
                     significant(rate_hz, 6),
                     number_text(c.quality.standard_deviation, 4),
                     unit));
   }
   if (const AllanPoint* lowest = view.allan_minimum) {
-    row("Minimum of the Allan curve",
+    out += derived_row(
+        "Minimum of the Allan curve",
         number_text(lowest->deviation, 4),
+        "",
+        unit,
         fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
                     duration_text(lowest->tau_s)));
   }
   if (c.fit->bandwidth_hz) {
     const auto& ci = c.fit->bandwidth_ci95;
-    out += fmt::format(
-        "<tr class=\"derived\"><th scope=\"row\">Bandwidth</th><td class=\"n\"><b>{}</b></td><td "
-        "class=\"n\">{}</td><td>Hz</td>"
-        "<td colspan=\"5\">corner of the first-order low-pass that the fit needed</td></tr>\n",
+    out += derived_row(
+        "Bandwidth",
         number_text(*c.fit->bandwidth_hz, 4),
-        ci ? fmt::format("[{}, {}]", number_text(ci->low, 4), number_text(ci->high, 4)) : "");
+        ci ? fmt::format("[{}, {}]", number_text(ci->low, 4), number_text(ci->high, 4)) : "",
+        "Hz",
+        "corner of the first-order low-pass that the fit needed");
   }
   return out;
+}
+
+std::string power_laws_table(const NoiseFit& fit) {
+  const std::vector<PowerLaw> laws = power_laws(fit);
+  if (laws.empty()) return "";
+  std::string out =
+      "<h4>As a clock: one-sided S<sub>y</sub>(f) = Σ h<sub>α</sub> f<sup>α</sup></h4>\n<div "
+      "class=\"wide\"><table>\n" +
+      table_head({"Noise type", "Stable32", "α", "h", "95 % interval", "Status"});
+  for (const PowerLaw& law : laws)
+    out += table_row({std::string(law.name),
+                      std::string(law.abbreviation),
+                      std::to_string(law.alpha),
+                      value_text(law.h),
+                      law.h.value
+                          ? number_text(law.h.ci95.low, 3) + " … " + number_text(law.h.ci95.high, 3)
+                          : "–",
+                      std::string(name_of(law.h.status))});
+  return out + "</tbody></table></div>\n";
 }
 
 std::string numbers_table(const ChannelView& view, double rate_hz) {
   const ChannelResult& c = *view.result;
   std::string out =
-      "<h3>Noise coefficients</h3>\n<div class=\"wide\"><table class=\"numbers\">\n<thead><tr><th "
-      "scope=\"col\">Term</th><th scope=\"col\">Value</th>"
-      "<th scope=\"col\">95 % interval</th><th scope=\"col\">Unit</th><th scope=\"col\">As the "
-      "field says it</th><th scope=\"col\">Status</th>"
+      "<h3>Noise coefficients</h3>\n<div class=\"wide\"><table class=\"numbers "
+      "cards\">\n<thead><tr><th "
+      "scope=\"col\">Term</th><th scope=\"col\">Value, 95 % interval</th>"
+      "<th scope=\"col\">As the field says it</th><th scope=\"col\">Status</th>"
       "<th scope=\"col\" title=\"one standard deviation\">Known to</th><th scope=\"col\" "
       "title=\"Cramér–Rao bound: one standard deviation, relative\">Best possible</th>"
       "<th scope=\"col\" title=\"record length at which the bound is 10 %\">Record for 10 "
@@ -130,11 +193,17 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (c.fit->term[t].status != Status::not_fitted) out += coefficient_row(*c.fit, t, view.unit);
   }
-  out += derived_rows(view, rate_hz) + "</tbody></table></div>\n";
-  return out +
-         "<p class=\"note\">Q and K are roots of two-sided densities; a data sheet's noise density "
-         "is one-sided, √2·Q. "
-         "<i>Best possible</i> is the Cramér–Rao bound for this record length.</p>\n";
+  if (c.fit->gauss_markov && c.fit->gauss_markov->in_model)
+    out += process_rows(*c.fit->gauss_markov, view.unit);
+  out += derived_rows(view, rate_hz) + "</tbody></table></div>\n" + power_laws_table(*c.fit);
+  out +=
+      "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; "
+      "a data "
+      "sheet's noise density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao bound for "
+      "this "
+      "record length";
+  if (!c.fit->band.whole) out += ", were its whole spectrum described by the noise terms";
+  return out + ".</p>\n";
 }
 
 std::string second_opinion_table(const ChannelView& view) {
@@ -143,12 +212,13 @@ std::string second_opinion_table(const ChannelView& view) {
   std::string out = "<div class=\"wide\"><table>\n" +
                     table_head({"Term", "Spectral fit", "Allan fit", "± sd", "Unit", "Apart by"});
   for (const OtherOpinion& other : view.other_opinions)
-    out += table_row({term_title(other.term),
-                      value_text(fit[other.term]),
-                      number_text(other.value),
-                      number_text(other.sd, 2),
-                      term_unit(kTermNames[static_cast<std::size_t>(other.term)].key, view.unit),
-                      other.apart ? number_text(*other.apart, 2) + " sd" : "–"});
+    out +=
+        table_row({term_title(other.term, view.unit),
+                   value_text(fit[other.term]),
+                   number_text(other.value),
+                   number_text(other.sd, 2),
+                   shown_term_unit(kTermNames[static_cast<std::size_t>(other.term)].key, view.unit),
+                   other.apart ? number_text(*other.apart, 2) + " sd" : "–"});
   out += "</tbody></table></div>\n";
   // The badge above says that much already.
   return opinion.sentence == "agrees" ? out : out + "<p>" + html_text(opinion.sentence) + "</p>\n";
@@ -171,18 +241,17 @@ std::string trust(const ChannelView& view, std::size_t index) {
          "shown."},
         c.channel.name);
   }
-  out += "</div>\n<div>\n<h3>Can it be trusted?</h3>\n<p>" + html_text(view.goodness) + "</p>\n";
+  out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
   out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " +
          std::to_string(fit.iterations) +
          (fit.converged ? " iterations, converged.</p>\n"
                         : " iterations, <b>not converged</b>.</p>\n");
-  out += bullet_list(fit.sentences, "plain");
   if (!fit.remedies.empty()) {
-    out += "<h4>What was done to the data before the fit</h4>\n<table>\n" +
+    out += "<h4>What was done to the data before the fit</h4>\n<div class=\"wide\"><table>\n" +
            table_head({"Remedy", "Because", "What was done", "Count"});
     for (const Remedy& r : fit.remedies)
       out += table_row({r.kind, r.alarm, r.action, count_text(r.count)});
-    out += "</tbody></table>\n";
+    out += "</tbody></table></div>\n";
   }
   if (fit.second_opinion) {
     out += std::string("<h4>Second opinion: fit of the Allan curve ") +
@@ -193,22 +262,29 @@ std::string trust(const ChannelView& view, std::size_t index) {
   return out + "</div>\n</div>\n";
 }
 
+std::string trust_summary(const NoiseFit& fit) {
+  std::string out = "Can it be trusted? <span class=\"dim\">goodness of fit " +
+                    html_text(probability_text(fit.goodness.p));
+  if (fit.second_opinion)
+    out += fit.second_opinion->agrees ? "; the Allan fit agrees" : "; the Allan fit disagrees";
+  return out + "</span>";
+}
+
 std::string verification_section(const ChannelView& view) {
   const ChannelVerification& v = *view.result->verification;
-  std::string out = std::string("<h3>Simulated from the model ") +
-                    (v.agrees ? "<span class=\"chip detected\">agrees</span>"
-                              : "<span class=\"chip alarm\">disagrees</span>") +
-                    "</h3>\n" + bullet_list(v.sentences, "plain") +
-                    "<div class=\"wide\"><table>\n" +
+  std::string out = bullet_list(v.sentences, "plain") + "<div class=\"wide\"><table>\n" +
                     table_head({"Term", "Model", "Fit of the simulated record", "Unit", ""});
   for (const TermVerification& t : v.terms) {
-    out += table_row({term_title(t.term),
+    out += table_row({term_title(t.term, view.unit),
                       value_text(t.model),
                       coefficient_text(t.simulated),
-                      term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, view.unit),
+                      shown_term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, view.unit),
                       t.agrees ? "agrees" : "disagrees"});
   }
-  return out + "</tbody></table></div>\n";
+  return folded(std::string("Simulated from the model ") +
+                    (v.agrees ? "<span class=\"chip detected\">agrees</span>"
+                              : "<span class=\"chip alarm\">disagrees</span>"),
+                out + "</tbody></table></div>\n");
 }
 
 std::string lines_table(const ChannelView& view) {
@@ -227,9 +303,9 @@ std::string lines_table(const ChannelView& view) {
 
 std::string quality(const ChannelView& view) {
   const ChannelQuality& q = view.result->quality;
-  const std::string unit = view.unit.empty() ? "U" : view.unit;
+  const std::string& unit = view.shown_unit;
   const double all = static_cast<double>(q.samples + q.missing);
-  std::string out = "<h3>Data quality</h3>\n<table class=\"facts\"><tbody>\n";
+  std::string out = "<table class=\"facts\"><tbody>\n";
   out += table_row({"Samples", count_text(q.samples)});
   out += table_row({"Missing",
                     q.missing == 0
@@ -266,7 +342,7 @@ std::string quality(const ChannelView& view) {
 
 std::string consumers(const ChannelView& view, double rate_hz) {
   if (view.consumers.empty()) return "";
-  std::string out = "<h3>Which number goes where</h3>\n<div class=\"wide\"><table>\n" +
+  std::string out = "<div class=\"wide\"><table>\n" +
                     table_head({"For", "Name there", "Formula", "Value", "Unit"});
   const std::string* before = nullptr;
   for (const ConsumerNumber& row : view.consumers) {
@@ -290,15 +366,11 @@ std::string curve_points(const ChannelView& view) {
   const ChannelResult& c = *view.result;
   const auto& points = c.allan.points;
   if (points.empty()) return "";
-  const std::string unit = view.unit.empty() ? "U" : view.unit;
+  const std::string& unit = view.shown_unit;
   const std::size_t stride = (points.size() + kMostRows - 1) / kMostRows;
-  std::string out = fmt::format(
-                        "<details><summary>Points of the {} curve ({})</summary>\n<div "
-                        "class=\"wide\"><table class=\"points\">\n",
-                        name_of(c.allan.type),
-                        points.size()) +
+  std::string out = "<div class=\"wide\"><table class=\"points\">\n" +
                     table_head({"τ, s",
-                                "Deviation, " + unit,
+                                unit.empty() ? "Deviation" : "Deviation, " + unit,
                                 "68 % interval",
                                 "95 % interval",
                                 "Degrees of freedom",
@@ -323,27 +395,38 @@ std::string curve_points(const ChannelView& view) {
         "<p class=\"note\">Every {}th point; all of them are in curves.csv and report.json.</p>\n",
         stride);
   out += bullet_list(c.allan.notes, "plain") + bullet_list(c.spectrum.notes, "plain");
-  return out + "</details>\n";
+  return folded(fmt::format("Points of the {} curve ({})", name_of(c.allan.type), points.size()),
+                out);
 }
 
 }  // namespace
 
-std::string channel_section(const ChannelView& view, const LogInfo& log, std::size_t index) {
+std::string channel_section(const ChannelView& view,
+                            const LogInfo& log,
+                            std::size_t index,
+                            const ChannelLayout& layout) {
   const ChannelResult& c = *view.result;
   const double rate_hz = log.time.rate_hz;
-  std::string out =
-      fmt::format("<section class=\"channel\" id=\"channel-{}\">\n<h2>{}{}</h2>\n",
-                  index,
-                  html_text(c.channel.name),
-                  view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
-                                    : " <span class=\"unit\">" + html_text(view.unit) + "</span>");
-  out += bullet_list(view.findings, "findings") + bullet_list(view.cautions, "cautions") +
-         curve_plots(view, index);
-  if (c.fit) out += numbers_table(view, rate_hz) + trust(view, index);
+  std::string out = fmt::format(
+      "<details class=\"channel\" id=\"channel-{}\"{}><summary>{} <b>{}</b>{}</summary>\n",
+      index,
+      layout.open ? " open" : "",
+      rating_badge(view.summary.rating),
+      html_text(c.channel.name),
+      view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
+                        : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
+  out += "<p class=\"sentence\">" + html_text(view.summary.sentence) + "</p>\n";
+  out += bullet_list(view.cautions, "cautions") + bullet_list(view.beside_terms, "plain");
+  if (c.fit) out += bullet_list(c.fit->sentences, "plain");
+  if (layout.trace) out += trace_plot(view, index, log);
+  out += curve_plots(view, index);
+  if (c.fit)
+    out += numbers_table(view, rate_hz) + folded(trust_summary(*c.fit), trust(view, index));
   if (c.verification) out += verification_section(view);
-  out += "<div class=\"two-columns\">\n<div>\n" + quality(view) + "</div>\n<div>\n" +
-         consumers(view, rate_hz) + "</div>\n</div>\n";
-  return out + curve_points(view) + "</section>\n";
+  out += folded("Data quality", quality(view));
+  if (const std::string numbers = consumers(view, rate_hz); !numbers.empty())
+    out += folded("Which number goes where", numbers);
+  return out + curve_points(view) + "</details>\n";
 }
 
 }  // namespace libchar

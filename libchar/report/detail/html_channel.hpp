@@ -7,8 +7,15 @@
 
 namespace libchar {
 
-/// The section of one channel: plots, numbers, trust, data quality, units for consumers, points of
-/// the curve.
-std::string channel_section(const ChannelView& channel, const LogInfo& log, std::size_t index);
+struct ChannelLayout {
+  bool open = false;   ///< not folded
+  bool trace = false;  ///< the record in time stands here, and not above
+};
+
+/// What can be unfolded of one channel: plots, numbers, trust, data quality, units for consumers, points of the curve.
+std::string channel_section(const ChannelView& channel,
+                            const LogInfo& log,
+                            std::size_t index,
+                            const ChannelLayout& layout);
 
 }  // namespace libchar

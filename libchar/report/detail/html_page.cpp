@@ -47,7 +47,7 @@ std::string head(const PageParts& parts, const std::string& script) {
       policy_hash(script),
       policy_hash(parts.style));
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<!DOCTYPE html>\n<html lang=\"en\"{}>\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
       "name=\"referrer\" content=\"no-referrer\">\n"
@@ -56,6 +56,7 @@ std::string head(const PageParts& parts, const std::string& script) {
       "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and "
       "@kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both "
       "follows.\n\n{}-->\n</head>\n",
+      parts.dark ? " class=\"themed\"" : "",
       policy,
       version(),
       html_text(parts.title),
@@ -98,13 +99,13 @@ std::string settings_details(const Json& document) {
 std::string warnings_part(const Warnings& warnings) {
   std::string out = "<h3>Repairs and warnings</h3>\n";
   if (warnings.empty()) return out + "<p>None.</p>\n";
-  out += "<table>\n" + table_head({"Kind", "What", "Count", "First places"});
+  out += "<div class=\"wide\"><table>\n" + table_head({"Kind", "What", "Count", "First places"});
   for (const Warning& w : warnings.list()) {
     std::string places;
     for (const std::string& place : w.places) places += (places.empty() ? "" : ", ") + place;
     out += table_row({w.code, w.message, count_text(w.count), places});
   }
-  return out + "</tbody></table>\n";
+  return out + "</tbody></table></div>\n";
 }
 
 std::string html_page(const PageParts& parts, const std::string& body, const std::string& data) {

@@ -18,6 +18,7 @@ struct PageParts {
   std::string subject;  ///< of what: a file's or scene's name, untrusted
   std::string script;   ///< goes behind page_common.js
   std::string style;
+  bool dark = false;  ///< its scripts and styles have colours for a dark screen
 };
 
 /// The whole page: `body` is HTML, `data` the document for its script (json_in_script).

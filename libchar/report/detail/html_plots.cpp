@@ -9,10 +9,14 @@
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
 namespace {
+
+// More curves than these would hide each other's intervals; page.js draws alike.
+constexpr std::size_t kShadedChannels = 3;
 
 std::string spectrum_title(const Spectrum& s) {
   const char* sides = s.sides == Sides::one ? "One-sided" : "Two-sided";
@@ -60,7 +64,7 @@ std::string spectrum_caption(const Spectrum& s) {
       "on the "
       "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean "
       "was removed. "
-      "Line: fitted model. Dashed: its terms.",
+      "Line: fitted model. Dashed: its terms. Grey: left out of the fit, described only.",
       count_text(s.segments),
       s.segments == 1 ? "" : "s",
       count_text(s.segment),
@@ -71,22 +75,84 @@ std::string spectrum_caption(const Spectrum& s) {
 }  // namespace
 
 std::string plot_figure(const char* kind,
-                        std::size_t index,
+                        const std::vector<std::size_t>& indices,
                         const PlotText& text,
-                        const std::string& channel) {
+                        const std::string& of) {
+  std::string all;
+  for (const std::size_t index : indices) all += (all.empty() ? "" : ",") + std::to_string(index);
   return fmt::format(
-      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-axis=\"{2}\" "
-      "data-unit=\"{3}\">\n<h3>{4}</h3>\n"
-      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{5} of "
-      "{6}\"></canvas></div>\n<figcaption>{7}</figcaption>\n</figure>\n",
+      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-channels=\"{2}\" "
+      "data-axis=\"{3}\" data-unit=\"{4}\">\n<h3>{5}</h3>\n"
+      "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{6} of "
+      "{7}\"></canvas></div>\n<figcaption>{8}</figcaption>\n</figure>\n",
       kind,
-      index,
+      indices.front(),
+      all,
       html_attribute(text.axis),
       html_attribute(text.unit),
       html_text(text.title),
       html_attribute(text.title),
-      html_attribute(channel),
+      html_attribute(of),
       html_text(text.caption));
+}
+
+std::string plot_figure(const char* kind,
+                        std::size_t index,
+                        const PlotText& text,
+                        const std::string& channel) {
+  return plot_figure(kind, std::vector<std::size_t>{index}, text, channel);
+}
+
+std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo& log) {
+  const ChannelResult& c = *view.result;
+  if (c.trace.low.size() < 2) return "";
+  const std::string what =
+      c.trace.block == 1
+          ? "Every sample."
+          : fmt::format(
+                "Least and largest value of every {} samples{}.",
+                count_text(c.trace.block),
+                log.time.rate_hz > 0
+                    ? " (" + duration_text(static_cast<double>(c.trace.block) / log.time.rate_hz) +
+                          ")"
+                    : "");
+  const std::string marked =
+      view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
+  return plot_figure(
+      "trace", index, {c.channel.name, "", view.trace_unit, what + marked}, c.channel.name);
+}
+
+std::string group_plot(const CharacterizationView& view, const ChannelGroup& group) {
+  std::vector<std::size_t> drawn;
+  bool shaped = false, events = false;
+  for (const std::size_t i : group.channels) {
+    if (view.channels[i].draws_allan) drawn.push_back(i);
+    const auto& fit = view.channels[i].result->fit;
+    events = events || (fit && !fit->events.empty());
+    shaped = shaped || (view.channels[i].draws_allan && view.channels[i].plain_from_s > 0);
+  }
+  if (drawn.empty()) return "";
+  const DeviationType type = view.channels[drawn[0]].result->allan.type;
+  std::string caption = drawn.size() <= kShadedChannels
+                            ? "Points: measured, hollow where unreliable; shaded: 95 % intervals; "
+                              "lines: fitted models."
+                            : "Lines: measured. A click on a name hides its curve.";
+  if (events)
+    caption +=
+        " Steps, warm-up and ramps that were taken out are in what was measured, not in the "
+        "models.";
+  if (shaped)
+    caption +=
+        " Grey on the left, a shade for each channel: averaging times at which a filter or what "
+        "lies "
+        "outside the band shapes its curve too.";
+  return plot_figure("group",
+                     drawn,
+                     {std::string(deviation_row(type).title),
+                      std::string(name_of(type)),
+                      shown_unit(group.unit),
+                      caption},
+                     group.title.empty() ? "these channels" : group.title);
 }
 
 std::string curve_plots(const ChannelView& view, std::size_t index) {
@@ -98,10 +164,11 @@ std::string curve_plots(const ChannelView& view, std::size_t index) {
                        index,
                        {std::string(deviation_row(c.allan.type).title),
                         std::string(name_of(c.allan.type)),
-                        view.unit.empty() ? "U" : view.unit,
+                        view.shown_unit,
                         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "
                         "fewer than 5 degrees of freedom make them unreliable. Line: fitted model. "
-                        "Dashed: its terms; marked: where each coefficient is read off."},
+                        "Dashed: its terms; marked: where each coefficient is read off. "
+                        "Grey: outside the band in which the terms were fitted."},
                        name);
   if (view.draws_spectrum)
     out += plot_figure("spectrum",

@@ -1,5 +1,7 @@
 #include "libchar/report/detail/html_tables.hpp"
 
+#include <fmt/format.h>
+
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
@@ -17,6 +19,26 @@ std::string table_head(const std::vector<std::string>& cells) {
   std::string out = "<thead><tr>";
   for (const std::string& cell : cells) out += "<th scope=\"col\">" + html_text(cell) + "</th>";
   return out + "</tr></thead>\n<tbody>\n";
+}
+
+std::string card_cell(std::string_view label, const std::string& html, std::string_view css_class) {
+  return fmt::format("<td{}{}{} data-label=\"{}\">{}</td>",
+                     css_class.empty() ? "" : " class=\"",
+                     css_class,
+                     css_class.empty() ? "" : "\"",
+                     html_attribute(label),
+                     html);
+}
+
+std::string folded(const std::string& summary, const std::string& body, bool open) {
+  return fmt::format(
+      "<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "", summary, body);
+}
+
+std::string rating_badge(Rating rating) {
+  const char* sign = rating == Rating::good ? "✓" : rating == Rating::caution ? "!" : "✗";
+  return fmt::format(
+      "<span class=\"badge {}\">{} {}</span>", name_of(rating), sign, rating_word(rating));
 }
 
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {

@@ -3,7 +3,7 @@
 //
 //   white         Q/sqrt(dt) w_t                     flicker   B (1 - z^-1)^(-1/2) w_t
 //   random walk   x_t = x_{t-1} + K sqrt(dt) w_t     quantization   Qz (w_t - w_{t-1})/dt
-//   ramp          R t
+//   ramp          R t                                Gauss-Markov   y_t = phi y_{t-1} + sigma sqrt(1 - phi^2) w_t, phi = exp(-dt/tau)
 //
 // Band limited: continuous white noise of two-sided density Q^2 behind a first-order low-pass of
 // corner f_c is an Ornstein-Uhlenbeck process of variance Q^2 pi f_c; its samples are exactly
@@ -48,6 +48,16 @@ void check(const NoiseDesign& design) {
              shortest(value),
              "");
   }
+  const bool process =
+      std::isfinite(design.gauss_markov_sigma) && design.gauss_markov_sigma >= 0 &&
+      (design.gauss_markov_sigma == 0 ||
+       (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
+  if (!process)
+    refuse(
+        "a Gauss-Markov process needs a finite standard deviation, not negative, and a positive "
+        "correlation time",
+        shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s),
+        "");
   if (design.bandwidth_hz && !(std::isfinite(*design.bandwidth_hz) && *design.bandwidth_hz > 0))
     refuse(
         "the bandwidth must be positive", shortest(*design.bandwidth_hz), "leave it out for none");
@@ -63,7 +73,7 @@ void check(const NoiseDesign& design) {
     refuse("the truncated filter needs at least one coefficient", "0", "");
 }
 
-/// Continuous white noise behind a low-pass, at the samples.
+/// A first-order Gauss-Markov process at the samples: continuous white noise behind a low-pass is one.
 struct FilteredWhite {
   DeviateStream deviates;
   double pole, drive, value;
@@ -78,6 +88,12 @@ struct Flicker {
   DeviateStream deviates;
   double level;
   std::variant<FlickerStream, TruncatedKasdin> filter;
+};
+
+/// Differences of flicker.
+struct FlickerPhase {
+  Flicker phase;
+  double before = 0;
 };
 
 struct Walk {
@@ -117,6 +133,15 @@ void add_term(Flicker& flicker, Out out, Scratch drawn) {
   flicker.deviates.fill_normal(drawn);
   std::visit([drawn](auto& filter) { filter.run(drawn); }, flicker.filter);
   for (std::size_t t = 0; t < out.size(); ++t) out[t] += flicker.level * drawn[t];
+}
+
+void add_term(FlickerPhase& noise, Out out, Scratch drawn) {
+  noise.phase.deviates.fill_normal(drawn);
+  std::visit([drawn](auto& filter) { filter.run(drawn); }, noise.phase.filter);
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    out[t] += noise.phase.level * (drawn[t] - noise.before);
+    noise.before = drawn[t];
+  }
 }
 
 void add_term(Walk& walk, Out out, Scratch drawn) {
@@ -168,9 +193,37 @@ FilteredWhite make_filtered_white(const NoiseDesign& design,
           deviation * start.normal()};
 }
 
+FilteredWhite make_gauss_markov(const NoiseDesign& design,
+                                std::uint64_t seed,
+                                std::uint64_t sensor) {
+  const double x = 1 / (design.rate_hz * design.gauss_markov_tau_s);
+  DeviateStream deviates({seed, sensor, Purpose::gauss_markov});
+  const double first = design.gauss_markov_sigma * deviates.normal();
+  return {std::move(deviates),
+          std::exp(-x),
+          design.gauss_markov_sigma * std::sqrt(-std::expm1(-2 * x)),
+          first};
+}
+
+FlickerPhase make_flicker_phase(const NoiseDesign& design,
+                                std::uint64_t seed,
+                                std::uint64_t sensor) {
+  const FlickerFilter filter = design_flicker(design.length);
+  DeviateStream start({seed, sensor, Purpose::flicker_phase_start});
+  FlickerPhase out{{DeviateStream({seed, sensor, Purpose::flicker_phase}),
+                    design.flicker_phase * design.rate_hz,
+                    FlickerStream(filter, start)}};
+  double first = out.phase.deviates.normal();
+  std::visit([&first](auto& stream) { stream.run(std::span(&first, 1)); }, out.phase.filter);
+  out.before = first;
+  return out;
+}
+
 }  // namespace
 
 struct NoiseGenerator::State {
+  std::optional<FlickerPhase> flicker_phase;
+  std::optional<FilteredWhite> gauss_markov;
   std::optional<FilteredWhite> filtered_white;
   std::optional<PlainWhite> white;
   std::optional<Flicker> flicker;
@@ -210,6 +263,8 @@ NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, st
     state_->quantization = Quantization{std::move(deviates), qz * rate, before};
     state_->quantization_after = band_limited;
   }
+  if (design.flicker_phase > 0) state_->flicker_phase = make_flicker_phase(design, seed, sensor);
+  if (design.gauss_markov_sigma > 0) state_->gauss_markov = make_gauss_markov(design, seed, sensor);
   if (const double r = coefficient(Term::ramp); r != 0) state_->ramp = Ramp{r, rate};
   state_->low_pass_start = state_->past_in_low_pass(design, stream(Purpose::white_start));
 }
@@ -244,7 +299,8 @@ bool NoiseGenerator::adds_after() const {
 }
 
 bool NoiseGenerator::adds_before() const {
-  return state_->white || state_->flicker || state_->walk || state_->ramp ||
+  return state_->white || state_->flicker || state_->walk || state_->gauss_markov ||
+         state_->flicker_phase || state_->ramp ||
          (state_->quantization && !state_->quantization_after);
 }
 
@@ -259,6 +315,8 @@ void NoiseGenerator::add(std::span<double> before_low_pass, std::span<double> af
     if (s.white) add_term(*s.white, before, scratch);
     if (s.flicker) add_term(*s.flicker, before, scratch);
     if (s.walk) add_term(*s.walk, before, scratch);
+    if (s.flicker_phase) add_term(*s.flicker_phase, before, scratch);
+    if (s.gauss_markov) add_term(*s.gauss_markov, before, scratch);
     if (s.ramp) add_term(*s.ramp, before, scratch);
     if (s.filtered_white) add_term(*s.filtered_white, after, scratch);
     if (s.quantization) add_term(*s.quantization, s.quantization_after ? after : before, scratch);

@@ -1,5 +1,7 @@
 // y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))   [RV 2.2-2.6]
-//   alpha = N(alpha0, s_a) (1 + tc1 dT + tc2 dT^2)        beta = N(beta0, s_b) + tc1 dT + tc2 dT^2
+//   alpha = N(alpha0, s_a) (1 + tc1 dT + tc2 dT^2)        beta = N(beta0, s_b) + tc1 dL + tc2 dL^2 + tc3 dL^3
+//   L' = (T - L) / lag, L = T at the first sample (no lag: L = T); dT, dL about the reference
+//   with deterministic terms: beta + steps + size exp(-t / tau) + slope t
 //   c1 = quadratic (1 + tc dT), c2 = cubic (1 + tc dT), both of the raw x (docs/models.md)
 //   low_pass: y_k = a y_{k-1} + (1 - a) u_k, a = exp(-2 pi bandwidth / rate)
 // Known answers, block by block: fixtures/known/fusion/sensor_model.csv.
@@ -22,6 +24,9 @@ NoiseDesign noise_design(const SensorModel& m, const ChainOptions& options) {
   for (std::size_t t = 0; t < kTerms; ++t) design.coefficient[t] = simulated_value(m.noise[t]);
   if (m.white_hold_s) design.coefficient[static_cast<std::size_t>(Term::white)] = 0;
   if (m.flicker_hold_s) design.coefficient[static_cast<std::size_t>(Term::flicker)] = 0;
+  design.flicker_phase = m.flicker_phase;
+  design.gauss_markov_sigma = m.gauss_markov.sigma;
+  design.gauss_markov_tau_s = m.gauss_markov.tau_s;
   design.rate_hz = options.rate_hz;
   design.bandwidth_hz = m.bandwidth_hz;
   if (m.noise_sampling == NoiseSampling::band_limited) design.sampling = Sampling::band_limited;
@@ -59,6 +64,7 @@ class HeldNoise {
                             const ChainOptions& options) {
     NoiseDesign design = noise_design(m, options);
     design.coefficient = {};
+    design.gauss_markov_sigma = design.flicker_phase = 0;
     design.coefficient[static_cast<std::size_t>(term)] = simulated_value(m[term]);
     design.rate_hz = 1 / hold_s;
     design.bandwidth_hz = std::nullopt;
@@ -86,6 +92,8 @@ struct SensorChain::State {
   std::optional<ShapeFilter> shaped;  ///< takes the noise through the model's shape
   double low_pass_memory = 0, low_pass_state = 0;
   bool low_pass_started = false;
+  std::optional<double> lagged_temperature;
+  std::uint64_t samples_done = 0;
   std::vector<double> after;
 
   State(const SensorModel& m, const ChainOptions& o)
@@ -112,27 +120,55 @@ struct SensorChain::State {
   struct Coefficients {
     double scale, quadratic, cubic, bias;
   };
-  Coefficients at(double dt) const {
+  Coefficients at(double dt, double lagged) const {
     const SensorModel& m = model;
     return {
         draw.scale_factor * (1 + dt * (m.scale_factor.tc1_per_k + dt * m.scale_factor.tc2_per_k2)),
         m.nonlinearity.quadratic * (1 + m.nonlinearity.quadratic_tc_per_k * dt),
         m.nonlinearity.cubic * (1 + m.nonlinearity.cubic_tc_per_k * dt),
-        draw.bias + dt * (m.bias.tc1_per_k + dt * m.bias.tc2_per_k2)};
+        draw.bias + lagged * (m.bias.tc1_per_k +
+                              lagged * (m.bias.tc2_per_k2 + lagged * m.bias.tc3_per_k3))};
   }
   static double deterministic(const Coefficients& c, double x) {
     return x * (c.scale + x * (c.quadratic + x * c.cubic)) + c.bias;
   }
 
-  void deterministic_blocks(std::span<double> y, std::span<const double> temperature) const {
+  double lag(double temperature) {
+    if (!(model.bias.lag_s > 0)) return temperature;
+    double& state =
+        lagged_temperature ? *lagged_temperature : lagged_temperature.emplace(temperature);
+    if (!std::isnan(temperature))
+      state -= std::expm1(-1 / (model.bias.lag_s * options.rate_hz)) * (temperature - state);
+    return state;
+  }
+
+  void deterministic_blocks(std::span<double> y, std::span<const double> temperature) {
     if (temperature.empty()) {
-      const Coefficients c = at(0);
+      const Coefficients c = at(0, 0);
       if (c.scale == 1 && c.quadratic == 0 && c.cubic == 0 && c.bias == 0) return;
       for (double& v : y) v = deterministic(c, v);
       return;
     }
+    const double reference = model.reference_temperature_degc;
     for (std::size_t i = 0; i < y.size(); ++i)
-      y[i] = deterministic(at(temperature[i] - model.reference_temperature_degc), y[i]);
+      y[i] = deterministic(at(temperature[i] - reference, lag(temperature[i]) - reference), y[i]);
+  }
+
+  // Steps, warm-ups and ramps by the time since the first sample.
+  void add_deterministic_terms(std::span<double> y) {
+    using Kind = DeterministicTerm::Kind;
+    const auto first = static_cast<double>(samples_done);
+    samples_done += y.size();
+    if (!options.deterministic) return;
+    for (const DeterministicTerm& term : model.deterministic) {
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        const double index = first + static_cast<double>(i), t = index / options.rate_hz;
+        if (term.kind == Kind::step)
+          y[i] += index >= std::round(term.at_s * options.rate_hz) ? term.size : 0;
+        if (term.kind == Kind::warm_up) y[i] += term.size * std::exp(-t / term.tau_s);
+        if (term.kind == Kind::ramp) y[i] += term.per_s * t;
+      }
+    }
   }
 
   // The level that the low-pass would have reached before the first sample: the signal's, and the
@@ -173,6 +209,7 @@ void SensorChain::run(std::span<double> samples, std::span<const double> tempera
   State& s = *state_;
   if (samples.empty()) return;
   s.deterministic_blocks(samples, temperature_degc);
+  s.add_deterministic_terms(samples);
   const double first_signal = samples[0];
   if (s.shaped)
     s.shaped->add(samples);

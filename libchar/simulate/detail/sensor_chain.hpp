@@ -15,6 +15,7 @@ struct ChainOptions {
   std::uint64_t seed = 1;
   std::uint64_t sensor = 0;              ///< keys the random streams of this device
   bool low_pass_starts_at_zero = false;  ///< as published; else in its steady state
+  bool deterministic = false;            ///< with the model's deterministic terms
 };
 
 class SensorChain {

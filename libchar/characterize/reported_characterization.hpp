@@ -10,7 +10,7 @@
 
 namespace libchar {
 
-struct ChannelSummary {
+struct ReportedChannel {
   std::string name, unit;
   bool fitted = false;
   Coefficients term;
@@ -21,14 +21,14 @@ struct ChannelSummary {
   std::size_t events = 0;  ///< taken out before the fit
 };
 
-struct CharacterizationSummary {
+struct ReportedCharacterization {
   std::string file;       ///< of the report
   std::string format;     ///< "characterization", "pooled-runs", "noise-fit"
   std::string program;    ///< version of the program that wrote it
   std::string recording;  ///< what was characterized, in words
-  std::vector<ChannelSummary> channels;
+  std::vector<ReportedChannel> channels;
 
-  const ChannelSummary* find(std::string_view name) const;
+  const ReportedChannel* find(std::string_view name) const;
 };
 
 /// The file that a path means: the report.json or runs.json in a folder, or the path itself.
@@ -39,8 +39,8 @@ bool is_characterization_report(const std::string& path);
 
 /// Reads report.json of characterize, runs.json of pooled runs, or what `fit` prints as JSON; of a folder, the one in it. Throws
 /// Error(input) with file and key.
-CharacterizationSummary read_characterization_report(const std::string& path);
-CharacterizationSummary parse_characterization_report(std::string_view text,
-                                                      const std::string& path);
+ReportedCharacterization read_characterization_report(const std::string& path);
+ReportedCharacterization parse_characterization_report(std::string_view text,
+                                                       const std::string& path);
 
 }  // namespace libchar

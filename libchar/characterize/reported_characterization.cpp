@@ -1,4 +1,4 @@
-#include "libchar/characterize/characterization_summary.hpp"
+#include "libchar/characterize/reported_characterization.hpp"
 
 #include <fmt/format.h>
 
@@ -66,8 +66,8 @@ std::string read_shape(const MapReader& map) {
   return taps > 0 ? fmt::format("{} of {}", kind, taps) : kind;
 }
 
-ChannelSummary read_channel(const MapReader& map) {
-  ChannelSummary out;
+ReportedChannel read_channel(const MapReader& map) {
+  ReportedChannel out;
   out.name = map.text("name");
   out.unit = map.text_or("unit", "");
   out.fitted = map.has("goodness");
@@ -91,7 +91,7 @@ std::string recording_of(const MapReader& map) {
   return input.size() == 1 ? first : fmt::format("{} and {} more", first, input.size() - 1);
 }
 
-CharacterizationSummary read_summary(const Document& document, const std::string& file) {
+ReportedCharacterization read_summary(const Document& document, const std::string& file) {
   const std::string format = format_of(document);
   if (!is_known(format))
     throw Error({ErrorKind::input,
@@ -102,7 +102,7 @@ CharacterizationSummary read_summary(const Document& document, const std::string
                  format,
                  "the report.json of a characterization is one"});
   check_format(document, file, format, 1);
-  CharacterizationSummary out;
+  ReportedCharacterization out;
   out.file = file;
   out.format = format;
   const MapReader map = open_level(document, file, "");
@@ -121,8 +121,8 @@ CharacterizationSummary read_summary(const Document& document, const std::string
 
 }  // namespace
 
-const ChannelSummary* CharacterizationSummary::find(std::string_view name) const {
-  for (const ChannelSummary& c : channels)
+const ReportedChannel* ReportedCharacterization::find(std::string_view name) const {
+  for (const ReportedChannel& c : channels)
     if (c.name == name) return &c;
   return nullptr;
 }
@@ -145,12 +145,12 @@ bool is_characterization_report(const std::string& path) {
   }
 }
 
-CharacterizationSummary parse_characterization_report(std::string_view text,
-                                                      const std::string& path) {
+ReportedCharacterization parse_characterization_report(std::string_view text,
+                                                       const std::string& path) {
   return read_summary(parse_json_document(text, path), path);
 }
 
-CharacterizationSummary read_characterization_report(const std::string& path) {
+ReportedCharacterization read_characterization_report(const std::string& path) {
   const std::string file = report_file(path);
   return parse_characterization_report(read_document_text(file), file);
 }

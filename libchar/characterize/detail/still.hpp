@@ -1,0 +1,47 @@
+#pragma once
+// The stretch of a log that is analysed where only rest is wanted: as the caller says, or the longest in which no channel moves.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/fit/events.hpp"
+
+namespace libchar {
+
+/// Means of a record of any length in constant memory: at most twice `most`, of 1, 2, 4… samples each. Missing samples are left out; a
+/// mean of none is the one before.
+class MeansOfRecord {
+ public:
+  void push(std::span<const double> samples);
+  EventSeries series(double rate_hz) const;
+  /// share of the samples
+  double missing() const;
+
+ private:
+  void end_mean();
+  std::vector<double> mean_;
+  double sum_ = 0;
+  std::uint64_t in_mean_ = 0, present_ = 0, per_mean_ = 1, samples_ = 0, missing_ = 0;
+};
+
+/// Sees a whole log and says which stretch of it is still.
+class StillSearch final : public BlockSink {
+ public:
+  void begin(const LogInfo& so_far) override;
+  void block(const SampleBlock& samples) override;
+  /// Throws Error(numeric) where the log moves throughout, or cannot be searched.
+  Stretch finish(const LogInfo& log) const;
+
+ private:
+  std::vector<MeansOfRecord> means_;
+};
+
+/// The stretch that `options` ask for is read: of a window in the options, Error(usage); ends that are none, Error(usage).
+void check_still(const StillOptions& still, const ReadOptions& reading);
+
+/// "Only the stretch from 38.6 to 186 s was analysed, the longest in which nothing moves."
+std::string stretch_sentence(const Stretch& stretch);
+
+}  // namespace libchar

@@ -1,0 +1,120 @@
+#include "libchar/characterize/summary.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "libchar/characterize/characterization_view.hpp"
+#include "libchar/report/characterization_text.hpp"
+#include "tests/report/synthetic.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+ChannelResult clean(const std::string& unit = "deg/s") {
+  return test::synthetic_channel("x", unit, {}, 1);
+}
+
+Event step_of(double size, double at_s) {
+  Event event;
+  event.size = size;
+  event.at_s = at_s;
+  return event;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "summary: a channel that nothing speaks against is good, its terms in the field's units") {
+  const ChannelResult c = clean();
+  const ChannelSummary summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::good);
+  CHECK(summary.spoils.empty());
+  CHECK_THAT(summary.sentence,
+             StartsWith("Angle random walk N 0.3") && Contains(" deg/√h [") &&
+                 Contains(", bias instability B ") && Contains(" deg/h [") &&
+                 Contains(", rate random walk K ") && Contains(" deg/h/√h ["));
+  CHECK_THAT(summary_of(clean("m/s^2"), "m/s²").sentence,
+             StartsWith("Velocity random walk N ") && Contains("acceleration random walk K"));
+  CHECK_THAT(summary_of(clean(""), "").sentence,
+             StartsWith("White noise N ") && Contains(" U·√s ["));
+}
+
+TEST_CASE("summary: a ratio has no unit to print") {
+  const std::string sentence = summary_of(clean("1"), "1").sentence;
+  CHECK_THAT(sentence, Contains(" √s [") && Contains(" 1/√s [") && !Contains("1·√s"));
+}
+
+TEST_CASE("summary: what was taken out, and what is doubtful, is never called good") {
+  ChannelResult c = clean();
+  c.fit->events = {step_of(0.1, 12)};
+  ChannelSummary summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::caution);
+  CHECK_THAT(summary.sentence, Contains("But: a step was taken out."));
+  c.fit->events.push_back(step_of(-0.1, 20));
+  c.fit->events.push_back(step_of(-0.1, 30));
+  c.fit->events.back().kind = EventKind::warm_up;
+  CHECK_THAT(summary_of(c, "deg/s").sentence, Contains("2 steps and a warm-up were taken out."));
+  c = clean();
+  c.fit->term[1].status = c.fit->term[2].status = Status::undetermined;
+  summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::caution);
+  CHECK_THAT(summary.sentence, Contains("B and K undetermined"));
+}
+
+TEST_CASE("summary: a misfit, a bad goodness, no fit are not to be used") {
+  ChannelResult c = clean();
+  for (Coefficient& term : c.fit->term)
+    if (term.value) term.status = Status::misfit;
+  ChannelSummary summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::bad);
+  CHECK_THAT(summary.sentence, Contains("Do not rely on them: the noise terms do not describe"));
+  c = clean();
+  c.fit->goodness.p = 1e-5;
+  CHECK(summary_of(c, "deg/s").rating == Rating::bad);
+  c = clean();
+  c.fit.reset();
+  c.problems = {"The sensor moves.", "no noise fit: the recording holds a signal throughout"};
+  summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::bad);
+  CHECK_THAT(summary.sentence,
+             StartsWith("No noise coefficients: the recording holds a signal throughout.") &&
+                 Contains(" The sensor moves."));
+}
+
+TEST_CASE(
+    "summary: motion and changes of strength are phrases; their sentences stand with the channel") {
+  ChannelResult c = clean();
+  c.motion.moving_s = {{10, 20}, {30, 40}};
+  c.motion.changes.resize(1);
+  c.motion.changes[0].at_s = 100;
+  c.motion.changes[0].factor = 1.75;
+  c.motion.sentences = c.problems = {"The sensor was moved or shaken in 2 stretches."};
+  const ChannelSummary summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::caution);
+  CHECK_THAT(
+      summary.sentence,
+      Contains("But: moved or shaken in 2 stretches; the noise is 1.75 times as strong from 100") &&
+          !Contains("The sensor was"));
+}
+
+TEST_CASE("summary: where the band is cut the sentence says up to where the terms hold") {
+  ChannelResult c = clean();
+  c.fit->band.whole = false;
+  c.fit->band.top_hz = 12.5;
+  CHECK_THAT(summary_of(c, "deg/s").sentence, Contains(" They hold below 12.5 Hz."));
+  CHECK_THAT(summary_of(clean(), "deg/s").sentence, !Contains("hold below"));
+}
+
+TEST_CASE("summary: the terminal says the sentence of the view") {
+  const Characterization result = test::synthetic_imu();
+  const CharacterizationView view = characterization_view(result);
+  const std::string text = characterization_text(view);
+  for (const ChannelView& channel : view.channels)
+    CHECK_THAT(text, Contains(channel.summary.sentence));
+  CHECK(view.rating == Rating::bad);  // acc_z
+  REQUIRE(view.groups.size() == 2);
+  CHECK(view.groups[0].title == "Angular rate");
+  CHECK(view.groups[1].channels == std::vector<std::size_t>{3, 4, 5});
+}
