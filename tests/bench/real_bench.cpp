@@ -45,7 +45,7 @@ std::string text(const Coefficient& c) {
                      *c.value,
                      c.ci95.low,
                      c.ci95.high,
-                     c.status == Status::detected ? "" : fmt::format(" {}", enum_name(c.status)));
+                     c.status == Status::detected ? "" : fmt::format(" {}", name_of(c.status)));
 }
 
 void print_fit(const std::string& name, const NoiseFit& fit) {
