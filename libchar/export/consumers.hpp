@@ -1,6 +1,6 @@
 #pragma once
 // Which number goes where: the same coefficients in the units and under the names of the programs
-// and papers that ask for them (docs/exports.md). Only Q, K and B are exchanged;
+// and papers that ask for them (docs/exports.md). Only N, K and B are exchanged;
 // everything else follows by the formula shown. The rows: detail/consumer_rows.hpp.
 
 #include <string>
@@ -13,7 +13,7 @@ namespace libchar {
 struct ConsumerNumber {
   std::string consumer;  ///< "Kalibr, EuRoC, OpenVINS"
   std::string key;       ///< "gyroscope_noise_density"
-  std::string formula;   ///< "Q"
+  std::string formula;   ///< "N"
   std::string value;     ///< to be read, "≤" in front when it is an upper limit
   std::string unit;
 };

@@ -13,9 +13,6 @@ namespace {
 
 using enum ExportNeeds;
 
-// Of the targets' `terms`.
-constexpr std::string_view kLetters[kTerms] = {"Q", "B", "K", "Qz", "R"};
-
 std::string channels_of(const SensorGroup& group) {
   std::string text;
   for (const SensorModel* m : group.all)
@@ -75,7 +72,7 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
 }
 
 // What is known of the sensors and gets lost: terms that the consumer has no word for, and the
-// low-pass, behind which samples scatter less than Q sqrt(f) and neighbours are correlated.
+// low-pass, behind which samples scatter less than N sqrt(f) and neighbours are correlated.
 std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGroup& group) {
   std::vector<std::string> out;
   const auto among = [&](const auto& concerned) {
@@ -85,7 +82,7 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
     return channels;
   };
   for (std::size_t t = 0; t < kTerms; ++t) {
-    if (target.terms.find(kLetters[t]) != std::string_view::npos) continue;
+    if (target.terms.find(kTermNames[t].letter) != std::string_view::npos) continue;
     const std::string channels =
         among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
     if (!channels.empty())

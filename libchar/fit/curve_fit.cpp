@@ -488,6 +488,27 @@ void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit
        left_out});
 }
 
+/// Does the fit still say something of each of the three terms that the other says something of?
+bool says_as_much(const NoiseFit& fit, const NoiseFit& other) {
+  for (const Term t : {Term::white, Term::flicker, Term::walk})
+    if (other[t].value && !fit[t].value) return false;
+  return true;
+}
+
+/// Points of the fast end that stand within an octave, after those left out.
+std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) {
+  const std::size_t n = curve.x.size();
+  std::size_t count = 0;
+  while (left_out + count < n) {
+    const double first = curve.is_allan ? curve.x[left_out] : curve.x[n - 1 - left_out];
+    const double at =
+        curve.is_allan ? curve.x[left_out + count] : curve.x[n - 1 - left_out - count];
+    if (std::max(first / at, at / first) > 1.9) break;
+    ++count;
+  }
+  return count;
+}
+
 /// Half of the points at least, and more than there are terms.
 std::size_t fewest_points(std::size_t points, const TermSet& offered) {
   return std::max((points + 1) / 2, count_of(offered) + 3);
@@ -509,6 +530,15 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
        ++left_out) {
     NoiseFit part = fit_points(slow_part(curve, left_out), offered, options, 1);
     if (part.goodness.p < kDescribed) continue;
+    // An octave more takes out the bias that "just passes" leaves.
+    const std::size_t further = left_out + points_in_octave(curve, left_out);
+    if (points - std::min(further, points) >= fewest) {
+      NoiseFit safer = fit_points(slow_part(curve, further), offered, options, 1);
+      if (safer.goodness.p >= kDescribed && says_as_much(safer, part)) {
+        part = std::move(safer);
+        left_out = further;
+      }
+    }
     report_left_out(curve, left_out, part);
     return part;
   }

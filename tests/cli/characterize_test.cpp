@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "libchar/core/json.hpp"
 #include "tests/support/run.hpp"
@@ -192,6 +193,17 @@ TEST_CASE("allan as JSON has the keys that scripts rely on") {
 }
 
 TEST_CASE("allan of phase data is the allan of its rate") {
+  // Intervals are those of the noise that was fitted, and a clock's phase is offered more kinds of it.
+  const auto deviations = [](const std::string& table) {
+    std::istringstream lines(table);
+    std::string line, out;
+    while (std::getline(lines, line)) {
+      std::size_t end = 0;
+      for (int column = 0; column < 4; ++column) end = line.find(',', end) + 1;
+      out += line.substr(0, end) + "\n";
+    }
+    return out;
+  };
   const test::TemporaryFolder folder;
   std::string rate, phase = "0\n";
   long long sum = 0;
@@ -222,7 +234,8 @@ TEST_CASE("allan of phase data is the allan of its rate") {
                             "--data",
                             "phase"});
   REQUIRE(a.code == 0);
-  CHECK(a.out == b.out);
+  CHECK(deviations(a.out).size() > 100);
+  CHECK(deviations(a.out) == deviations(b.out));
 }
 
 TEST_CASE("options that cannot be followed are said, not swallowed") {

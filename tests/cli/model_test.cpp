@@ -77,12 +77,12 @@ TEST_CASE("model --list names every target with its convention") {
   const auto list = test::run({"model", "--list"});
   CHECK(list.code == 0);
   for (const char* part :
-       {"kalibr", "VINS-Mono, VINS-Fusion", "gyr_n = Q sqrt(2 f)", "px4", "needs any sensor"})
+       {"kalibr", "VINS-Mono, VINS-Fusion", "gyr_n = N sqrt(2 f)", "px4", "needs any sensor"})
     CHECK_THAT(list.out, Contains(part));
   const auto json = test::run({"model", "--list", "--json"});
   const Json document = parse_json(json.out, "stdout");
   CHECK(document["format"] == "model-targets");
-  CHECK(document["targets"].size() == 15);
+  CHECK(document["targets"].size() == 18);
   CHECK(document["targets"][0]["name"] == "kalibr");
 }
 

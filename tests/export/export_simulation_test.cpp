@@ -436,7 +436,7 @@ std::pair<double, double> vins_belief(double acc_n, double acc_w, double dt, int
   return {std::sqrt(vv), std::sqrt(bb)};
 }
 
-// What really happens: midpoint integration of samples with white noise Q, and of a bias that walks
+// What really happens: midpoint integration of samples with white noise N, and of a bias that walks
 // with K.
 std::pair<double, double> vins_truth(double q, double k, double dt, int n, std::uint64_t seed) {
   test::Gaussian gauss(seed);
@@ -459,7 +459,7 @@ std::pair<double, double> vins_truth(double q, double k, double dt, int n, std::
 }  // namespace
 
 TEST_CASE(
-    "simulated: VINS believes what is true with Q sqrt(2f) and K sqrt(f), and with nothing else") {
+    "simulated: VINS believes what is true with N sqrt(2f) and K sqrt(f), and with nothing else") {
   const double q = 2e-3, k = 1e-3, f = 200;
   const std::string file =
       exported("vins", test::imu({known(q), {}, known(k)}, {known(q), {}, known(k)}, f)).text;

@@ -59,15 +59,15 @@ TEST_CASE("trap 2: every real has a decimal point") {
   CHECK(has(exported("kalibr", models).text, "gyroscope_noise_density: 1.0e-05 "));
 }
 
-TEST_CASE("trap 3: VINS wants Q sqrt(2f) and K sqrt(f), and the derivation stands in the file") {
+TEST_CASE("trap 3: VINS wants N sqrt(2f) and K sqrt(f), and the derivation stands in the file") {
   const auto models = test::imu({known(2e-3), {}, known(1e-3)}, {known(2e-3), {}, known(1e-3)});
   const std::string text = exported("vins", models).text;
   CHECK(number_after(text, "acc_n") == Approx(0.04));
   CHECK(number_after(text, "acc_n") / 2e-3 ==
-        Approx(20));  // the factor by which Q itself is too small
+        Approx(20));  // the factor by which N itself is too small
   CHECK(number_after(text, "acc_w") == Approx(1e-3 * std::sqrt(200)));
   CHECK(has(text, "the midpoint integration takes the two"));
-  CHECK(has(text, "n = Q sqrt(2 f)"));
+  CHECK(has(text, "n = N sqrt(2 f)"));
   CHECK(has(text, "w = K sqrt(f)"));
 }
 

@@ -391,7 +391,7 @@ TEST_CASE("magnetometers and barometers where the consumer has a place for them"
 }
 
 TEST_CASE("flicker becomes the Gauss-Markov bias with the same maximum") {
-  // Q = 1e-3, B = 1e-4: white noise ends at Q^2 / (0.4413 B^2) = 226.6 s; the record at 1500 s.
+  // N = 1e-3, B = 1e-4: white noise ends at N^2 / (0.4413 B^2) = 226.6 s; the record at 1500 s.
   const auto m = test::model("gyr_x", "rad/s", {known(1e-3), known(1e-4), at_most(1e-7)});
   const PlacedModel placed{&m, 1};
   const GaussMarkov process = gauss_markov(placed, {});

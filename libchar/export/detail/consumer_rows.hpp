@@ -28,7 +28,7 @@ struct ConsumerRow {
   std::string_view key;     ///< "gyroscope_noise_density"
   Term term = Term::white;
   int power = 1;             ///< of the coefficient: 1 or 2
-  std::string_view formula;  ///< "Q·√(2f)"
+  std::string_view formula;  ///< "N·√(2f)"
   double (*factor)(const RowTimes&) = nullptr;
   std::string_view unit;            ///< "rad/s/√Hz"; "U" stands for the channel's own
   std::string_view unit_in_file{};  ///< where the file words it otherwise than `ascii_unit(unit)`

@@ -118,7 +118,7 @@ double positive(const std::optional<double>& value) {
 // white noise and the end of the record.
 double floor_tau(const SensorModel& m, double q, double b, double k, double record_s) {
   const double white_ends =
-      q * q / (2 * std::numbers::ln2 / std::numbers::pi * b * b);  // Q^2/tau = floor^2
+      q * q / (2 * std::numbers::ln2 / std::numbers::pi * b * b);  // N^2/tau = floor^2
   double tau = 0;
   if (k > 0 && q > 0)
     tau = std::numbers::sqrt3 * q / k;

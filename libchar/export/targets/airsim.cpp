@@ -71,7 +71,7 @@ ExportTarget airsim_target() {
       "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
       "settings.json",
       ExportNeeds::gyroscope_or_accelerometer,
-      "QK",
+      "NK",
       {.bias_tau = true},
       write_airsim};
 }

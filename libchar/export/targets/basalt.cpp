@@ -81,10 +81,10 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget basalt_target() {
   return {"basalt",
           "Basalt",
-          "continuous densities, though named std: Q and K, one for each axis",
+          "continuous densities, though named std: N and K, one for each axis",
           "calibration_imu.json",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {.older = true},
           write_basalt};
 }

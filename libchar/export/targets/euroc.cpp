@@ -36,10 +36,10 @@ Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget euroc_target() {
   return {"euroc",
           "EuRoC data sets",
-          "continuous densities: Q and K as for Kalibr",
+          "continuous densities: N and K as for Kalibr",
           "sensor.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {},
           write_euroc};
 }

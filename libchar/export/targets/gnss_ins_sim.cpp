@@ -105,7 +105,7 @@ ExportTarget gnss_ins_sim_target() {
       "m/s^2",
       "imu_err.py",
       ExportNeeds::gyroscope_and_accelerometer,
-      "QBK",
+      "NBK",
       {.magnetometer = true, .gauss_markov = true},
       write_gnss_ins_sim};
 }

@@ -49,10 +49,10 @@ Export write_gtsam(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget gtsam_target() {
   return {"gtsam",
           "GTSAM",
-          "continuous covariances: Q^2 and K^2",
+          "continuous covariances: N^2 and K^2",
           "imu_params.cpp",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {.gravity = true},
           write_gtsam};
 }

@@ -25,7 +25,7 @@ ExportTarget json_target() {
           "the sensor model itself, every key of its file; reads back",
           "model.json",
           ExportNeeds::any_sensor,
-          "QBKQzR",
+          "NBKQR",
           {.inflate = false, .low_pass = true, .status = true},
           write_json};
 }

@@ -28,11 +28,11 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget kalibr_target() {
   return {"kalibr",
           "Kalibr",
-          "continuous densities: Q in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
+          "continuous densities: N in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
           "m/s^3/sqrt(Hz); all > 0",
           "imu.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {.topic = true},
           write_kalibr};
 }

@@ -125,7 +125,7 @@ ExportTarget kf_gins_target() {
           "one correlation time in h",
           "imunoise.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QBK",
+          "NBK",
           {.gauss_markov = true},
           write_kf_gins};
 }

@@ -91,10 +91,10 @@ Export write_matlab(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget matlab_target() {
   return {"matlab",
           "MATLAB gyroparams, accelparams",
-          "two-sided densities (NoiseType double-sided): Q, K, and B itself",
+          "two-sided densities (NoiseType double-sided): N, K, and B itself",
           "imu_params.m",
           ExportNeeds::gyroscope_or_accelerometer,
-          "QBK",
+          "NBK",
           {.magnetometer = true},
           write_matlab};
 }

@@ -99,7 +99,7 @@ ExportTarget navego_target() {
       "correlation time in s",
       "imu_profile.m",
       ExportNeeds::gyroscope_and_accelerometer,
-      "QBK",
+      "NBK",
       {.gauss_markov = true},
       write_navego};
 }

@@ -51,10 +51,10 @@ Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget openvins_target() {
   return {"openvins",
           "OpenVINS",
-          "continuous densities: Q and K; OpenCV YAML",
+          "continuous densities: N and K; OpenCV YAML",
           "kalibr_imu_chain.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {.topic = true},
           write_openvins};
 }

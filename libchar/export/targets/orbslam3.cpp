@@ -53,10 +53,10 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget orbslam3_target() {
   return {"orbslam3",
           "ORB-SLAM3",
-          "continuous densities: Q and K, with the rate as a real number; OpenCV YAML",
+          "continuous densities: N and K, with the rate as a real number; OpenCV YAML",
           "imu_orbslam3.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QK",
+          "NK",
           {.older = true},
           write_orbslam3};
 }

@@ -71,11 +71,11 @@ Export write_pegasus(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget pegasus_target() {
   return {"pegasus",
           "Pegasus for Isaac Sim",
-          "continuous densities: Q, and a Gauss-Markov bias by its driving density and correlation "
+          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation "
           "time",
           "imu_config.py",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QBK",
+          "NBK",
           {.gauss_markov = true},
           write_pegasus};
 }

@@ -1,7 +1,7 @@
 // PX4 EKF2 and ArduPilot EK3: noise of the prediction step. A step dt adds (dt noise)^2 to the
-// variance of an angle or a velocity and (dt bias_noise)^2 to that of a bias; white noise adds Q^2
+// variance of an angle or a velocity and (dt bias_noise)^2 to that of a bias; white noise adds N^2
 // dt and a random walk K^2 dt:
-//   noise = Q / sqrt(dt),  bias_noise = K / sqrt(dt).
+//   noise = N / sqrt(dt),  bias_noise = K / sqrt(dt).
 
 #include <fmt/format.h>
 
@@ -80,10 +80,10 @@ Export write_px4(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget px4_target() {
   return {"px4",
           "PX4 EKF2, ArduPilot EK3",
-          "per filter step dt: Q / sqrt(dt), K / sqrt(dt); a lower bound, not a tuning",
+          "per filter step dt: N / sqrt(dt), K / sqrt(dt); a lower bound, not a tuning",
           "ekf_params.txt",
           ExportNeeds::gyroscope_or_accelerometer,
-          "QK",
+          "NK",
           {.filter_step = true},
           write_px4};
 }

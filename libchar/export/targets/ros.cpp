@@ -1,4 +1,4 @@
-// Covariances of sensor_msgs/Imu (and MagneticField), row by row: the variance of one sample, Q^2
+// Covariances of sensor_msgs/Imu (and MagneticField), row by row: the variance of one sample, N^2
 // f. A first element of -1 says that a quantity is not provided; a matrix of zeros would say that
 // its covariance is unknown.
 
@@ -67,10 +67,10 @@ Export write_ros(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget ros_target() {
   return {"ros",
           "ROS sensor_msgs",
-          "variance of a sample: Q^2 f on the diagonal, one for each axis",
+          "variance of a sample: N^2 f on the diagonal, one for each axis",
           "imu_covariance.yaml",
           ExportNeeds::gyroscope_or_accelerometer,
-          "Q",
+          "N",
           {.magnetometer = true},
           write_ros};
 }

@@ -74,11 +74,11 @@ Export write_rotors(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget rotors_target() {
   return {"rotors",
           "RotorS, PX4 Gazebo classic, UUV",
-          "continuous densities: Q, and a Gauss-Markov bias by its driving density and correlation "
+          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation "
           "time",
           "imu_plugin.xml",
           ExportNeeds::gyroscope_and_accelerometer,
-          "QBK",
+          "NBK",
           {.gauss_markov = true},
           write_rotors};
 }

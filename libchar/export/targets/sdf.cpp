@@ -152,10 +152,10 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget sdf_target() {
   return {"sdf",
           "SDFormat, Gazebo",
-          "stddev of a sample Q sqrt(f); a Gauss-Markov bias by its continuous driving density",
+          "stddev of a sample N sqrt(f); a Gauss-Markov bias by its continuous driving density",
           "imu.sdf",
           ExportNeeds::any_sensor,
-          "QBK",
+          "NBK",
           {.gauss_markov = true},
           write_sdf};
 }

@@ -1,8 +1,8 @@
 // VINS-Mono and VINS-Fusion. Their integration takes the two ends of each midpoint step as
 // independent: a step of dt adds to the velocity
 //   var = 2 (dt/2)^2 acc_n^2 = dt^2 acc_n^2 / 2,
-// so n steps of a second add (dt/2) acc_n^2, while white noise of density Q adds Q^2:
-//   acc_n = Q sqrt(2/dt) = Q sqrt(2 f).
+// so n steps of a second add (dt/2) acc_n^2, while white noise of density N adds N^2:
+//   acc_n = N sqrt(2/dt) = N sqrt(2 f).
 // The bias moves by acc_w dt a step (variance acc_w^2 dt^2, acc_w^2 dt a second) and by K a second:
 //   acc_w = K / sqrt(dt) = K sqrt(f).
 
@@ -30,7 +30,7 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
                  "integration takes the two",
                  "ends of a step as independent, so a step adds dt^2 n^2 / 2 to the variance of "
                  "the velocity and a",
-                 "second adds dt n^2 / 2; white noise of density Q adds Q^2 a second, hence n = Q "
+                 "second adds dt n^2 / 2; white noise of density N adds N^2 a second, hence n = N "
                  "sqrt(2 f). A bias step",
                  "has the variance dt^2 w^2, a second dt w^2; a random walk has K^2 a second, "
                  "hence w = K sqrt(f).",
@@ -59,11 +59,11 @@ ExportTarget vins_target() {
   return {
       "vins",
       "VINS-Mono, VINS-Fusion",
-      "per sample, as its code reads them: acc_n, gyr_n = Q sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
+      "per sample, as its code reads them: acc_n, gyr_n = N sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
       "OpenCV YAML",
       "imu_vins.yaml",
       ExportNeeds::gyroscope_and_accelerometer,
-      "QK",
+      "NK",
       {.gravity = true},
       write_vins};
 }

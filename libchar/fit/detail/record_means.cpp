@@ -29,7 +29,10 @@ EventSearch search_events(std::span<const double> record,
   try {
     const EventSeries series = event_series(record, rate_hz);
     if (series.value.size() < kFewestPoints) return {};
-    return find_events(series, fitted_powers(), {}, options.unit);
+    // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
+    EventOptions how;
+    how.steps = !options.clock;
+    return find_events(series, fitted_powers(), how, options.unit);
   } catch (const Error& error) {
     // What cannot be searched is fitted as it is; the fit says itself what it cannot do.
     if (error.problem().kind != ErrorKind::numeric) throw;
