@@ -210,7 +210,7 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                                    double rate_hz,
                                    const std::string& unit) const {
   FitOptions options = options_->fit;
-  options.unit = unit;
+  if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
   options.clock = options_->data != SampleKind::rate;
   options.temperature = temperature_;
   const bool opinion = !octaves.points.empty();
