@@ -1,5 +1,6 @@
 #include "libchar/report/report_files.hpp"
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "libchar/characterize/model_from_fit.hpp"

@@ -29,7 +29,7 @@ LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
                                      static_cast<std::uint64_t>(from));
   };
   const auto fits = [&](std::int64_t from, std::int64_t to) -> int {
-    return (to > from) & (step(from, to) >= shortest) & (step(from, to) <= longest);
+    return int{to > from} & int{step(from, to) >= shortest} & int{step(from, to) <= longest};
   };
   if (n == 0) return true;
   std::int64_t good = fits(before, stamps[0]);
