@@ -121,19 +121,7 @@ void admit_unlike(const PooledFit& pooled, PooledChannel& out) {
       (out.runs.size() - 1) *
       static_cast<std::size_t>(std::count(pooled.terms.begin(), pooled.terms.end(), true)));
   const double wider = std::sqrt(std::max(1.0, out.ratio / std::max(1.0, dof)));
-  for (Coefficient& term : out.fit.term) {
-    if (term.upper95) {
-      *term.upper95 *= wider;
-      term.ci95.high = std::max(term.ci95.high, *term.upper95);
-    }
-    if (!term.value) continue;
-    term.status = Status::misfit;
-    term.relative_sd *= wider;
-    term.ci95.high = *term.value * std::pow(term.ci95.high / *term.value, wider);
-    term.ci95.low = *term.value * std::pow(std::max(term.ci95.low, 0.0) / *term.value, wider);
-  }
-  for (auto& row : out.fit.covariance)
-    for (double& value : row) value *= wider * wider;
+  widen_as_misfit(wider, out.fit);
 }
 
 /// Squared coefficients, with what was not detected at its upper limit.

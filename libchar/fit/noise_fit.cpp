@@ -219,20 +219,13 @@ void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
     curve.points.clear();
   const double wider =
       std::sqrt(std::max(1.0, fit.goodness.chi2 / std::max(1.0, fit.goodness.dof)));
-  for (auto& row : fit.covariance)
-    for (double& value : row) value *= wider * wider;
+  widen_as_misfit(wider, fit);
   for (std::size_t i = 0; i < kTerms; ++i) {
     Coefficient& term = fit.term[i];
-    if (term.upper95) {
-      const double possible = largest_possible(static_cast<Term>(i), curve);
-      term.upper95 = std::max(*term.upper95 * wider, std::isfinite(possible) ? possible : 0);
-      term.ci95.high = std::max(term.ci95.high, *term.upper95);
-    }
-    if (!term.value) continue;
-    term.status = Status::misfit;
-    term.relative_sd *= wider;
-    term.ci95.high = *term.value * std::pow(term.ci95.high / *term.value, wider);
-    term.ci95.low = *term.value * std::pow(std::max(term.ci95.low, 0.0) / *term.value, wider);
+    const double possible = largest_possible(static_cast<Term>(i), curve);
+    if (!term.upper95 || !std::isfinite(possible)) continue;
+    term.upper95 = std::max(*term.upper95, possible);
+    term.ci95.high = std::max(term.ci95.high, *term.upper95);
   }
 }
 
@@ -326,6 +319,22 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
 }
 
 }  // namespace
+
+void widen_as_misfit(double wider, NoiseFit& fit) {
+  for (auto& row : fit.covariance)
+    for (double& value : row) value *= wider * wider;
+  for (Coefficient& term : fit.term) {
+    if (term.upper95) {
+      *term.upper95 *= wider;
+      term.ci95.high = std::max(term.ci95.high, *term.upper95);
+    }
+    if (!term.value) continue;
+    term.status = Status::misfit;
+    term.relative_sd *= wider;
+    term.ci95.high = *term.value * std::pow(term.ci95.high / *term.value, wider);
+    term.ci95.low = *term.value * std::pow(std::max(term.ci95.low, 0.0) / *term.value, wider);
+  }
+}
 
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         double rate_hz,

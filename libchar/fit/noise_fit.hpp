@@ -131,6 +131,10 @@ struct FitWorkspace {
   AllanCovarianceCache covariances;
 };
 
+/// Widens intervals, limits and covariance by a factor >= 1 and calls what has a value a misfit: the coefficients scatter more than the
+/// likelihood says.
+void widen_as_misfit(double wider, NoiseFit& fit);
+
 /// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is what the second opinion is made of (may be null).
 /// Throws Error(numeric) when there are fewer bins than terms.
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
