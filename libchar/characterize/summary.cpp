@@ -152,6 +152,15 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
       phrase[0] = static_cast<char>(phrase[0] - 'A' + 'a');
     parts.push_back(phrase);
   }
+  // Without it, "not seen" of flicker and walk would read as no slow noise at all.
+  if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
+    const std::string symbol = shown_unit(unit);
+    parts.push_back(fmt::format("a Gauss–Markov process of {}{}{} with a correlation time of {}",
+                                value_text(fit.gauss_markov->sigma),
+                                symbol.empty() ? "" : " ",
+                                symbol,
+                                duration_text(*fit.gauss_markov->tau_s.value)));
+  }
   return parts.empty() ? "No noise term was found" : joined(parts, ", ");
 }
 

@@ -193,6 +193,12 @@ bool compares(Term term, const NoiseFit& model, const NoiseFit& simulated) {
          (!slow || has_process(model) == has_process(simulated));
 }
 
+const Remedy* remedy_of(const NoiseFit& fit, std::string_view kind) {
+  const auto found = std::find_if(
+      fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
+  return found == fit.remedies.end() ? nullptr : &*found;
+}
+
 ChannelVerification compared(const ChannelResult& recorded,
                              ChannelResult simulated,
                              const VerifyOptions& how) {
@@ -227,8 +233,17 @@ ChannelVerification compared(const ChannelResult& recorded,
   if (recorded.fit->term[0].status == Status::misfit && out.agrees)
     out.sentences.front() += " That is no proof of its coefficients, which are a misfit.";
   if (!disagreements.empty() && !recorded.lines.empty())
-    disagreements.push_back(fmt::format(
-        "The model holds none of the {} spectral lines of the recording.", recorded.lines.size()));
+    disagreements.push_back(recorded.lines.size() == 1
+                                ? "The model does not hold the recording's spectral line."
+                                : fmt::format("The model holds none of the {} spectral lines of "
+                                              "the recording.",
+                                              recorded.lines.size()));
+  if (!disagreements.empty())
+    if (const Remedy* spikes = remedy_of(*recorded.fit, "spikes"))
+      disagreements.push_back(
+          fmt::format("The recording's curve holds {} that {} left out of the fit.",
+                      spikes->count == 1 ? "a spike" : fmt::format("{} spikes", spikes->count),
+                      spikes->count == 1 ? "was" : "were"));
   for (std::string& sentence : disagreements) out.sentences.push_back(std::move(sentence));
   out.allan = std::move(simulated.allan);
   out.spectrum = std::move(simulated.spectrum);
