@@ -165,7 +165,7 @@ LogInfo read_log(const std::string& path,
     throw Error({ErrorKind::usage,
                  "E0319",
                  info.file,
-                 "the window of `from_s` and `to_s` holds no sample",
+                 "the stretch of time that was chosen holds no sample",
                  "",
                  "inspect says how long the log is"});
   TimeBase time = info.time;

@@ -7,6 +7,7 @@
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
+#include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"
 #include "tests/support/noise.hpp"
 
@@ -36,15 +37,6 @@ CharacterizeOptions only_fit() {
   options.wanted = {.quality = true, .allan = false, .spectrum = false, .fit = true};
   options.fit.second_opinion = false;
   return options;
-}
-
-std::string refusal(const Recording& recording, const CharacterizeOptions& options) {
-  try {
-    characterize(recording, options);
-  } catch (const Error& error) {
-    return error.problem().code + " " + error.problem().what;
-  }
-  return "";
 }
 
 }  // namespace
@@ -94,7 +86,7 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
   options.still = {false, Interval{100, 500}};
   CHECK_THROWS_AS(characterize(log.path(), options), Error);
   options.still.stretch_s = Interval{200, 100};
-  CHECK(refusal(recording, options).find("E0704") == 0);
+  CHECK(test::refusal(recording, options).find("E0704") == 0);
   options.reading.from_s = 10;
   CHECK_THROWS_AS(characterize(log.path(), options), Error);
 
@@ -107,9 +99,9 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
   }
   options = only_fit();
   options.still.search = true;
-  CHECK(refusal(recording, options) ==
+  CHECK(test::refusal(recording, options) ==
         "E0705 the channel gyr_y moves throughout: the log has no still stretch");
-  CHECK(refusal(two_channels(500, 3), options).find("E0705 no channel can be searched") == 0);
+  CHECK(test::refusal(two_channels(500, 3), options).find("E0705 no channel can be searched") == 0);
 }
 
 TEST_CASE("digital faults stand in the result, and their coefficients are not believed") {

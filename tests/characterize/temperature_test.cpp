@@ -5,6 +5,7 @@
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
+#include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"
 #include "tests/support/noise.hpp"
 
@@ -25,15 +26,6 @@ Recording warm_recording(double rate_hz, std::size_t n) {
     recording.samples[0][t] += 0.02 * celsius;
   }
   return recording;
-}
-
-std::string refusal(const Recording& recording, const CharacterizeOptions& options) {
-  try {
-    characterize(recording, options);
-  } catch (const Error& error) {
-    return error.problem().code + " " + error.problem().what;
-  }
-  return "";
 }
 
 }  // namespace
@@ -60,20 +52,21 @@ TEST_CASE("temperature of a recording: refused where it is none or cannot be kep
   const Recording recording = warm_recording(10, 20'000);
   CharacterizeOptions options;
   options.temperature = "bx";
-  CHECK(refusal(recording, options).find("E0702 there is no channel of this name") == 0);
+  CHECK(test::refusal(recording, options).find("E0702 there is no channel of this name") == 0);
   options.temperature = "gyr_x";
-  CHECK(refusal(recording, options) ==
+  CHECK(test::refusal(recording, options) ==
         "E0702 the channel gyr_x is in deg/s, which is no temperature");
   Recording alone = recording;
   alone.info.channels.erase(alone.info.channels.begin());
   alone.samples.erase(alone.samples.begin());
   options.temperature = "box";
-  CHECK(refusal(alone, options).find("is the only channel") != std::string::npos);
+  CHECK(test::refusal(alone, options).find("is the only channel") != std::string::npos);
   Recording constant = recording;
   constant.samples[1].assign(20'000, 68);
-  CHECK(refusal(constant, options).find("E0703 the temperature box is constant") == 0);
+  CHECK(test::refusal(constant, options).find("E0703 the temperature box is constant") == 0);
   options.memory_bytes = 1U << 16U;
-  CHECK(refusal(recording, options).find("E0701 a correction for temperature takes all") == 0);
+  CHECK(test::refusal(recording, options).find("E0701 a correction for temperature takes all") ==
+        0);
 }
 
 TEST_CASE("temperature of a log: read beside the channels that were chosen, and not shown") {

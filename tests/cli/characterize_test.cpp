@@ -245,6 +245,12 @@ TEST_CASE("options that cannot be followed are said, not swallowed") {
       test::run({"characterize", log, "--from", "2000s", "-o", (folder / "out").string()});
   CHECK(window.code == 2);
   CHECK(window.err.find("holds no sample") != std::string::npos);
+  // The sentence is one for every option that chooses a stretch: none is named that was not given.
+  const auto still =
+      test::run({"characterize", log, "--still", "2000s..3000s", "-o", (folder / "out").string()});
+  CHECK(still.code == 2);
+  CHECK(still.err.find("holds no sample") != std::string::npos);
+  CHECK(still.err.find("--from") == std::string::npos);
   CHECK(test::run({"allan", log, "--rate", "10Hz", "--taus", "1s"}).err.find("is not used") !=
         std::string::npos);
   CHECK(test::run({"allan", log, "--taus", "0.027s"}).err.find("nearest multiple") !=
