@@ -154,6 +154,30 @@ std::string axis_origins(const std::array<std::string, 3>& origins) {
   return out;
 }
 
+BiasOfAxes bias_of_axes(const SensorTriad& triad,
+                        const ExportOptions& options,
+                        double factor,
+                        std::string_view key,
+                        std::vector<std::string>& notes) {
+  const bool one = options.axes != AxisChoice::automatic;
+  BiasOfAxes out;
+  std::array<std::string, 3> origins;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
+    const GaussMarkov process =
+        one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
+    out.model[i] = placed.model;
+    out.to_unit[i] = placed.to_si * factor;
+    out.steady_sd[i] = process.steady_sd * factor;
+    out.correlation_s[i] = process.correlation_s;
+    origins[i] = process.origin;
+    if (process.driving == 0)
+      notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
+  }
+  out.origins = axis_origins(origins);
+  return out;
+}
+
 void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure) {
   if (figure.limit)
     notes.push_back(

@@ -49,6 +49,20 @@ std::string density_lines(const ImuFigures& figures, std::string_view indent = "
 /// What has to be said of three axes: once if it is the same, else axis by axis.
 std::string axis_origins(const std::array<std::string, 3>& origins);
 
+/// The bias of three axes as a first-order Gauss-Markov process each, in SI times a factor.
+struct BiasOfAxes {
+  std::array<const SensorModel*, 3> model{};  ///< whose numbers they are
+  std::array<double, 3> to_unit{};            ///< from the model's unit, the factor included
+  std::array<double, 3> steady_sd{}, correlation_s{};
+  std::string origins;
+};
+/// Notes an axis without a process under its key.
+BiasOfAxes bias_of_axes(const SensorTriad& triad,
+                        const ExportOptions& options,
+                        double factor,
+                        std::string_view key,
+                        std::vector<std::string>& notes);
+
 /// Puts down what was replaced or left out of `figure` under its key.
 void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure);
 

@@ -47,24 +47,12 @@ struct GnssInsSimWriter {
   }
 
   void bias(const std::string& name, const SensorTriad& triad, double factor, const char* unit) {
-    const bool one = options.axes != AxisChoice::automatic;
-    std::array<double, 3> constant{}, stability{}, correlation{};
-    std::array<std::string, 3> origins;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
-      const GaussMarkov process =
-          one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
-      constant[i] = placed.model->bias.value * placed.to_si * factor;
-      stability[i] = process.steady_sd * factor;
-      correlation[i] = process.correlation_s;
-      origins[i] = process.origin;
-      if (process.driving == 0)
-        out.notes.push_back(
-            fmt::format("{}_b_stability {}: 0 ({})", name, "xyz"[i], process.origin));
-    }
+    const BiasOfAxes of = bias_of_axes(triad, options, factor, name + "_b_stability", out.notes);
+    std::array<double, 3> constant{};
+    for (std::size_t i = 0; i < 3; ++i) constant[i] = of.model[i]->bias.value * of.to_unit[i];
     line(name + "_b", constant, fmt::format("{}, constant; 0 unless stated", unit));
-    line(name + "_b_stability", stability, with_unit(unit, axis_origins(origins)));
-    line(name + "_b_corr", correlation, "s; finite: with inf the bias would be white noise");
+    line(name + "_b_stability", of.steady_sd, with_unit(unit, of.origins));
+    line(name + "_b_corr", of.correlation_s, "s; finite: with inf the bias would be white noise");
   }
 };
 

@@ -43,23 +43,12 @@ struct NavegoWriter {
   }
 
   void bias(const std::string& letter, const SensorTriad& triad, double factor, const char* unit) {
-    const bool one = options.axes != AxisChoice::automatic;
-    std::array<double, 3> spread{}, steady{}, correlation{};
-    std::array<std::string, 3> origins;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
-      const GaussMarkov process =
-          one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
-      spread[i] = placed.model->bias.spread * placed.to_si * factor;
-      steady[i] = process.steady_sd * factor;
-      correlation[i] = process.correlation_s;
-      origins[i] = process.origin;
-      if (process.driving == 0)
-        out.notes.push_back(fmt::format("{}b_dyn {}: 0 ({})", letter, "xyz"[i], process.origin));
-    }
+    const BiasOfAxes of = bias_of_axes(triad, options, factor, letter + "b_dyn", out.notes);
+    std::array<double, 3> spread{};
+    for (std::size_t i = 0; i < 3; ++i) spread[i] = of.model[i]->bias.spread * of.to_unit[i];
     line(letter + "b_sta", spread, fmt::format("{}, turn-on bias; 0 unless stated", unit));
-    line(letter + "b_dyn", steady, fmt::format("{}; {}", unit, axis_origins(origins)));
-    line(letter + "b_corr", correlation, "s; finite: with Inf the bias would be white noise");
+    line(letter + "b_dyn", of.steady_sd, fmt::format("{}; {}", unit, of.origins));
+    line(letter + "b_corr", of.correlation_s, "s; finite: with Inf the bias would be white noise");
   }
 };
 
