@@ -15,6 +15,7 @@
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 
 namespace libchar {
@@ -193,12 +194,6 @@ bool compares(Term term, const NoiseFit& model, const NoiseFit& simulated) {
          (!slow || has_process(model) == has_process(simulated));
 }
 
-const Remedy* remedy_of(const NoiseFit& fit, std::string_view kind) {
-  const auto found = std::find_if(
-      fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
-  return found == fit.remedies.end() ? nullptr : &*found;
-}
-
 ChannelVerification compared(const ChannelResult& recorded,
                              ChannelResult simulated,
                              const VerifyOptions& how) {
@@ -239,7 +234,7 @@ ChannelVerification compared(const ChannelResult& recorded,
                                               "the recording.",
                                               recorded.lines.size()));
   if (!disagreements.empty())
-    if (const Remedy* spikes = remedy_of(*recorded.fit, "spikes"))
+    if (const Remedy* spikes = find_remedy(*recorded.fit, "spikes"))
       disagreements.push_back(
           fmt::format("The recording's curve holds {} that {} left out of the fit.",
                       spikes->count == 1 ? "a spike" : fmt::format("{} spikes", spikes->count),

@@ -73,4 +73,10 @@ Remedy lines_remedy(std::uint64_t clipped) {
           clipped};
 }
 
+const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind) {
+  const auto found = std::find_if(
+      fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
+  return found == fit.remedies.end() ? nullptr : &*found;
+}
+
 }  // namespace libchar

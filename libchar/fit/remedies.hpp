@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/fit/noise_fit.hpp"
@@ -38,5 +39,8 @@ DespikedRecord without_spikes(std::span<const double> record);
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 
 Remedy lines_remedy(std::uint64_t clipped);
+
+/// What a fit did of a kind; null: nothing.
+const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind);
 
 }  // namespace libchar

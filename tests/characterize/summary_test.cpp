@@ -41,6 +41,22 @@ TEST_CASE(
              StartsWith("White noise N ") && Contains(" U·√s ["));
 }
 
+TEST_CASE("summary: slow noise that is a Gauss-Markov process is not called unseen") {
+  ChannelResult c = clean();
+  c.fit->term[1] = c.fit->term[2] = {};
+  c.fit->term[1].status = c.fit->term[2].status = Status::not_detected;
+  c.fit->term[1].upper95 = c.fit->term[2].upper95 = 1e-5;
+  CHECK_THAT(summary_of(c, "deg/s").sentence, !Contains("Gauss"));
+  c.fit->gauss_markov.emplace();
+  c.fit->gauss_markov->in_model = true;
+  c.fit->gauss_markov->sigma.status = c.fit->gauss_markov->tau_s.status = Status::detected;
+  c.fit->gauss_markov->sigma.value = 0.02;
+  c.fit->gauss_markov->tau_s.value = 60;
+  CHECK_THAT(
+      summary_of(c, "deg/s").sentence,
+      Contains("a Gauss–Markov process of 0.02") && Contains(" deg/s with a correlation time of"));
+}
+
 TEST_CASE("summary: a ratio has no unit to print") {
   const std::string sentence = summary_of(clean("1"), "1").sentence;
   CHECK_THAT(sentence, Contains(" √s [") && Contains(" 1/√s [") && !Contains("1·√s"));

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "libchar/fit/remedies.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/report/html_report.hpp"
 #include "libchar/report/json_report.hpp"
 #include "libchar/simulate/sensor_array.hpp"
+#include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -81,6 +83,19 @@ TEST_CASE("verification: what the model lacks is found at its averaging times") 
   }
   CHECK(near_line);
   CHECK(v.sentences.size() >= 2);
+}
+
+TEST_CASE("verification: spikes that the fit left out are named where the curves differ") {
+  Recording spiky;
+  spiky.info.channels = {{"g", "deg/s", false}};
+  spiky.info.time.rate_hz = 100;
+  spiky.samples = {test::NoiseSource(60'000, 100, 5).record(5e-3, 0, 0)};
+  for (std::size_t t = 500; t < 60'000; t += 1'500) spiky.samples[0][t] += 3;
+  Characterization result = characterize(spiky, {});
+  REQUIRE(find_remedy(*result.channels[0].fit, "spikes") != nullptr);
+  CHECK_FALSE(verify(result, {}));
+  CHECK(result.channels[0].verification->sentences.back() ==
+        "The recording's curve holds 40 spikes that were left out of the fit.");
 }
 
 TEST_CASE("verification: same seed, same bytes; it stands in every output") {

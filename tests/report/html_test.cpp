@@ -69,6 +69,19 @@ TEST_CASE("html: names from a file never become elements or attributes") {
   CHECK(test::count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
 }
 
+TEST_CASE("html: the plot says what its points hold and its lines do not") {
+  Characterization result = test::synthetic_imu();
+  for (ChannelResult& c : result.channels)
+    if (c.fit) {
+      c.fit->remedies.clear();
+      c.fit->events.clear();
+    }
+  const char* const taken = "in what was measured but not in the models: ";
+  CHECK(test::count(html_report(result), taken) == 0);
+  result.channels[0].fit->remedies = {{"temperature", "", "", 1}, {"spikes", "", "", 4}};
+  CHECK(test::count(html_report(result), std::string(taken) + "spikes; temperature.") == 1);
+}
+
 TEST_CASE("html: every number of a channel stands in a table too") {
   const auto result = test::synthetic_imu();
   const std::string page = without_assets(html_report(result));

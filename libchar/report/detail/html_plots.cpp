@@ -6,10 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
@@ -124,11 +127,14 @@ std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo
 
 std::string group_plot(const CharacterizationView& view, const ChannelGroup& group) {
   std::vector<std::size_t> drawn;
-  bool shaped = false, events = false;
+  bool shaped = false;
+  std::set<std::string> taken_out;
   for (const std::size_t i : group.channels) {
     if (view.channels[i].draws_allan) drawn.push_back(i);
     const auto& fit = view.channels[i].result->fit;
-    events = events || (fit && !fit->events.empty());
+    if (fit && !fit->events.empty()) taken_out.insert("steps, warm-up and ramps");
+    if (fit && find_remedy(*fit, "spikes") != nullptr) taken_out.insert("spikes");
+    if (fit && find_remedy(*fit, "temperature") != nullptr) taken_out.insert("temperature");
     shaped = shaped || (view.channels[i].draws_allan && view.channels[i].plain_from_s > 0);
   }
   if (drawn.empty()) return "";
@@ -137,10 +143,10 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
                             ? "Points: measured, hollow where unreliable; shaded: 95 % intervals; "
                               "lines: fitted models."
                             : "Lines: measured. A click on a name hides its curve.";
-  if (events)
-    caption +=
-        " Steps, warm-up and ramps that were taken out are in what was measured, not in the "
-        "models.";
+  if (!taken_out.empty())
+    caption += fmt::format(
+        " Taken out before the fit, and so in what was measured but not in the models: {}.",
+        fmt::join(taken_out, "; "));
   if (shaped)
     caption +=
         " Grey on the left, a shade for each channel: averaging times at which a filter or what "
