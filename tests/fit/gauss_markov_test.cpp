@@ -1,4 +1,6 @@
 // A first-order Gauss-Markov process beside flicker and walk: found where there is one, and only there.
+#include "tests/support/gauss_markov.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -10,9 +12,9 @@
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
-#include "tests/support/noise.hpp"
 
 using namespace libchar;
+using test::white_and_process;
 
 namespace {
 
@@ -24,20 +26,6 @@ double cosine(std::size_t k, std::size_t t, std::size_t n) {
 
 double lag(std::size_t a, std::size_t b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
-}
-
-// White noise and y_t = phi y_{t-1} + e_t by their own recursion, apart from the library's generator.
-std::vector<double> white_and_process(
-    std::uint64_t seed, std::size_t n, double rate, double q, double sigma, double tau) {
-  test::Gaussian normal(seed);
-  const double phi = std::exp(-1 / (rate * tau));
-  std::vector<double> y(n);
-  double state = sigma * normal();
-  for (double& sample : y) {
-    sample = state + q * std::sqrt(rate) * normal();
-    state = phi * state + sigma * std::sqrt(1 - phi * phi) * normal();
-  }
-  return y;
 }
 
 std::vector<double> terms_record(std::uint64_t seed, std::size_t n, double rate, Mixture c) {

@@ -8,51 +8,18 @@
 #include "libchar/core/error.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/noise.hpp"
+#include "tests/support/weather.hpp"
 
 using namespace libchar;
+using test::add_effect;
+using test::weather;
+using test::Weather;
 
 namespace {
 
 constexpr double kRate = 10;
 constexpr std::size_t kSamples = 40'000;
 constexpr double kQ = 5e-3, kB = 5e-3;
-
-/// Shapes of a temperature in degC: what sensors see.
-enum class Weather { drifting, daily, warming, ramp, cycling };
-
-TemperatureRecord weather(Weather kind, std::size_t n, test::Gaussian& gauss) {
-  TemperatureRecord out{"temp", "°C", std::vector<double>(n)};
-  const double phase = 6.28 * gauss.uniform();
-  double walk = 0;
-  for (std::size_t t = 0; t < n; ++t) {
-    const double x = static_cast<double>(t) / static_cast<double>(n);
-    walk += gauss() / std::sqrt(static_cast<double>(n));
-    double value = 25;
-    if (kind == Weather::drifting) value += 3 * walk;
-    if (kind == Weather::daily) value += 5 * std::sin(2 * 6.2832 * x + phase) + 0.5 * walk;
-    if (kind == Weather::warming) value += 10 * (1 - std::exp(-6 * x)) + 0.3 * walk;
-    if (kind == Weather::ramp) value += 8 * x + 0.2 * walk;
-    if (kind == Weather::cycling) value += std::sin(20 * 6.2832 * x + phase) + 0.2 * walk;
-    out.samples[t] = std::round((value + 0.02 * gauss()) / 0.01) * 0.01;
-  }
-  return out;
-}
-
-/// What a sensor with these coefficients makes of a temperature.
-void add_effect(std::vector<double>& y,
-                const TemperatureRecord& temperature,
-                double lag_s,
-                double one,
-                double two = 0) {
-  double mean = 0;
-  for (const double x : temperature.samples) mean += x / static_cast<double>(y.size());
-  double state = temperature.samples[0];
-  for (std::size_t t = 0; t < y.size(); ++t) {
-    state = lag_s > 0 ? state + (temperature.samples[t] - state) / (lag_s * kRate)
-                      : temperature.samples[t];
-    y[t] += one * (state - mean) + two * (state - mean) * (state - mean);
-  }
-}
 
 }  // namespace
 
@@ -87,7 +54,7 @@ TEST_CASE("temperature: what it does is found with its lag, and the walk stays w
     options.second_opinion = false;
     clean += fit_record(y, kRate, nullptr, options).theta[2];
     const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
-    add_effect(y, t, 60, 0.02);
+    add_effect(y, t, kRate, 60, 0.02);
     options.temperature = std::make_shared<TemperatureRecord>(t);
     options.unit = "deg/s";
     const NoiseFit fit = fit_record(y, kRate, nullptr, options);
@@ -114,7 +81,7 @@ TEST_CASE("temperature: a curve about the mean temperature has order 2") {
   test::NoiseSource source(kSamples, kRate, 173);
   std::vector<double> y = source.record(kQ, kB, 0);
   const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
-  add_effect(y, t, 0, 0, 0.004);
+  add_effect(y, t, kRate, 0, 0, 0.004);
   const TemperatureEffect effect = find_temperature_effect(y, kRate, t);
   REQUIRE(effect.order == 2);
   CHECK(effect.coefficient[1] == Approx(0.004).epsilon(0.1));
@@ -126,7 +93,7 @@ TEST_CASE("temperature: a step of the sensor beside it is a step") {
   test::NoiseSource source(kSamples, kRate, 174);
   std::vector<double> y = source.record(kQ, kB, 0);
   const TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
-  add_effect(y, t, 0, 0.02);
+  add_effect(y, t, kRate, 0, 0.02);
   for (std::size_t i = kSamples / 3; i < kSamples; ++i) y[i] += 0.1;
   FitOptions options;
   options.second_opinion = false;
@@ -143,7 +110,7 @@ TEST_CASE("temperature: a slow thermometer, taking out and putting in again") {
   test::NoiseSource source(kSamples, kRate, 175);
   std::vector<double> y = source.record(kQ, kB, 0);
   TemperatureRecord t = weather(Weather::daily, kSamples, source.gauss());
-  add_effect(y, t, 0, 0.02);
+  add_effect(y, t, kRate, 0, 0.02);
   const TemperatureEffect each = find_temperature_effect(y, kRate, t);
   for (std::size_t i = 0; i < kSamples; ++i)
     if (i % 50 != 7) t.samples[i] = std::numeric_limits<double>::quiet_NaN();
