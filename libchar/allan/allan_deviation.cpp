@@ -30,6 +30,7 @@
 #include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -220,6 +221,12 @@ void fill_points(const std::vector<AllanPoint>& points,
   note_missing(empty, curve);
 }
 
+std::uint64_t not_finite(std::span<const double> record) {
+  const auto rest = record.subspan(finite_run(record));
+  return static_cast<std::uint64_t>(
+      std::count_if(rest.begin(), rest.end(), [](double v) { return !std::isfinite(v); }));
+}
+
 AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summed) {
   return kind == DataKind::rate ? anchored_phase_of_rate(record, summed)
                                 : anchored_phase_of_phase(record, summed);
@@ -239,8 +246,7 @@ AllanCurve allan_deviation(std::span<const double> record,
   curve.type = options.type;
   curve.dt_s = dt_s;
   curve.samples = rate_samples(record.size());
-  curve.missing = static_cast<std::uint64_t>(
-      std::count_if(record.begin(), record.end(), [](double v) { return !std::isfinite(v); }));
+  curve.missing = not_finite(record);
   const bool total = f.reflected;
   const auto used = total ? without_gaps(record, curve) : record;
   const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);

@@ -3,34 +3,36 @@
 #include <algorithm>
 #include <limits>
 
+#include "libchar/core/lanes.hpp"
+
 namespace libchar {
 namespace {
 
 constexpr std::size_t kMostBlocks = 800;
-constexpr std::size_t kLanes = 4;
 
 }  // namespace
 
-// Comparisons with NaN are false: missing samples change no extreme. Four lanes, because one waits for itself.
-void TraceMeter::Block::take(const double* samples, std::size_t count) {
-  double lows[kLanes] = {low, low, low, low}, highs[kLanes] = {high, high, high, high};
-  std::uint64_t absent = 0;
-  const std::size_t whole = count - count % kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double x = samples[i + lane];
-      lows[lane] = x < lows[lane] ? x : lows[lane];
-      highs[lane] = x > highs[lane] ? x : highs[lane];
-      absent += x != x ? 1 : 0;
-    }
-  for (std::size_t i = whole; i < count; ++i) {
-    lows[0] = samples[i] < lows[0] ? samples[i] : lows[0];
-    highs[0] = samples[i] > highs[0] ? samples[i] : highs[0];
-    absent += samples[i] != samples[i] ? 1 : 0;
+// Comparisons with NaN are false: missing samples change no extreme. A comparison that holds is minus one.
+LIBCHAR_WIDE_LANES void TraceMeter::Block::take(const double* samples, std::size_t count) {
+  Four lows = Four{} + low, highs = Four{} + high;
+  auto absent = lows != lows;
+  const std::size_t whole = count - count % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four x = LIBCHAR_FOUR(samples + i);
+    lows = x < lows ? x : lows;
+    highs = x > highs ? x : highs;
+    absent += x != x;
   }
-  low = *std::min_element(lows, lows + kLanes);
-  high = *std::max_element(highs, highs + kLanes);
-  missing += absent;
+  for (int lane = 0; lane < 4; ++lane) {
+    low = std::min(low, lows[lane]);
+    high = std::max(high, highs[lane]);
+    missing -= static_cast<std::uint64_t>(absent[lane]);
+  }
+  for (std::size_t i = whole; i < count; ++i) {
+    low = samples[i] < low ? samples[i] : low;
+    high = samples[i] > high ? samples[i] : high;
+    missing += samples[i] != samples[i] ? 1 : 0;
+  }
 }
 
 void TraceMeter::Block::join(const Block& later) {

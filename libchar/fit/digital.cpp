@@ -15,39 +15,92 @@
 #include <limits>
 #include <numbers>
 
+#include "libchar/core/lanes.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFewestRuns = 64, kLongestHold = 1024;
-constexpr double kFewestAtRail = 8;
+constexpr std::uint64_t kFewestAtRail = 8;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
-std::optional<Rail> rail_of(std::span<const double> record, double at, double range, bool high) {
-  double count = 0, present = 0, next = range;
-  for (const double x : record) {
-    const double distance = high ? at - x : x - at;
-    count += distance == 0 ? 1 : 0;
-    present += std::isnan(x) ? 0 : 1;
-    next = distance > 0 && distance < next ? distance : next;
+/// Extremes of a record, how often it is at them, and how often it repeats a value.
+struct Census {
+  double low = std::numeric_limits<double>::infinity(),
+         high = -std::numeric_limits<double>::infinity();
+  std::uint64_t at_low = 0, at_high = 0, repeats = 0;
+};
+
+// No comparison holds of a missing sample.
+LIBCHAR_WIDE_LANES void take_extremes(const double* x, std::size_t fours, Census& census) {
+  Four low = Four{} + census.low, high = Four{} + census.high;
+  for (std::size_t i = 0; i < fours; ++i) {
+    const Four v = LIBCHAR_FOUR(x + 4 * i);
+    low = v < low ? v : low;
+    high = v > high ? v : high;
   }
-  if (count < kFewestAtRail || count > kMostAtRail * present) return std::nullopt;
-  const double inside = std::max(1.5 * next, range / 1000);
-  double near = 0;
-  for (const double x : record) {
-    const double distance = high ? at - x : x - at;
-    near += distance > 0 && distance <= inside ? 1 : 0;
+  for (int lane = 0; lane < 4; ++lane) {
+    census.low = std::min(census.low, low[lane]);
+    census.high = std::max(census.high, high[lane]);
   }
-  if (count <= 2 * near + kFewestAtRail) return std::nullopt;
-  return Rail{at, high, count / present};
 }
 
-bool repeats_enough(std::span<const double> record) {
-  std::uint64_t repeats = 0;
-  for (std::size_t t = 1; t < record.size(); ++t) repeats += record[t] == record[t - 1] ? 1 : 0;
-  return repeats >= kFewestRuns;
+// A comparison that holds is minus one. Reads one sample beyond the last of the fours.
+LIBCHAR_WIDE_LANES void count_fours(const double* x, std::size_t fours, Census& census) {
+  Four none = {};
+  auto at_low = none != none, at_high = at_low, repeats = at_low;
+  const Four low = none + census.low, high = none + census.high;
+  for (std::size_t i = 0; i < fours; ++i) {
+    const Four v = LIBCHAR_FOUR(x + 4 * i), next = LIBCHAR_FOUR(x + 4 * i + 1);
+    at_low += v == low;
+    at_high += v == high;
+    repeats += v == next;
+  }
+  for (int lane = 0; lane < 4; ++lane) {
+    census.at_low -= static_cast<std::uint64_t>(at_low[lane]);
+    census.at_high -= static_cast<std::uint64_t>(at_high[lane]);
+    census.repeats -= static_cast<std::uint64_t>(repeats[lane]);
+  }
+}
+
+Census census_of(std::span<const double> record) {
+  Census census;
+  const std::size_t fours = record.size() / 4;
+  take_extremes(record.data(), fours, census);
+  for (const double x : record.subspan(4 * fours)) {
+    census.low = x < census.low ? x : census.low;
+    census.high = x > census.high ? x : census.high;
+  }
+  const std::size_t with_next = record.empty() ? 0 : (record.size() - 1) / 4;
+  count_fours(record.data(), with_next, census);
+  for (std::size_t t = 4 * with_next; t < record.size(); ++t) {
+    census.at_low += record[t] == census.low ? 1 : 0;
+    census.at_high += record[t] == census.high ? 1 : 0;
+    if (t + 1 < record.size()) census.repeats += record[t] == record[t + 1] ? 1 : 0;
+  }
+  return census;
+}
+
+std::optional<Rail> rail_of(std::span<const double> record,
+                            const Census& census,
+                            bool high,
+                            double present) {
+  const double at = high ? census.high : census.low, range = census.high - census.low;
+  const auto count = static_cast<double>(high ? census.at_high : census.at_low);
+  if (count < static_cast<double>(kFewestAtRail) || count > kMostAtRail * present)
+    return std::nullopt;
+  const auto inwards = [&](double x) { return high ? at - x : x - at; };
+  double next = range;
+  for (const double x : record)
+    if (inwards(x) > 0 && inwards(x) < next) next = inwards(x);
+  const double inside = std::max(1.5 * next, range / 1000);
+  double near = 0;
+  for (const double x : record) near += inwards(x) > 0 && inwards(x) <= inside ? 1 : 0;
+  if (count <= 2 * near + static_cast<double>(kFewestAtRail)) return std::nullopt;
+  return Rail{at, high, count / present};
 }
 
 /// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
@@ -162,22 +215,18 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   std::optional<double> step,
                                   std::string_view unit) {
   DigitalFaults faults;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double x : record) {  // no comparison holds of a missing one
-    low = x < low ? x : low;
-    high = x > high ? x : high;
-  }
-  if (!(low < high)) return faults;
-  if (repeats_enough(record)) {
+  const Census census = census_of(record);
+  if (!(census.low < census.high)) return faults;
+  if (census.repeats >= kFewestRuns) {
     const Runs runs = runs_of_values(record);
     faults.held = held_values(runs, rate_hz);
     if (step && !faults.held) faults.staircase = staircase(runs, *step);
   }
   // A staircase may stand on its last step for long.
-  if (!faults.staircase) {
+  if (!faults.staircase && std::max(census.at_low, census.at_high) >= kFewestAtRail) {
+    const auto present = static_cast<double>(record.size() - count_missing(record));
     for (const bool top : {false, true})
-      if (const auto rail = rail_of(record, top ? high : low, high - low, top))
-        faults.rails.push_back(*rail);
+      if (const auto rail = rail_of(record, census, top, present)) faults.rails.push_back(*rail);
   }
   describe_faults(faults, rate_hz, unit);
   return faults;

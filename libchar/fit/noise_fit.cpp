@@ -390,7 +390,8 @@ NoiseFit fit_record(std::span<const double> record,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
-  const DespikedRecord despiked = options.remedies ? without_spikes(record) : DespikedRecord{};
+  const DespikedRecord despiked =
+      options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
   std::span<const double> data =
       despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
   const RecordMeans means = without_means(data, rate_hz, options);
@@ -405,7 +406,8 @@ NoiseFit fit_record(std::span<const double> record,
   const std::uint64_t block =
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
-  const std::vector<double> filled = options.remedies ? bridged(data) : std::vector<double>{};
+  std::vector<double> filled;
+  if (options.remedies && present_run(data) < data.size()) filled = bridged(data);
   binner.push(filled.empty() ? data : filled);
   NoiseFit fit = fit_bins_beside(binner,
                                  rate_hz,

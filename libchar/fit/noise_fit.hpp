@@ -118,6 +118,8 @@ struct FitOptions {
   bool events = true;
   /// its effect is taken out before the noise is fitted (a record that is kept only); null: none
   std::shared_ptr<const TemperatureRecord> temperature;
+  /// of the record's first differences, where it is known: spikes are looked for above an alarm
+  std::optional<double> difference_kurtosis;
   std::string unit;         ///< of the samples, in sentences
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this

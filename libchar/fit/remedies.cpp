@@ -41,8 +41,9 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
   return answer;
 }
 
-DespikedRecord without_spikes(std::span<const double> record) {
-  const double kurtosis = kurtosis_of_differences(record), alarm = spike_alarm(record.size());
+DespikedRecord without_spikes(std::span<const double> record, std::optional<double> known) {
+  const double kurtosis = known ? *known : kurtosis_of_differences(record);
+  const double alarm = spike_alarm(record.size());
   if (!(kurtosis > alarm)) return {};
   SpikeScan scan;
   scan.push(record);

@@ -33,7 +33,8 @@ struct DespikedRecord {
   std::vector<double> samples;  ///< with spikes missing (NaN); empty: as the record was
   SpikeAnswer answer;
 };
-DespikedRecord without_spikes(std::span<const double> record);
+/// `kurtosis`: of the first differences, where it is known.
+DespikedRecord without_spikes(std::span<const double> record, std::optional<double> kurtosis = {});
 
 /// Puts the answer in front of what else a fit says.
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "libchar/allan/detail/difference_kernels.hpp"
+#include "libchar/core/lanes.hpp"
+#include "libchar/core/present.hpp"
 
 namespace libchar {
 namespace {
@@ -46,12 +48,11 @@ double first_finite(std::span<const double> values, double instead) {
 
 /// Gap-free stretches of finite values; those of a rate record reach one phase point further.
 void find_stretches(std::span<const double> record, std::uint64_t reach, AnchoredPhase& phase) {
-  std::uint64_t begin = 0;
-  for (std::uint64_t i = 0; i <= record.size(); ++i) {
-    if (i < record.size() && std::isfinite(record[i])) continue;
-    if (i > begin) phase.stretches.push_back({begin, i + reach});
-    if (i < record.size()) ++phase.missing;
-    begin = i + 1;
+  for (std::uint64_t begin = 0; begin < record.size(); ++begin) {
+    const std::uint64_t end = begin + finite_run(record.subspan(begin));
+    if (end > begin) phase.stretches.push_back({begin, end + reach});
+    if (end < record.size()) ++phase.missing;
+    begin = end;
   }
 }
 
@@ -90,16 +91,29 @@ Polynomial polynomial(const AnchoredPhase& phase, std::uint64_t position, bool o
            a * 0.5}};
 }
 
+/// Largest |x/2 - first| of what is finite; n is a multiple of four.
+LIBCHAR_WIDE_LANES double largest_deviation(const double* x, std::size_t n, double first) {
+  const Four infinite = Four{} + std::numeric_limits<double>::infinity();
+  Four largest = {};
+  for (std::size_t i = 0; i < n; i += 4) {
+    const Four distance = LIBCHAR_FOUR(x + i) / 2 - first;
+    const Four deviation = distance < 0 ? -distance : distance;
+    largest = (deviation > largest) & (deviation < infinite) ? deviation : largest;
+  }
+  return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
+}
+
 constexpr double kWeights[2][4] = {{1, -2, 1, 0}, {-1, 3, -3, 1}};
 
 }  // namespace
 
 double balancing_scale(std::span<const double> record) {
-  double largest = 0, first = std::numeric_limits<double>::quiet_NaN();
-  for (const double value : record) {
-    if (!std::isfinite(value)) continue;
-    if (std::isnan(first)) first = value / 2;
-    largest = std::max(largest, std::fabs(value / 2 - first));
+  const double first = first_finite(record, 0) / 2;
+  const std::size_t whole = record.size() / 4 * 4;
+  double largest = largest_deviation(record.data(), whole, first);
+  for (const double value : record.subspan(whole)) {
+    const double deviation = std::fabs(value / 2 - first);
+    if (deviation > largest && std::isfinite(deviation)) largest = deviation;
   }
   if (largest == 0) return 1;
   return std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1022, 1023));

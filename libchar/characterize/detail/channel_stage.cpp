@@ -213,6 +213,8 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
   if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
   options.clock = options_->data != SampleKind::rate;
   options.temperature = temperature_;
+  // What is fitted of a clock is not what is in the log.
+  if (!options.clock) options.difference_kurtosis = found_.difference_kurtosis;
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;

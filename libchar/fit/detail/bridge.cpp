@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "libchar/core/present.hpp"
+
 namespace libchar {
 namespace {
 
@@ -31,10 +33,10 @@ std::vector<MissingRun> short_runs(std::span<const double> record) {
   std::vector<MissingRun> runs;
   std::size_t count = 0;
   for (std::size_t t = 0; t < record.size(); ++t) {
-    if (!std::isnan(record[t])) continue;
+    t += present_run(record.subspan(t));
     const std::size_t first = t;
     while (t < record.size() && std::isnan(record[t])) ++t;
-    if (first == 0 || t == record.size() || t - first > kLongestBridge) continue;
+    if (first == 0 || t >= record.size() || t - first > kLongestBridge) continue;
     runs.push_back({first, t});
     count += t - first;
   }
