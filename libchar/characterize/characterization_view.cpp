@@ -25,8 +25,11 @@ std::string usual_spelling(const std::string& unit) {
 
 ModelCurve allan_model(const NoiseFit& fit, const AllanCurve& curve) {
   ModelCurve out;
-  for (const AllanPoint& p : curve.points)
-    out.values.push_back(model_deviation(fit, curve.type, static_cast<double>(p.m), curve.dt_s));
+  for (const AllanPoint& p : curve.points) {
+    const auto m = static_cast<double>(p.m);
+    out.values.push_back(model_deviation(fit, curve.type, m, curve.dt_s));
+    out.intervals.push_back(model_interval(fit, curve.type, m, curve.dt_s));
+  }
   out.asymptotes = allan_asymptotes(fit, curve);
   return out;
 }

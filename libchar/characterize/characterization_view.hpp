@@ -18,7 +18,9 @@ namespace libchar {
 /// What the fit predicts for a measured curve.
 struct ModelCurve {
   std::vector<std::optional<double>> values;  ///< one a point of the curve; none: not known there
-  std::vector<Asymptote> asymptotes;          ///< of its terms
+  std::vector<std::optional<Interval>>
+      intervals;                      ///< of the Allan curve, as many; empty: not stated (spectra)
+  std::vector<Asymptote> asymptotes;  ///< of its terms
 };
 
 /// A coefficient as the fit of the Allan curve sees it.

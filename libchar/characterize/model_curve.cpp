@@ -15,6 +15,20 @@ double theta_of(const NoiseFit& fit, Term term) {
   return fit.theta[static_cast<std::size_t>(term)];
 }
 
+/// What the interval of a sum is made of.
+struct SquaredReach {
+  double variance = 0, down = 0, up = 0;
+
+  /// A squared coefficient times its unit; a limit where the coefficient was not seen.
+  void add(const Coefficient& c, double theta, double unit) {
+    const double low = c.value ? c.ci95.low : 0;
+    const double high = c.value ? c.ci95.high : c.upper95.value_or(0);
+    variance += theta * unit;
+    down += std::pow(std::max(0.0, theta - low * low) * unit, 2);
+    up += std::pow(std::max(0.0, high * high - theta) * unit, 2);
+  }
+};
+
 }  // namespace
 
 std::optional<double> model_deviation(const NoiseFit& fit,
@@ -25,6 +39,42 @@ std::optional<double> model_deviation(const NoiseFit& fit,
   const double variance = shaped_allan_variance(fit, m, dt_s);
   if (!(variance > 0)) return std::nullopt;
   return std::sqrt(variance);
+}
+
+// A variance that is a sum of estimates V_i with intervals l_i..u_i has the interval (MOVER: Zou and Donner, Statistics in Medicine 27,
+// 2008)
+//   V - sqrt(sum (V_i - l_i)²) .. V + sqrt(sum (u_i - V_i)²),
+// wide enough where estimates are negatively correlated, as those of flicker and walk are. A shape multiplies it as a whole; what
+// differs between stretches is added on the logarithm.
+std::optional<Interval> model_interval(const NoiseFit& fit,
+                                       DeviationType type,
+                                       double m,
+                                       double dt_s) {
+  const auto deviation = model_deviation(fit, type, m, dt_s);
+  if (!deviation) return std::nullopt;
+  SquaredReach reach;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    Mixture one{};
+    one[t] = 1;
+    if (fit.term[t].status != Status::not_fitted)
+      reach.add(fit.term[t], fit.theta[t], allan_variance(one, m, dt_s));
+  }
+  if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
+    const double sigma = *fit.gauss_markov->sigma.value;
+    reach.add(fit.gauss_markov->sigma,
+              sigma * sigma,
+              process_allan_variance(fit, m, dt_s) / (sigma * sigma));
+  }
+  if (fit.flicker_phase) {
+    const double f = fit.flicker_phase->value.value_or(0);
+    reach.add(*fit.flicker_phase, f * f, flicker_phase_allan_variance(m, dt_s));
+  }
+  if (!(reach.variance > 0)) return std::nullopt;
+  const double low = 1 - std::sqrt(reach.down) / reach.variance,
+               high = 1 + std::sqrt(reach.up) / reach.variance;
+  const double spread = spread_reach(fit.stationarity, m * dt_s);
+  return Interval{low > 0 ? *deviation * std::exp(-std::hypot(0.5 * std::log(low), spread)) : 0,
+                  *deviation * std::exp(std::hypot(0.5 * std::log(high), spread))};
 }
 
 double scaled_density(const Spectrum& spectrum, double two_sided_density) {

@@ -22,6 +22,14 @@ std::optional<double> model_deviation(const NoiseFit& fit,
                                       double m,
                                       double dt_s);
 
+/// Where the deviation of another stretch of the record, or of another recording of the sensor, is expected to lie (95 %, beside what
+/// chance makes of a measured curve): from the intervals and limits of all terms, also of those that were not seen, and from what
+/// differs between stretches of the record (fit/stationarity.hpp). Nothing where `model_deviation` gives nothing.
+std::optional<Interval> model_interval(const NoiseFit& fit,
+                                       DeviationType type,
+                                       double m,
+                                       double dt_s);
+
 /// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for
 /// a vanishing model.
 std::optional<double> model_spectrum(const NoiseFit& fit,

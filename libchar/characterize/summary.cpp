@@ -91,6 +91,8 @@ void look_at_fit(const NoiseFit& fit, Found& found) {
   if (!fit.events.empty()) found.add(Rating::caution, events_taken_out(fit));
   if (fit.second_opinion && !fit.second_opinion->agrees)
     found.add(Rating::caution, "the fit of the Allan curve disagrees");
+  if (fit.stationarity.noticeable)
+    found.add(Rating::caution, "the noise is not the same throughout the recording");
 }
 
 void look_at_motion(const Motion& motion, Found& found) {

@@ -148,6 +148,24 @@ Json temperature_json(const TemperatureEffect& effect) {
   return json;
 }
 
+Json stationarity_json(const Stationarity& found) {
+  Json json = {{"steady", found.steady}};
+  json["spread"] = Json::array();
+  for (const StretchSpread& s : found.spread)
+    json["spread"].push_back({{"tau_s", json_number(s.tau_s)},
+                              {"stretches", s.stretches},
+                              {"relative_sd", json_number(s.relative_sd)},
+                              {"p", json_number(s.p)}});
+  if (found.steady) return json;
+  json["clearest_tau_s"] = json_number(found.clearest_tau_s);
+  json["stretch_s"] = json_number(found.stretch_s);
+  json["largest"] = {{"ratio", json_number(found.largest)},
+                     {"from_to_s", pair_of(found.largest_s)}};
+  json["smallest"] = {{"ratio", json_number(found.smallest)},
+                      {"from_to_s", pair_of(found.smallest_s)}};
+  return json;
+}
+
 // Column by column: five arrays take a third of the bytes of as many objects.
 Json residuals_json(const std::vector<FitResidual>& residuals) {
   Json json;
@@ -195,6 +213,8 @@ Json noise_fit_json(const std::string& name,
   json["moving_s"] = Json::array();
   for (const Interval& stretch : fit.moving_s) json["moving_s"].push_back(pair_of(stretch));
   json["temperature"] = fit.temperature ? temperature_json(*fit.temperature) : Json(nullptr);
+  json["stationarity"] =
+      fit.stationarity.tested ? stationarity_json(fit.stationarity) : Json(nullptr);
   json["sentences"] = fit.sentences;
   json["method"] = fit.method;
   json["converged"] = fit.converged;

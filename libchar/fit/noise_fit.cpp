@@ -418,6 +418,10 @@ NoiseFit fit_record(std::span<const double> record,
                                  means.temperature);
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);
+  if (options.remedies && options.stationarity) {
+    fit.stationarity = test_stationarity(data, rate_hz, fit);
+    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+  }
   return fit;
 }
 

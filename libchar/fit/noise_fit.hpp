@@ -17,6 +17,7 @@
 #include "libchar/core/noise_shape.hpp"
 #include "libchar/fit/events.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/stationarity.hpp"
 #include "libchar/fit/temperature.hpp"
 
 namespace libchar {
@@ -87,6 +88,7 @@ struct NoiseFit {
   std::vector<Interval>
       moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
+  Stationarity stationarity;  ///< of a record that is kept; not tested of one that streams
   std::vector<FitResidual> residuals;
   std::vector<PowerBin>
       bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
@@ -116,6 +118,8 @@ struct FitOptions {
   bool clock = false;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
+  /// stretches of the record are compared (a record that is kept only, remedies on)
+  bool stationarity = true;
   /// its effect is taken out before the noise is fitted (a record that is kept only); null: none
   std::shared_ptr<const TemperatureRecord> temperature;
   /// of the record's first differences, where it is known: spikes are looked for above an alarm

@@ -30,7 +30,8 @@ void add_allan(std::string& out,
     const AllanPoint& p = c.allan.points[i];
     const bool known = p.edf > 0;
     const auto bound = [&](double value) { return known ? cell(value) : std::string(); };
-    out += fmt::format("{},{},{},s,{},{},{},{},{},{},{},{},{}\n",
+    const auto model = view.allan_model ? view.allan_model->intervals[i] : std::nullopt;
+    out += fmt::format("{},{},{},s,{},{},{},{},{},{},{},{},{},{},{}\n",
                        name_of(c.allan.type),
                        name,
                        unit,
@@ -42,7 +43,9 @@ void add_allan(std::string& out,
                        bound(p.ci95.high),
                        bound(p.edf),
                        p.terms,
-                       view.allan_model ? cell(view.allan_model->values[i]) : "");
+                       view.allan_model ? cell(view.allan_model->values[i]) : "",
+                       model ? cell(model->low) : "",
+                       model ? cell(model->high) : "");
   }
 }
 
@@ -55,7 +58,7 @@ void add_spectrum(std::string& out, const ChannelView& view, const std::string& 
   const std::string unit = csv_cell(spectrum_unit(s.scaling, c.channel.unit));
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const double dof = i < s.dof.size() ? s.dof[i] : 0;
-    out += fmt::format("{},{},{},Hz,{},{},{},{},{},{},{},,{}\n",
+    out += fmt::format("{},{},{},Hz,{},{},{},{},{},{},{},,{},,\n",
                        curve,
                        name,
                        unit,
@@ -73,7 +76,9 @@ void add_spectrum(std::string& out, const ChannelView& view, const std::string& 
 }  // namespace
 
 std::string csv_curves(const CharacterizationView& view) {
-  std::string out = "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model\n";
+  std::string out =
+      "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model,model_low95,"
+      "model_high95\n";
   for (const ChannelView& channel : view.channels) {
     const Channel& of = channel.result->channel;
     const std::string name = csv_cell(of.name), unit = csv_cell(of.unit);

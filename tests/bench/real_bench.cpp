@@ -113,38 +113,22 @@ Recording part_of(const Recording& whole, std::size_t part, std::size_t parts) {
   return out;
 }
 
-/// Sd of ln(model variance) at an averaging factor, from the covariance of ln theta.
-double sd_of_log_variance(const NoiseFit& fit, double m, double dt_s) {
-  const double whole = std::pow(model_deviation(fit, DeviationType::oadev, m, dt_s).value_or(0), 2);
-  std::array<double, kTerms> share{};
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    NoiseFit one = fit;
-    one.theta = {};
-    one.theta[t] = fit.theta[t];
-    if (fit.theta[t] > 0)
-      share[t] =
-          std::pow(model_deviation(one, DeviationType::oadev, m, dt_s).value_or(0), 2) / whole;
-  }
-  double variance = 0;
-  for (std::size_t i = 0; i < kTerms; ++i)
-    for (std::size_t j = 0; j < kTerms; ++j) variance += share[i] * share[j] * fit.covariance[i][j];
-  return std::sqrt(std::max(0.0, variance));
-}
-
 struct Predicted {
   int inside = 0, points = 0;
 };
 
-/// Does the model of the first half lie in the interval of the second half's curve, widened by its own?
+/// Does the second half's curve lie where the model of the first says, its own interval beside?
 Predicted predicted(const NoiseFit& model, const AllanCurve& measured) {
   Predicted out;
   for (const AllanPoint& point : measured.points) {
     if (!point.reliable || !(point.deviation > 0)) continue;
     const double m = static_cast<double>(point.m);
     const auto expected = model_deviation(model, measured.type, m, measured.dt_s);
-    if (!expected) continue;
-    const double own = 1.96 * 0.5 * sd_of_log_variance(model, m, measured.dt_s);
+    const auto stated = model_interval(model, measured.type, m, measured.dt_s);
+    if (!expected || !stated) continue;
     const double apart = std::log(*expected / point.deviation);
+    const double own =
+        apart > 0 ? std::log(*expected / stated->low) : std::log(stated->high / *expected);
     const double measured_side = apart > 0 ? std::log(point.ci95.high / point.deviation)
                                            : std::log(point.deviation / point.ci95.low);
     ++out.points;
@@ -197,6 +181,9 @@ void print_parts(const std::filesystem::path& folder, const Source& source) {
     if (!channel.fit) continue;
     for (const Event& event : channel.fit->events)
       fmt::print("  whole record, {}: {}\n", channel.channel.name, event_sentence(event, ""));
+    fmt::print("  whole record, {}: {}\n",
+               channel.channel.name,
+               channel.fit->stationarity.steady ? "steady" : channel.fit->stationarity.sentence);
   }
   const Characterization first = characterize(part_of(recording, 0, 2), options_for(source)),
                          second = characterize(part_of(recording, 1, 2), options_for(source));

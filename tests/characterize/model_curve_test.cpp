@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/fit/stationarity.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;
@@ -101,4 +103,35 @@ TEST_CASE("nothing below zero or at zero frequency is predicted") {
   CHECK(!model_spectrum(*channel.fit, channel.spectrum, 0));
   CHECK(!model_deviation(*channel.fit, DeviationType::mdev, 4, 0.005));
   CHECK(!model_deviation(NoiseFit{}, DeviationType::oadev, 4, 0.005));
+}
+
+TEST_CASE("model interval: of one term it is the term's, and limits of terms not seen widen it") {
+  NoiseFit fit;
+  fit.rate_hz = 10;
+  fit.theta[0] = 0.04;
+  Coefficient& white = fit.term[0];
+  white.status = Status::detected;
+  white.value = 0.2;
+  white.ci95 = {0.19, 0.22};
+  const double deviation = *model_deviation(fit, DeviationType::oadev, 100, 0.1);
+  Interval stated = *model_interval(fit, DeviationType::oadev, 100, 0.1);
+  CHECK(stated.low == Approx(deviation * 0.95));
+  CHECK(stated.high == Approx(deviation * 1.1));
+  Coefficient& walk = fit.term[2];
+  walk.status = Status::not_detected;
+  walk.upper95 = 0.02;
+  stated = *model_interval(fit, DeviationType::oadev, 100, 0.1);
+  CHECK(stated.low == Approx(deviation * 0.95));
+  Mixture one{};
+  one[2] = 1;
+  const double up = 0.0004 * allan_variance(one, 100, 0.1),
+               white_up = deviation * deviation * (1.1 * 1.1 - 1);
+  CHECK(stated.high == Approx(std::sqrt(deviation * deviation + std::hypot(up, white_up))));
+  fit.stationarity.tested = true;
+  fit.stationarity.steady = false;
+  fit.stationarity.spread = {{1, 16, 0.1, 0}};
+  const Interval wider = *model_interval(fit, DeviationType::oadev, 100, 0.1);
+  CHECK(std::log(deviation / wider.low) ==
+        Approx(std::hypot(std::log(1 / 0.95), spread_reach(fit.stationarity, 10))));
+  CHECK(!model_interval(fit, DeviationType::mdev, 100, 0.1));
 }

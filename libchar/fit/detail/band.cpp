@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "libchar/fit/detail/gauss_markov_means.hpp"
@@ -46,6 +47,7 @@ struct Trial {
   Band band;
   std::vector<std::size_t> index;  ///< of its bins among all
   std::vector<double> z, ratio;    ///< residuals, and measured over model
+  Mixture theta{};
   double half_deviance = 0;
 };
 
@@ -112,6 +114,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins,
     trial.z.push_back(normal_deviate(trial.ratio.back(), inside[i].dof));
   }
   trial.half_deviance = best.half_deviance;
+  trial.theta = best.at.theta;
   judge_band(bins,
              count_of(only_positive(best.at.theta)) + static_cast<std::size_t>(band.orders),
              options,
@@ -130,6 +133,27 @@ Band cut_at(Band band, const std::vector<PowerBin>& bins, double top_hz) {
 void leave_out_nulls(const std::vector<PowerBin>& bins, double rate_hz, Band& band) {
   for (std::size_t j = 0; j < bins.size(); ++j)
     if (mean_ratio(band.filter, bins[j], rate_hz) < kNull) band.inside[j] = 0;
+}
+
+/// Most of a narrow filter's band is near its zeros: the differences of neighbouring samples, which live there, must not be several times
+/// what the filter lets through.
+bool explains_nulls(const std::vector<PowerBin>& bins, double rate_hz, const Trial& trial) {
+  constexpr double kTimes = 2, kBeside = 0.5;
+  double inside = 0, outside = 0, expected = 0;
+  for (std::size_t j = 0; j < bins.size(); ++j) {
+    const PowerBin& bin = bins[j];
+    const double sine = std::sin(std::numbers::pi * std::min(bin.frequency_hz / rate_hz, 0.5));
+    const double weight = (bin.high_hz - bin.low_hz) * sine * sine;
+    if (trial.band.inside[j] != 0) {
+      inside += weight * bin.energy;
+      continue;
+    }
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) model += trial.theta[i] * bin.unit[i];
+    outside += weight * bin.energy;
+    expected += weight * model * mean_ratio(trial.band.filter, bin, rate_hz);
+  }
+  return outside <= kTimes * expected + kBeside * inside;
 }
 
 /// The named filter that explains most, with the whole spectrum.
@@ -264,7 +288,8 @@ Band find_band(const std::vector<PowerBin>& bins,
   Band quantized = whole;
   quantized.quantized = true;
   if (const auto trial = search.at(quantized); trial && trial->band.passes) return trial->band;
-  if (const auto named = named_filter(bins, rate_hz, terms, options); named && named->band.passes)
+  if (const auto named = named_filter(bins, rate_hz, terms, options);
+      named && named->band.passes && explains_nulls(bins, rate_hz, *named))
     return named->band;
   Band low_pass = whole;
   TermSet offered = terms;

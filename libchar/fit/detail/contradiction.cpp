@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/allan/confidence.hpp"
@@ -65,11 +66,15 @@ bool mostly_process(const NoiseFit& fit, double m, double dt_s) {
   return process_allan_variance(fit, m, dt_s) > 0.5 * shaped_allan_variance(fit, m, dt_s);
 }
 
-// Of a term, or of none (kTerms).
-void doubt(NoiseFit& fit, std::size_t term, const std::string& sentence) {
+// Of a term, or of none (kTerms): its interval then reaches to what contradicts it.
+void doubt(NoiseFit& fit, std::size_t term, double reach, const std::string& sentence) {
   fit.sentences.push_back(sentence);
-  if (term < kTerms && fit.term[term].status == Status::detected)
-    fit.term[term].status = Status::undetermined;
+  if (term == kTerms) return;
+  Coefficient& c = fit.term[term];
+  if (c.status == Status::detected) c.status = Status::undetermined;
+  if (!c.value) return;
+  c.ci95.low = std::min(c.ci95.low, reach);
+  c.ci95.high = std::max(c.ci95.high, reach);
 }
 
 }  // namespace
@@ -82,6 +87,7 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
       fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
     doubt(fit,
           of_process ? kTerms : worst->term,
+          0,
           fmt::format(
               "At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
               "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
@@ -103,6 +109,7 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
     if (apart > 3 && ratio > kRelevant)
       doubt(fit,
             t,
+            *second,
             fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
                         "Allan curve gives {:.3g} instead of {:.3g}.",
                         long_name(static_cast<Term>(t)),

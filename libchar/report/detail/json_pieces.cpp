@@ -36,6 +36,9 @@ Json asymptotes_json(const std::vector<Asymptote>& lines) {
 void add_model(Json& out, const ModelCurve& model) {
   out["model"] = Json::array();
   for (const auto& value : model.values) out["model"].push_back(json_number(value));
+  if (!model.intervals.empty()) out["model_ci95"] = Json::array();
+  for (const auto& interval : model.intervals)
+    out["model_ci95"].push_back(interval ? interval_json(*interval) : Json(nullptr));
   out["asymptotes"] = asymptotes_json(model.asymptotes);
 }
 

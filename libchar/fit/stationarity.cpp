@@ -1,0 +1,285 @@
+// A record of 128 pieces, eight in each of sixteen stretches; v the Allan variance of a piece at an octave that fits it sixteen times,
+//   F = 8 var(mean of ln v of a stretch) / mean of (var of ln v within a stretch),   F(15, 112) where nothing changes slowly:
+// analysis of variance, whose own scatter within a stretch serves heavy tails and whatever else chance does quickly.
+// Longer averaging times, of whole stretches: Bartlett's test of equal variances (Proc. R. Soc. A 160, 1937) with the degrees of freedom
+// f_i of each variance,
+//   T = f ln(sum f_i v_i / f) - sum f_i ln v_i,   T / (1 + (sum 1/f_i - 1/f) / 45)  chi-square of 15,   f = sum f_i,
+// divided by how much more than in Gaussian noise ln v scatters at the longest octave of the pieces (where that
+// is half as much again, nothing is said of longer ones).
+// Averaging times that are too long for sixteen stretches: of four, which hold them eight times.
+// At a hundredth over the number of octaves, one in a hundred steady records is called unsteady, or fewer.
+#include "libchar/fit/stationarity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/core/chi_square.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
+#include "libchar/core/random_effects.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/shaped_curves.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kStretches = 16, kPiecesEach = 8, kPieces = kStretches * kPiecesEach;
+constexpr std::size_t kFewStretches = 4;  ///< for averaging times that are too long for sixteen
+constexpr std::uint64_t kWindows = 16;    ///< averaging times in what is looked at, at least
+constexpr std::uint64_t kFewWindows = 8;  ///< the same of the few
+constexpr std::size_t kShortest = 8192;   ///< samples
+constexpr double kUnsteady = 0.01, kNoticeable = 0.05;
+constexpr double kMostMissing = 0.1;
+constexpr double kTooHeavy = 1.5;  ///< excess of scatter: single samples carry whole stretches
+constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
+
+/// ln of the Allan variance of every stretch at an octave, and the test of it.
+struct OctaveTest {
+  StretchSpread spread;
+  std::vector<double> log_variance;
+  double within = 0;  ///< variance of ln v of a piece within its stretch
+};
+
+using Curves = std::vector<AllanCurve>;
+
+Curves curves_of(std::span<const double> values, std::size_t parts, double dt_s) {
+  Curves curves;
+  const std::size_t length = values.size() / parts;
+  for (std::size_t part = 0; part < parts; ++part)
+    curves.push_back(pyramid_deviation(values.subspan(part * length, length), dt_s));
+  return curves;
+}
+
+/// The point of an averaging factor; null where there is none, or nothing varies.
+const AllanPoint* point_of(const AllanCurve& curve, std::uint64_t m) {
+  for (const AllanPoint& point : curve.points)
+    if (point.m == m) return point.deviation > 0 ? &point : nullptr;
+  return nullptr;
+}
+
+std::optional<OctaveTest> test_pieces(const Curves& pieces, std::uint64_t m) {
+  OctaveTest test;
+  test.spread.stretches = kStretches;
+  test.log_variance.assign(kStretches, 0.0);
+  double within = 0, mean = 0;
+  for (std::size_t s = 0; s < kStretches; ++s) {
+    std::array<double, kPiecesEach> y{};
+    for (std::size_t i = 0; i < kPiecesEach; ++i) {
+      const AllanPoint* point = point_of(pieces[s * kPiecesEach + i], m);
+      if (point == nullptr) return std::nullopt;
+      test.spread.tau_s = point->tau_s;
+      y[i] = 2 * std::log(point->deviation);
+      test.log_variance[s] += y[i] / kPiecesEach;
+    }
+    for (const double value : y)
+      within += (value - test.log_variance[s]) * (value - test.log_variance[s]);
+    mean += test.log_variance[s] / kStretches;
+  }
+  double between = 0;
+  for (const double value : test.log_variance) between += (value - mean) * (value - mean);
+  constexpr double kBetween = kStretches - 1, kWithin = kPieces - kStretches;
+  within /= kWithin;
+  between *= kPiecesEach / kBetween;
+  if (!(within > 0)) return std::nullopt;
+  test.within = within;
+  test.spread.p = cdf(complement(boost::math::fisher_f(kBetween, kWithin), between / within));
+  test.spread.relative_sd = 0.5 * std::sqrt(std::max(0.0, between - within) / kPiecesEach);
+  return test;
+}
+
+std::optional<OctaveTest> test_stretches(const Curves& stretches,
+                                         std::uint64_t m,
+                                         double inflation) {
+  OctaveTest test;
+  test.spread.stretches = stretches.size();
+  std::vector<double> variances;
+  double dof = 0, pooled = 0, sum = 0, inverse = 0, first = 0;
+  for (const AllanCurve& curve : stretches) {
+    const AllanPoint* point = point_of(curve, m);
+    if (point == nullptr || !(point->edf > 2)) return std::nullopt;
+    test.spread.tau_s = point->tau_s;
+    const double y = 2 * std::log(point->deviation), own = point->edf / inflation;
+    if (test.log_variance.empty()) first = y;  // variances of 1e-40 stay in range
+    test.log_variance.push_back(y);
+    variances.push_back(2 / own);
+    dof += own;
+    inverse += 1 / own;
+    sum += own * y;
+    pooled += own * std::exp(y - first);
+  }
+  const double t = dof * (first + std::log(pooled / dof)) - sum;
+  const double free = static_cast<double>(stretches.size() - 1);
+  test.spread.p = chi_square_tail(t / (1 + (inverse - 1 / dof) / (3 * free)), free);
+  test.spread.relative_sd = 0.5 * random_effects(test.log_variance, variances).spread;
+  return test;
+}
+
+/// Means of `r` samples.
+std::vector<double> means_of(std::span<const double> record, std::uint64_t r) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i + r <= record.size(); i += r) {
+    double sum = 0, present = 0;
+    for (const double x : record.subspan(i, r)) {
+      if (std::isnan(x)) continue;
+      sum += x - record[i];
+      present += 1;
+    }
+    // A mean of few is missing, and one whose first sample is.
+    means.push_back(2 * present >= static_cast<double>(r) ? record[i] + sum / present : kNoMean);
+  }
+  return means;
+}
+
+/// Curves of the stretches from means of r samples, at the averaging factors of the record.
+Curves coarse_curves(std::span<const double> record,
+                     std::size_t stretches,
+                     std::uint64_t r,
+                     double dt_s,
+                     const NoiseFit& fit) {
+  const std::vector<double> means = means_of(record, r);
+  Curves curves = curves_of(means, stretches, dt_s * static_cast<double>(r));
+  for (AllanCurve& curve : curves) {
+    curve.dt_s = dt_s;
+    curve.samples *= r;
+    curve.missing *= r;
+    for (AllanPoint& point : curve.points) point.m *= r;
+    add_fit_intervals(curve, fit);
+  }
+  return curves;
+}
+
+/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy tails.
+double excess_scatter(AllanCurve piece, double within, std::uint64_t m, const NoiseFit& fit) {
+  add_fit_intervals(piece, fit);
+  const AllanPoint* point = point_of(piece, m);
+  return point != nullptr && point->edf > 0 ? std::max(1.0, within * point->edf / 2) : 1;
+}
+
+std::vector<OctaveTest> octaves_of(std::span<const double> record,
+                                   double rate_hz,
+                                   const NoiseFit& fit) {
+  std::vector<OctaveTest> tests;
+  const auto keep = [&](std::optional<OctaveTest> test) {
+    if (test) tests.push_back(*test);
+  };
+  const Curves pieces = curves_of(record, kPieces, 1 / rate_hz);
+  std::uint64_t m = 1;
+  for (; m * kWindows <= record.size() / kPieces; m *= 2) keep(test_pieces(pieces, m));
+  const double inflation =
+      tests.empty() ? 1 : excess_scatter(pieces[0], tests.back().within, m / 2, fit);
+  if (inflation > kTooHeavy) return tests;
+  // From eight means on a pyramid's terms start often enough.
+  for (const auto& [parts, windows] :
+       {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
+    const std::uint64_t r = std::max<std::uint64_t>(1, m / 8);
+    const Curves stretches = coarse_curves(record, parts, r, 1 / rate_hz, fit);
+    for (; m * windows <= record.size() / parts; m *= 2)
+      keep(test_stretches(stretches, m, inflation));
+  }
+  return tests;
+}
+
+void describe_clearest(const OctaveTest& clearest, double duration_s, Stationarity& out) {
+  const auto& y = clearest.log_variance;
+  double variance = 0;
+  const double highest = *std::max_element(y.begin(), y.end());
+  for (const double value : y)
+    variance += std::exp(value - highest) / static_cast<double>(y.size());
+  const double whole = highest + std::log(variance);
+  out.stretch_s = duration_s / static_cast<double>(y.size());
+  const auto stretch = [&](std::ptrdiff_t s) {
+    return Interval{static_cast<double>(s) * out.stretch_s,
+                    static_cast<double>(s + 1) * out.stretch_s};
+  };
+  const auto high = std::max_element(y.begin(), y.end()),
+             low = std::min_element(y.begin(), y.end());
+  out.clearest_tau_s = clearest.spread.tau_s;
+  out.largest_s = stretch(high - y.begin());
+  out.smallest_s = stretch(low - y.begin());
+  out.largest = std::exp(0.5 * (*high - whole));
+  out.smallest = std::exp(0.5 * (*low - whole));
+}
+
+std::string sentence_of(const Stationarity& found, double limit) {
+  double first = 0, last = 0, most = 0;
+  for (const StretchSpread& s : found.spread) {
+    if (!(s.p < limit)) continue;
+    if (first == 0) first = s.tau_s;
+    last = s.tau_s;
+    most = std::max(most, s.relative_sd);
+  }
+  return fmt::format(
+      "The noise is not the same throughout: between stretches of {} the Allan deviation at {}{} "
+      "differs by up to {} % (1 sd) "
+      "beyond chance, at {} from {} of the whole record's (from {} to {} s) to {} (from {} to {} "
+      "s). Of another recording the "
+      "coefficients tell that much less than their intervals say.",
+      duration_text(found.stretch_s),
+      duration_text(first),
+      last > first ? " to " + duration_text(last) : "",
+      number_text(100 * most, 2),
+      duration_text(found.clearest_tau_s),
+      number_text(found.smallest, 3),
+      number_text(found.smallest_s.low, 5),
+      number_text(found.smallest_s.high, 5),
+      number_text(found.largest, 3),
+      number_text(found.largest_s.low, 5),
+      number_text(found.largest_s.high, 5));
+}
+
+}  // namespace
+
+Stationarity test_stationarity(std::span<const double> record,
+                               double rate_hz,
+                               const NoiseFit& fit) {
+  Stationarity out;
+  const auto missing = static_cast<double>(count_missing(record));
+  if (record.size() < kShortest || missing > kMostMissing * static_cast<double>(record.size()))
+    return out;
+  std::vector<OctaveTest> tests;
+  try {
+    tests = octaves_of(record, rate_hz, fit);
+  } catch (const Error& error) {
+    // A piece that is missing as a whole has no curve.
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    return out;
+  }
+  if (tests.empty()) return out;
+  out.tested = true;
+  const double limit = kUnsteady / static_cast<double>(tests.size());
+  const OctaveTest* clearest = &tests[0];
+  for (const OctaveTest& test : tests) {
+    out.spread.push_back(test.spread);
+    if (test.spread.p < clearest->spread.p) clearest = &test;
+    if (!(test.spread.p < limit)) continue;
+    out.steady = false;
+    out.noticeable |= test.spread.relative_sd > kNoticeable;
+  }
+  if (out.steady) return out;
+  describe_clearest(*clearest, static_cast<double>(record.size()) / rate_hz, out);
+  out.sentence = sentence_of(out, limit);
+  return out;
+}
+
+double spread_reach(const Stationarity& stationarity, double tau_s) {
+  if (stationarity.steady) return 0;
+  const auto away = [&](const StretchSpread& s) { return std::abs(std::log(s.tau_s / tau_s)); };
+  const auto nearest = std::min_element(
+      stationarity.spread.begin(),
+      stationarity.spread.end(),
+      [&](const StretchSpread& a, const StretchSpread& b) { return away(a) < away(b); });
+  const auto n = static_cast<double>(nearest->stretches);
+  const double student = quantile(boost::math::students_t(n - 1), 0.975);
+  return student * std::sqrt(1 + 1 / n) * nearest->relative_sd;
+}
+
+}  // namespace libchar
