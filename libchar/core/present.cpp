@@ -1,6 +1,8 @@
 #include "libchar/core/present.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "libchar/core/lanes.hpp"
 
@@ -8,6 +10,7 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kPiece = 64;  // looked at together
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // x != x for a missing sample only; x - x is no number for an infinity either.
 LIBCHAR_WIDE_LANES std::size_t whole_present_pieces(const double* x, std::size_t n) {
@@ -50,6 +53,25 @@ LIBCHAR_WIDE_LANES std::size_t missing_in(const double* x, std::size_t n) {
   return missing;
 }
 
+LIBCHAR_WIDE_LANES double sum_of_fours(const double* x, std::size_t fours, double origin) {
+  Four sum = {}, other = {};
+  std::size_t i = 0;
+  for (; i + 2 <= fours; i += 2) {
+    sum += LIBCHAR_FOUR(x + 4 * i) - origin;
+    other += LIBCHAR_FOUR(x + 4 * i + 4) - origin;
+  }
+  if (i < fours) sum += LIBCHAR_FOUR(x + 4 * i) - origin;
+  sum += other;
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+double sum_about(std::span<const double> samples, double origin) {
+  const std::size_t fours = samples.size() / 4;
+  double sum = sum_of_fours(samples.data(), fours, origin);
+  for (const double x : samples.subspan(4 * fours)) sum += x - origin;
+  return sum;
+}
+
 }  // namespace
 
 std::size_t present_run(std::span<const double> samples) {
@@ -66,6 +88,22 @@ std::size_t finite_run(std::span<const double> samples) {
 
 std::size_t count_missing(std::span<const double> samples) {
   return missing_in(samples.data(), samples.size());
+}
+
+double mean_present(std::span<const double> samples) {
+  if (std::isfinite(samples[0])) {
+    const double sum = sum_about(samples, samples[0]);
+    if (std::isfinite(sum)) return samples[0] + sum / static_cast<double>(samples.size());
+  }
+  double first = kNone, sum = 0;
+  std::uint64_t present = 0;
+  for (const double x : samples) {
+    if (!std::isfinite(x)) continue;
+    if (present == 0) first = x;
+    sum += x - first;
+    ++present;
+  }
+  return present == 0 ? kNone : first + sum / static_cast<double>(present);
 }
 
 }  // namespace libchar

@@ -14,4 +14,7 @@ std::size_t finite_run(std::span<const double> samples);
 
 std::size_t count_missing(std::span<const double> samples);
 
+/// Mean of the finite ones, about the first of them: an offset costs no digits. NaN where there is none; at least one sample.
+double mean_present(std::span<const double> samples);
+
 }  // namespace libchar

@@ -123,29 +123,23 @@ std::optional<OctaveTest> test_stretches(const Curves& stretches,
   return test;
 }
 
-/// Means of `r` samples.
-std::vector<double> means_of(std::span<const double> record, std::uint64_t r) {
+/// Means of `r` values; missing where half of them are.
+std::vector<double> means_of(std::span<const double> values, std::uint64_t r) {
   std::vector<double> means;
-  for (std::size_t i = 0; i + r <= record.size(); i += r) {
-    double sum = 0, present = 0;
-    for (const double x : record.subspan(i, r)) {
-      if (std::isnan(x)) continue;
-      sum += x - record[i];
-      present += 1;
-    }
-    // A mean of few is missing, and one whose first sample is.
-    means.push_back(2 * present >= static_cast<double>(r) ? record[i] + sum / present : kNoMean);
+  for (std::size_t i = 0; i + r <= values.size(); i += r) {
+    const auto part = values.subspan(i, r);
+    const bool whole = present_run(part) == r;
+    means.push_back(whole || 2 * count_missing(part) < r ? mean_present(part) : kNoMean);
   }
   return means;
 }
 
-/// Curves of the stretches from means of r samples, at the averaging factors of the record.
-Curves coarse_curves(std::span<const double> record,
+/// Curves of the stretches from a record's means of r samples, at the averaging factors of the record.
+Curves coarse_curves(std::span<const double> means,
                      std::size_t stretches,
                      std::uint64_t r,
                      double dt_s,
                      const NoiseFit& fit) {
-  const std::vector<double> means = means_of(record, r);
   Curves curves = curves_of(means, stretches, dt_s * static_cast<double>(r));
   for (AllanCurve& curve : curves) {
     curve.dt_s = dt_s;
@@ -178,10 +172,14 @@ std::vector<OctaveTest> octaves_of(std::span<const double> record,
       tests.empty() ? 1 : excess_scatter(pieces[0], tests.back().within, m / 2, fit);
   if (inflation > kTooHeavy) return tests;
   // From eight means on a pyramid's terms start often enough.
+  std::vector<double> means;
+  std::uint64_t r = 1;
   for (const auto& [parts, windows] :
        {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
-    const std::uint64_t r = std::max<std::uint64_t>(1, m / 8);
-    const Curves stretches = coarse_curves(record, parts, r, 1 / rate_hz, fit);
+    const std::uint64_t before = r;
+    r = std::max<std::uint64_t>(1, m / 8);
+    means = means_of(means.empty() ? record : std::span<const double>(means), r / before);
+    const Curves stretches = coarse_curves(means, parts, r, 1 / rate_hz, fit);
     for (; m * windows <= record.size() / parts; m *= 2)
       keep(test_stretches(stretches, m, inflation));
   }

@@ -1,6 +1,7 @@
 #include "libchar/core/present.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -32,5 +33,26 @@ TEST_CASE("present: runs end at the first missing sample, wherever it stands") {
     }
     for (double& v : x) v = nan;
     CHECK(count_missing(x) == n);
+  }
+}
+
+TEST_CASE("present: the mean of what is finite, at any offset, length and place") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 1; n < 40; ++n) {
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = 1e9 + static_cast<double>(i);
+    CHECK(mean_present(x) == 1e9 + 0.5 * static_cast<double>(n - 1));
+    for (const double missing : {nan, infinity}) {
+      std::vector<double> holed = x;
+      holed[n / 2] = missing;
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) sum += i == n / 2 ? 0 : static_cast<double>(i);
+      if (n == 1) {
+        CHECK(std::isnan(mean_present(holed)));
+      } else {
+        CHECK(mean_present(holed) == Approx(1e9 + sum / static_cast<double>(n - 1)).epsilon(1e-16));
+      }
+    }
   }
 }

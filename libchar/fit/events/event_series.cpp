@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/present.hpp"
 #include "libchar/fit/events.hpp"
 
 namespace libchar {
@@ -59,42 +59,6 @@ void bridge(std::vector<double>& value,
     t = end;
   }
   value = std::move(bridged);
-}
-
-LIBCHAR_WIDE_LANES double sum_of_fours(const double* x, std::size_t fours, double origin) {
-  Four sum = {}, other = {};
-  std::size_t i = 0;
-  for (; i + 2 <= fours; i += 2) {
-    sum += LIBCHAR_FOUR(x + 4 * i) - origin;
-    other += LIBCHAR_FOUR(x + 4 * i + 4) - origin;
-  }
-  if (i < fours) sum += LIBCHAR_FOUR(x + 4 * i) - origin;
-  sum += other;
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
-double sum_about(std::span<const double> samples, double origin) {
-  const std::size_t fours = samples.size() / 4;
-  double sum = sum_of_fours(samples.data(), fours, origin);
-  for (const double x : samples.subspan(4 * fours)) sum += x - origin;
-  return sum;
-}
-
-/// Mean of what is present, about the first of it: an offset costs no digits.
-double mean_present(std::span<const double> samples) {
-  if (std::isfinite(samples[0])) {
-    const double sum = sum_about(samples, samples[0]);
-    if (std::isfinite(sum)) return samples[0] + sum / static_cast<double>(samples.size());
-  }
-  double first = kMissing, sum = 0;
-  std::uint64_t present = 0;
-  for (const double x : samples) {
-    if (!std::isfinite(x)) continue;
-    if (present == 0) first = x;
-    sum += x - first;
-    ++present;
-  }
-  return present == 0 ? kMissing : first + sum / static_cast<double>(present);
 }
 
 std::span<const double> from_first_to_last(std::span<const double> record, double& start) {
