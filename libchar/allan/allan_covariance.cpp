@@ -93,7 +93,8 @@ Products aligned_pair_sum(const Side& a, const Side& b, double start, double dt)
 Products pair_sum(const Side& a, const Side& b, double dt) {
   const auto fine = static_cast<std::uint64_t>(a.stride),
              coarse = static_cast<std::uint64_t>(b.stride);
-  const double sets = std::min(static_cast<double>(fine / std::gcd(fine, coarse)), b.terms);
+  const std::uint64_t apart = fine / std::gcd(fine, coarse);
+  const double sets = std::min(static_cast<double>(apart), b.terms);
   Products sum;
   for (double first = 0; first < sets; ++first) {
     const Side part = {b.m, std::ceil((b.terms - first) / sets), b.stride * sets};

@@ -92,6 +92,7 @@ LimitReport judge_limits(const std::vector<LimitSubject>& subjects, const NoiseL
   report.file = limits.file;
   report.sensor = limits.sensor;
   std::vector<NamedChannel> names;
+  names.reserve(subjects.size());
   for (const LimitSubject& s : subjects) names.push_back({s.channel.name, s.channel.unit});
   for (const ChannelLimit& limit : limits_for(limits, names)) {
     const LimitSubject& subject = subjects[limit.channel];

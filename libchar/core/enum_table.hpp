@@ -58,6 +58,7 @@ constexpr std::optional<Enum> find_enum(std::string_view word) {
 template <EnumWithTable Enum>
 std::vector<std::string> words_of() {
   std::vector<std::string> words;
+  words.reserve(enum_table<Enum>.size());
   for (const EnumWord<Enum>& row : enum_table<Enum>) words.emplace_back(row.word);
   return words;
 }

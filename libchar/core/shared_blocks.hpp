@@ -26,8 +26,7 @@ class BlockTaker {
   /// The sums of c_k² over the blocks that were taken, k = 0 … length-1 (k = 0 is of no meaning); once, at the end.
   virtual void take_power(std::vector<double> power) = 0;
 
- protected:
-  ~BlockTaker() = default;
+  virtual ~BlockTaker() = default;
 };
 
 class SharedBlocks {

@@ -61,6 +61,7 @@ std::size_t axis_index(const std::string& axis) {
 
 void check_overrides(const std::vector<SensorModel>& models, const AxisOverrides& overrides) {
   std::vector<std::string> channels;
+  channels.reserve(models.size());
   for (const SensorModel& model : models) channels.push_back(model.channel);
   for (const auto& [channel, place] : overrides) {
     place_named(place);

@@ -143,6 +143,7 @@ RunRatios run_ratios(const RunBins& runs, const std::array<bool, kTerms>& terms)
 
 std::vector<double> expected_energy(const std::vector<PowerBin>& bins, const Mixture& theta) {
   std::vector<double> out;
+  out.reserve(bins.size());
   for (const PowerBin& bin : bins) out.push_back(of_terms(bin, theta));
   return out;
 }

@@ -41,7 +41,7 @@ class PowerBinner final : public BlockTaker {
   static bool suits(std::uint64_t block);
 
   explicit PowerBinner(std::uint64_t block = std::uint64_t{1} << 16U);
-  ~PowerBinner();
+  ~PowerBinner() override;
   PowerBinner(PowerBinner&&) noexcept;
   PowerBinner& operator=(PowerBinner&&) noexcept;
   void push(std::span<const double> samples) override;

@@ -89,6 +89,7 @@ const Entry* find_algorithm(std::string_view name) {
 const Entry& algorithm(std::string_view name) {
   if (const Entry* found = find_algorithm(name)) return *found;
   std::vector<std::string> names;
+  names.reserve(kAlgorithms.size());
   for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.description->name);
   const auto near = nearest(name, names);
   throw Error({ErrorKind::usage,

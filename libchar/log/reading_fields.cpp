@@ -15,6 +15,7 @@ const std::vector<Word>& format_choices() {
   static const std::vector<std::string> names = format_words();
   static const std::vector<Word> words = [] {
     std::vector<Word> out;
+    out.reserve(names.size());
     for (const std::string& name : names) out.push_back({name});
     return out;
   }();

@@ -73,6 +73,7 @@ Row<LimitBlock> term_row() {
 
 std::string names_of(const std::vector<NamedChannel>& channels) {
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const NamedChannel& c : channels) names.push_back(c.name);
   constexpr std::size_t kShown = 8;
   std::string out = fmt::format(
@@ -94,6 +95,7 @@ std::vector<std::size_t> named_channels(const NoiseLimits& limits,
     });
     if (at == channels.end()) {
       std::vector<std::string> names;
+      names.reserve(channels.size());
       for (const NamedChannel& c : channels) names.push_back(c.name);
       const auto near = nearest(block.channels[i], names);
       refuse_at(

@@ -69,6 +69,7 @@ void add_algorithms(ReplayView& view, const ReplayResult& r) {
 std::vector<const AlgorithmView*> views_of(const ReplayView& view,
                                            const std::vector<const AlgorithmResult*>& results) {
   std::vector<const AlgorithmView*> out;
+  out.reserve(results.size());
   for (const AlgorithmResult* a : results)
     out.push_back(&view.algorithms[static_cast<std::size_t>(a - view.result->algorithms.data())]);
   return out;

@@ -234,7 +234,7 @@ Spectrum welch(std::span<const double> record,
     arena.execute([&] {
       std::uint64_t next = 0;
       tbb::parallel_pipeline(
-          static_cast<std::size_t>(2 * threads),
+          2 * static_cast<std::size_t>(threads),
           tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
                                                 [&](tbb::flow_control& control) -> std::uint64_t {
                                                   if (next == groups) control.stop();

@@ -53,6 +53,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
   }
   if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;
+  inputs.reserve(inspections.size());
   for (const libchar::Inspection& inspection : inspections) inputs.push_back(&inspection.info);
   libchar::Json document = document_head(session, "inspect", inputs);
   document["recordings"] = libchar::inspection_json(inspections)["recordings"];

@@ -70,6 +70,7 @@ AxisOverrides overrides(const std::vector<std::string>& places) {
 
 Json head_of(const Session& session, const char* format, const std::vector<LogInfo>& files) {
   std::vector<const LogInfo*> inputs;
+  inputs.reserve(files.size());
   for (const LogInfo& info : files) inputs.push_back(&info);
   return document_head(session, format, inputs);
 }

@@ -68,6 +68,7 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
   const auto& channels = so_far.channels;
   const std::string& wanted = options_.temperature;
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const Channel& channel : channels) names.push_back(channel.name);
   auto found = std::find(names.begin(), names.end(), wanted);
   for (std::size_t c = 0; found == names.end() && c < names.size(); ++c)

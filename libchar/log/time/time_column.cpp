@@ -167,6 +167,7 @@ std::size_t named_column(const TableFront& table,
                                     columns.begin());
   if (const auto index = position_in(wanted, columns.size())) return *index;
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const ColumnLabel& column : columns)
     names.push_back(column.name.empty() ? fmt::format("c{}", names.size()) : column.name);
   throw Error({ErrorKind::usage,

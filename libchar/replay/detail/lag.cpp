@@ -191,8 +191,9 @@ LagEstimate estimate_lag(std::span<const double> sensor,
   LagEstimate result;
   if (count < kFewestPairs || !(rate_hz > 0) || !(most_s >= 0)) return result;
   const Series s = centred(sensor, count), x = centred(reference, count);
+  const std::size_t half = count / 2;
   const auto most = static_cast<std::int64_t>(
-      std::min(std::floor(most_s * rate_hz + 1e-9), static_cast<double>(count / 2)));
+      std::min(std::floor(most_s * rate_hz + 1e-9), static_cast<double>(half)));
   double common = 0;
   for (std::size_t k = 0; k < count; ++k) common += std::isnan(s[k] + x[k]) ? 0 : 1;
   const double fewest = std::max<double>(kFewestPairs, common / 4);

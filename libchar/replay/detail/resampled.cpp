@@ -85,6 +85,7 @@ ReadOptions with_stamps_as_channel(ReadOptions reading) {
 std::vector<double> seconds_since_first(const std::vector<double>& raw, const std::string& unit) {
   std::vector<double> out;
   const double factor = seconds(unit);
+  out.reserve(raw.size());
   for (const double t : raw) out.push_back((t - raw[0]) * factor);
   return out;
 }
@@ -162,6 +163,7 @@ ResampledLog read_resampled(const std::string& path,
   if (used.size() < 2)
     refuse(path, "recording.resample_hz: fewer than two rows with rising stamps", "");
   std::vector<double> t;
+  t.reserve(used.size());
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);
   out.samples = at_rate(columns_of(rows, wanted, first_angle), used, t, rate_hz);
   out.log.time.rate_hz = rate_hz;

@@ -43,7 +43,8 @@ std::pair<std::size_t, std::size_t> rows_and_columns(std::size_t h) {
   double nearest = 8;  // the longer over the shorter, at most
   for (std::size_t n2 = 16; n2 <= h / 16; n2 += 8) {
     if (h % n2 != 0) continue;
-    const double ratio = static_cast<double>(n2) / static_cast<double>(h / n2);
+    const std::size_t n1 = h / n2;
+    const double ratio = static_cast<double>(n2) / static_cast<double>(n1);
     const double unequal = std::max(ratio, 1 / ratio);
     if (unequal > nearest) continue;
     nearest = unequal;
