@@ -98,7 +98,7 @@ LIBCHAR_WIDE_LANES double largest_deviation(const double* x, std::size_t n, doub
   for (std::size_t i = 0; i < n; i += 4) {
     const Four distance = LIBCHAR_FOUR(x + i) / 2 - first;
     const Four deviation = distance < 0 ? -distance : distance;
-    largest = (deviation > largest) & (deviation < infinite) ? deviation : largest;
+    largest = ((deviation > largest) & (deviation < infinite)) ? deviation : largest;
   }
   return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
 }
