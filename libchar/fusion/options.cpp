@@ -61,7 +61,7 @@ void Settings::set(std::string_view name, double value) {
 double Settings::operator[](std::string_view name) const {
   for (std::size_t i = 0; i < table_.size(); ++i)
     if (table_[i].name == name) return values_[i];
-  assert(!"an option that is not in the table");
+  assert(false && "an option that is not in the table");
   return std::nan("");
 }
 

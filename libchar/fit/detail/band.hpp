@@ -31,6 +31,7 @@ struct BandOptions {
       0.02;  ///< of more chi-square than in the residuals, below which a band does not pass
   double probability_plain =
       0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
+  double misfit = 1e-3;  ///< from here on the whole spectrum is cut at most by two octaves
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
 };

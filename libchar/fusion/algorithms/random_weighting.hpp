@@ -34,7 +34,7 @@ struct RandomWeighting {
  private:
   double floor_;
   Eigen::VectorXd squares_, variances_, weights_;
-  double instants_ = 0, variance_ = 0;
+  double instants_ = 0;
 };
 
 struct RandomWeightingPublished {
