@@ -1,5 +1,6 @@
 // The overlapping Allan deviation at averaging factor m = r m' of a record is that at m' of its means of r samples, with terms that
 // start every r samples instead of every one. For r <= m/8 neighbouring terms are alike to an eighth of their length.
+// The first begins r/2 samples in: the first sample of all is in one of all terms, and would be in r times its share of them.
 #include "libchar/allan/ten_a_decade.hpp"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ void add_points(std::span<const double> means,
     point.m *= r;
     point.tau_s = static_cast<double>(point.m) * curve.dt_s;
     // As many as the curve's own stride would have had: so its degrees of freedom are counted.
-    const std::uint64_t starts = (point.terms - 1) * r + 1;
+    const std::uint64_t starts = r == 1 ? point.terms : curve.samples - 2 * point.m + 1;
     point.terms = std::max<std::uint64_t>(1, starts / stride_of(curve, point));
     curve.points.push_back(point);
   }
@@ -87,18 +88,22 @@ void add_ten_a_decade(std::span<const double> record,
                       AllanCurve& octaves) {
   if (octaves.points.empty() || octaves.type != DeviationType::oadev) return;
   const auto factors = wanted_factors(options, octaves);
-  std::vector<double> means;
+  std::vector<double> halves;  // means of r samples, half as many as are wanted
   std::uint64_t r = 1;
   for (const auto& [length, in_means] : factors) {
     if (length < kOfLong && record.size() > exact_samples) continue;
-    while (r < length) {
-      const auto before = r == 1 ? record : std::span<const double>(means);
-      const bool eight = length / r >= 8;
-      means = eight ? means_of_eight(before) : means_of_two(before);
+    if (length == 1) {
+      add_points(record, length, in_means, options, octaves);
+      continue;
+    }
+    while (2 * r < length) {
+      const auto before = r == 1 ? record : std::span<const double>(halves);
+      const bool eight = length / r >= 16;
+      halves = eight ? means_of_eight(before) : means_of_two(before);
       r *= eight ? 8 : 2;
     }
-    add_points(
-        length == 1 ? record : std::span<const double>(means), length, in_means, options, octaves);
+    const auto from = r == 1 ? record : std::span<const double>(halves);
+    add_points(means_of_two(from.subspan(1)), length, in_means, options, octaves);
   }
   std::sort(octaves.points.begin(),
             octaves.points.end(),

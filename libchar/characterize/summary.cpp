@@ -31,6 +31,17 @@ std::string without_stop(std::string sentence) {
   return sentence;
 }
 
+// A sentence as a part of another.
+std::string as_part(const std::string& whole) {
+  std::string sentence = without_stop(whole);
+  const auto is_in = [&](std::size_t i, char first, char last) {
+    return sentence.size() > i && sentence[i] >= first && sentence[i] <= last;
+  };
+  if (is_in(0, 'A', 'Z') && is_in(1, 'a', 'z'))
+    sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
+  return sentence;
+}
+
 // "a step", "3 steps": with what a sentence says of several kinds joined.
 std::string counted(std::size_t count, const std::string& name, const char* many = "s") {
   if (count == 1) return "a " + name;
@@ -129,7 +140,7 @@ void look_at_record(const ChannelResult& channel, Found& found) {
     for (const std::string& sentence : *sentences)
       if ((channel.fit || sentence.rfind("no ", 0) != 0) &&
           std::find(told.begin(), told.end(), sentence) == told.end())
-        found.add(Rating::caution, without_stop(sentence));
+        found.add(Rating::caution, channel.fit ? as_part(sentence) : without_stop(sentence));
 }
 
 std::string term_phrase(const NoiseFit& fit, Term term, const std::string& unit) {

@@ -58,8 +58,14 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   return "";
 }
 
+bool misfits(const NoiseFit& fit) {
+  return std::any_of(fit.term.begin(), fit.term.end(), [](const Coefficient& term) {
+    return term.status == Status::misfit;
+  });
+}
+
 bool explained(const ChannelResult& c) {
-  return c.fit && c.fit->goodness.p >= kDoubtful;
+  return c.fit && c.fit->goodness.p >= kDoubtful && !misfits(*c.fit);
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -145,7 +151,7 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
   if (channel.fit) {
     const NoiseFit& fit = *channel.fit;
     if (!fit.converged) out.push_back("The fit did not converge.");
-    if (!explained(channel)) out.push_back(goodness_sentence(fit.goodness));
+    if (!(fit.goodness.p >= kDoubtful)) out.push_back(goodness_sentence(fit.goodness));
     if (fit.second_opinion && !fit.second_opinion->agrees)
       out.push_back("The Allan fit disagrees: " + fit.second_opinion->sentence);
   }
@@ -164,13 +170,16 @@ std::vector<std::string> cautions(const ChannelResult& channel) {
 
 std::string verdict_of(const Characterization& result) {
   const std::size_t n = result.channels.size();
-  std::vector<std::string> unfitted, doubtful, disputed, doubted, noted;
+  std::vector<std::string> unfitted, doubtful, disputed, doubted, noted, refuted;
+  std::size_t opinions = 0;
   for (const ChannelResult& c : result.channels) {
     if (c.fit && std::any_of(c.fit->term.begin(), c.fit->term.end(), [](const Coefficient& term) {
           return term.status == Status::undetermined || term.status == Status::misfit;
         }))
       doubted.push_back(c.channel.name);
     const bool unlike = c.verification && !c.verification->agrees;
+    if (unlike) refuted.push_back(c.channel.name);
+    opinions += c.fit && c.fit->second_opinion ? 1 : 0;
     if (c.fit && (!c.problems.empty() || unlike || !c.fit->events.empty()))
       noted.push_back(c.channel.name);
     if (!c.fit)
@@ -184,12 +193,15 @@ std::string verdict_of(const Characterization& result) {
   const std::size_t good = n - unfitted.size() - doubtful.size() - disputed.size();
   std::string out;
   if (good == n) {
-    out = n == 1
-              ? "The noise model explains the channel within its scatter, and the Allan fit agrees."
-              : fmt::format(
-                    "The noise model explains all {} channels within their scatter, and the Allan "
-                    "fits agree.",
-                    n);
+    out = n == 1 ? "The noise model explains the channel within its scatter"
+                 : fmt::format("The noise model explains all {} channels within their scatter", n);
+    if (opinions == n)
+      out += n == 1 ? ", and the Allan fit agrees." : ", and the Allan fits agree.";
+    else if (opinions > 0)
+      out +=
+          fmt::format(", and the Allan fits, where they are made ({} of {}), agree.", opinions, n);
+    else
+      out += ".";
   } else {
     out = fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
   }
@@ -199,6 +211,8 @@ std::string verdict_of(const Characterization& result) {
                     list_of(doubtful));
   if (!disputed.empty())
     out += fmt::format(" The Allan fit disagrees with the spectral fit on {}.", list_of(disputed));
+  if (!refuted.empty())
+    out += fmt::format(" A simulation of the model does not agree with {}.", list_of(refuted));
   if (!unfitted.empty()) out += fmt::format(" No fit was possible for {}.", list_of(unfitted));
   if (!doubted.empty()) out += fmt::format(" Coefficients of {} are doubtful.", list_of(doubted));
   if (!noted.empty()) out += fmt::format(" Read what is said of {}.", list_of(noted));

@@ -217,8 +217,8 @@ ChannelVerification compared(const ChannelResult& recorded,
   const auto good = std::count_if(
       out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });
   out.sentences.push_back(fmt::format(
-      "A sensor simulated from this model {} the recording: {} of {} averaging times, {} of {} "
-      "coefficients.",
+      "A sensor simulated from this model {} the recording: {} of {} averaging times and {} of {} "
+      "coefficients are alike.",
       out.agrees ? "agrees with" : "does not agree with",
       good,
       out.points.size(),

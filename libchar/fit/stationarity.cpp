@@ -45,8 +45,9 @@ constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 /// ln of the Allan variance of every stretch at an octave, and the test of it.
 struct OctaveTest {
   StretchSpread spread;
-  std::vector<double> log_variance;
-  double within = 0;  ///< variance of ln v of a piece within its stretch
+  std::vector<double> log_variance;  ///< of a stretch: mean of the logarithms of its pieces
+  std::vector<double> deviation;     ///< of a stretch
+  double within = 0;                 ///< variance of ln v of a piece within its stretch
 };
 
 using Curves = std::vector<AllanCurve>;
@@ -73,13 +74,16 @@ std::optional<OctaveTest> test_pieces(const Curves& pieces, std::uint64_t m) {
   double within = 0, mean = 0;
   for (std::size_t s = 0; s < kStretches; ++s) {
     std::array<double, kPiecesEach> y{};
+    double variance = 0;
     for (std::size_t i = 0; i < kPiecesEach; ++i) {
       const AllanPoint* point = point_of(pieces[s * kPiecesEach + i], m);
       if (point == nullptr) return std::nullopt;
       test.spread.tau_s = point->tau_s;
       y[i] = 2 * std::log(point->deviation);
       test.log_variance[s] += y[i] / kPiecesEach;
+      variance += point->deviation * point->deviation / kPiecesEach;
     }
+    test.deviation.push_back(std::sqrt(variance));
     for (const double value : y)
       within += (value - test.log_variance[s]) * (value - test.log_variance[s]);
     mean += test.log_variance[s] / kStretches;
@@ -110,6 +114,7 @@ std::optional<OctaveTest> test_stretches(const Curves& stretches,
     const double y = 2 * std::log(point->deviation), own = point->edf / inflation;
     if (test.log_variance.empty()) first = y;  // variances of 1e-40 stay in range
     test.log_variance.push_back(y);
+    test.deviation.push_back(point->deviation);
     variances.push_back(2 / own);
     dof += own;
     inverse += 1 / own;
@@ -187,51 +192,50 @@ std::vector<OctaveTest> octaves_of(std::span<const double> record,
 }
 
 void describe_clearest(const OctaveTest& clearest, double duration_s, Stationarity& out) {
-  const auto& y = clearest.log_variance;
-  double variance = 0;
-  const double highest = *std::max_element(y.begin(), y.end());
-  for (const double value : y)
-    variance += std::exp(value - highest) / static_cast<double>(y.size());
-  const double whole = highest + std::log(variance);
-  out.stretch_s = duration_s / static_cast<double>(y.size());
-  const auto stretch = [&](std::ptrdiff_t s) {
-    return Interval{static_cast<double>(s) * out.stretch_s,
-                    static_cast<double>(s + 1) * out.stretch_s};
-  };
-  const auto high = std::max_element(y.begin(), y.end()),
-             low = std::min_element(y.begin(), y.end());
+  const std::vector<double>& deviation = clearest.deviation;
+  const auto [low, high] = std::minmax_element(deviation.begin(), deviation.end());
+  double squares = 0;  // about the largest: squares of 1e-200 stay in range
+  for (const double d : deviation) squares += (d / *high) * (d / *high);
+  const double whole = *high * std::sqrt(squares / static_cast<double>(deviation.size()));
   out.clearest_tau_s = clearest.spread.tau_s;
-  out.largest_s = stretch(high - y.begin());
-  out.smallest_s = stretch(low - y.begin());
-  out.largest = std::exp(0.5 * (*high - whole));
-  out.smallest = std::exp(0.5 * (*low - whole));
+  out.stretch_s = duration_s / static_cast<double>(deviation.size());
+  const auto stretch = [&](std::vector<double>::const_iterator at) {
+    const auto s = static_cast<double>(at - deviation.begin());
+    return Interval{s * out.stretch_s, (s + 1) * out.stretch_s};
+  };
+  out.largest_s = stretch(high);
+  out.smallest_s = stretch(low);
+  out.largest = *high / whole;
+  out.smallest = *low / whole;
 }
 
 std::string sentence_of(const Stationarity& found, double limit) {
-  double first = 0, last = 0, most = 0;
+  double first = 0, last = 0, there = 0;
   for (const StretchSpread& s : found.spread) {
+    if (s.tau_s == found.clearest_tau_s) there = s.relative_sd;
     if (!(s.p < limit)) continue;
     if (first == 0) first = s.tau_s;
     last = s.tau_s;
-    most = std::max(most, s.relative_sd);
   }
   return fmt::format(
-      "The noise is not the same throughout: between stretches of {} the Allan deviation at {}{} "
-      "differs by up to {} % (1 sd) "
-      "beyond chance, at {} from {} of the whole record's (from {} to {} s) to {} (from {} to {} "
-      "s). Of another recording the "
-      "coefficients tell that much less than their intervals say.",
-      duration_text(found.stretch_s),
-      duration_text(first),
-      last > first ? " to " + duration_text(last) : "",
-      number_text(100 * most, 2),
+      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of "
+      "stretches of {} differs by {} % (1 sd) beyond "
+      "chance, from {} of the whole record's at {:.6g} to {:.6g} s to {} at {:.6g} to {:.6g} s{}. "
+      "Another recording may differ as "
+      "much.",
       duration_text(found.clearest_tau_s),
+      duration_text(found.stretch_s),
+      number_text(100 * there, 2),
       number_text(found.smallest, 3),
-      number_text(found.smallest_s.low, 5),
-      number_text(found.smallest_s.high, 5),
+      found.smallest_s.low,
+      found.smallest_s.high,
       number_text(found.largest, 3),
-      number_text(found.largest_s.low, 5),
-      number_text(found.largest_s.high, 5));
+      found.largest_s.low,
+      found.largest_s.high,
+      last > first ? fmt::format("; so it does at other averaging times between {} and {}",
+                                 duration_text(first),
+                                 duration_text(last))
+                   : "");
 }
 
 }  // namespace

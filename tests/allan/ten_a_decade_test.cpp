@@ -94,3 +94,19 @@ TEST_CASE("ten a decade: limits hold, and missing samples are exact or nothing")
   add_ten_a_decade(x, {}, 1000, fine);
   CHECK(fine.points.size() == octaves.points.size());
 }
+
+TEST_CASE("ten a decade: a wild first sample counts as in the full overlap") {
+  auto x = walk_and_noise(100000, 4);
+  x[0] =
+      3000;  // in one term of m = 20: with every fourth of them it would be in four times its share
+  AllanCurve fine = allan_deviation(x, 0.01);
+  add_ten_a_decade(x, {}, 1U << 20U, fine);
+  AllanOptions list;
+  list.grid = TauGrid::list;
+  for (const AllanPoint& p : fine.points) list.taus_s.push_back(p.tau_s);
+  const AllanCurve exact = allan_deviation(x, 0.01, list);
+  REQUIRE(exact.points.size() == fine.points.size());
+  for (std::size_t i = 0; i < fine.points.size(); ++i)
+    if (fine.points[i].m < 1000)
+      CHECK(fine.points[i].deviation <= exact.points[i].deviation * 1.02);
+}

@@ -174,7 +174,9 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
     fit.remedies.push_back(
         {"shape",
          alarm,
-         fmt::format("a filter's shape of {} coefficients fitted with the terms", band.orders),
+         fmt::format("a filter's shape of {} coefficient{} fitted with the terms",
+                     band.orders,
+                     band.orders == 1 ? "" : "s"),
          static_cast<std::uint64_t>(band.orders)});
   const auto left_out =
       static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));

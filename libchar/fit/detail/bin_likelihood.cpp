@@ -24,6 +24,13 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   problem.energy.resize(n);
   problem.dof.resize(n);
   problem.unit.resize(n, static_cast<int>(kTerms));
+  if (bins.empty())
+    throw Error({ErrorKind::numeric,
+                 "",
+                 "",
+                 "the record is too short: no frequency is left to be fitted",
+                 "",
+                 ""});
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   if (!(largest > 0) || !std::isfinite(largest)) {

@@ -18,7 +18,8 @@ bool begins_like_a_formula(std::string_view text) {
 
 std::string header_cell(const Channel& channel) {
   std::string text = begins_like_a_formula(channel.name) ? "'" + channel.name : channel.name;
-  if (!channel.unit.empty()) text += "[" + channel.unit + "]";
+  // A ratio has no unit to print: [1] would read as an index.
+  if (!channel.unit.empty() && channel.unit != "1") text += "[" + channel.unit + "]";
   const bool blank_at_an_end = text.front() == ' ' || text.back() == ' ';
   if (!blank_at_an_end && text.find_first_of(",;\t\"\r\n#'") == std::string::npos) return text;
   std::string quoted = "\"";
