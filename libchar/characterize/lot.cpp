@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/characterize/detail/alike_runs.hpp"
@@ -196,6 +198,29 @@ std::vector<Statistic> statistics_of(Devices devices, const LotOptions& options)
   return out;
 }
 
+/// Channels of one name and unlike units are no group, and nobody sees that in a table of groups.
+std::vector<std::string> unlike_units(Devices devices, const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  std::map<std::string, std::pair<std::string, std::size_t>> first;
+  std::set<std::string> told;
+  for (std::size_t d = 0; d < devices.size(); ++d)
+    for (const ChannelResult& result : devices[d].channels) {
+      const Channel& channel = result.channel;
+      const auto known = find_unit(channel.unit);
+      const std::string unit = known ? std::string(known->symbol) : channel.unit;
+      const auto [at, is_first] = first.try_emplace(channel.name, unit, d);
+      if (is_first || at->second.first == unit || !told.insert(channel.name).second) continue;
+      const auto in = [](const std::string& u) { return u.empty() ? "without a unit" : "in " + u; };
+      out.push_back(fmt::format("{} is {} in {} and {} in {}: not compared.",
+                                channel.name,
+                                in(at->second.first),
+                                names[at->second.second],
+                                in(unit),
+                                names[d]));
+    }
+  return out;
+}
+
 }  // namespace
 
 Lot lot_of(Devices devices, const LotOptions& options) {
@@ -211,6 +236,7 @@ Lot lot_of(Devices devices, const LotOptions& options) {
   check_files(devices);
   Lot lot;
   lot.devices = device_names(devices);
+  lot.not_compared = unlike_units(devices, lot.devices);
   std::vector<Statistic> statistics = statistics_of(devices, options);
   const double share = options.outlier_probability /
                        static_cast<double>(std::max<std::size_t>(1, statistics.size()));
@@ -246,12 +272,14 @@ std::string lot_verdict(const Lot& lot) {
         named.push_back(o.member);
   const std::string devices =
       fmt::format("{} recording{}", lot.devices.size(), lot.devices.size() == 1 ? "" : "s");
-  if (named.empty()) return devices + ": no channel stands out from its kind.";
-  return fmt::format("{}: {} channel{} out from {} kind.",
-                     devices,
-                     named.size(),
-                     named.size() == 1 ? " stands" : "s stand",
-                     named.size() == 1 ? "its" : "their");
+  std::string out = named.empty() ? devices + ": no channel stands out from its kind."
+                                  : fmt::format("{}: {} channel{} out from {} kind.",
+                                                devices,
+                                                named.size(),
+                                                named.size() == 1 ? " stands" : "s stand",
+                                                named.size() == 1 ? "its" : "their");
+  for (const std::string& sentence : lot.not_compared) out += " " + sentence;
+  return out;
 }
 
 }  // namespace libchar

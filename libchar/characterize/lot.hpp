@@ -41,6 +41,7 @@ struct LotStatistic {
 struct Lot {
   std::vector<std::string> devices;  ///< names, one a recording, none twice
   std::vector<LotStatistic> statistics;
+  std::vector<std::string> not_compared;  ///< sentences: channels of one name and unlike units
 };
 
 struct LotOptions {

@@ -129,7 +129,7 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
   text += text_table(rows, "  ", true);
   if (!fit.band.whole)
     text +=
-        "  at best, 10 % needs: were the whole spectrum described by the terms, not this band "
+        "  at best, 10 % needs: of a record whose whole spectrum the terms describe, not this band "
         "alone\n";
   text += power_laws_text(fit);
   if (fit.bandwidth_hz)

@@ -130,3 +130,15 @@ TEST_CASE("channels of one name in unlike units are not taken together") {
   const Lot result = lot_of(devices);
   for (const LotStatistic& s : result.statistics) CHECK(s.group != "x");
 }
+
+TEST_CASE("lot: channels of one name and unlike units are named and not compared") {
+  test::Gaussian gauss(8);
+  std::vector<Characterization> lot = {device("a.csv", {"x", "y"}, 0.1, gauss),
+                                       device("b.csv", {"x", "y"}, 0.1, gauss)};
+  lot[1].channels[1].channel.unit = "rad/s";
+  const Lot found = lot_of(lot);
+  REQUIRE(found.not_compared.size() == 1);
+  CHECK_THAT(lot_verdict(found), Contains("y is in deg/s in a and in rad/s in b: not compared."));
+  lot[1].channels[1].channel.unit = "deg/s";
+  CHECK(lot_of(lot).not_compared.empty());
+}

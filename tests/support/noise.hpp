@@ -64,7 +64,9 @@ class FlickerSource {
     c[0] = amplitude_[0] * gauss();
     c[size_ / 2] = amplitude_[size_ / 2] * gauss();
     for (std::size_t k = 1; k < size_ / 2; ++k) {
-      c[k] = std::complex<double>(gauss(), gauss()) * (amplitude_[k] * std::sqrt(0.5));
+      // One after the other: compilers differ in the order of arguments.
+      const double imaginary = gauss(), real = gauss();
+      c[k] = std::complex<double>(real, imaginary) * (amplitude_[k] * std::sqrt(0.5));
     }
     const auto increments = fft_.inverse();
     double sum = 0;

@@ -336,6 +336,22 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
     attempt(result, "noise fit", [&] { result.fit = fit_of_streams(octaves, rate_hz); });
 }
 
+// A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind of data, or no nominal frequency.
+void ChannelStage::doubt_frequency(ChannelResult& result) const {
+  constexpr double kMostOff = 0.01;
+  if (options_->data != SampleKind::frequency || found_.samples == 0) return;
+  const double nominal = options_->nominal_frequency;
+  const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
+  if (std::abs(off) <= kMostOff) return;
+  result.problems.push_back(
+      nominal == 0 ? fmt::format("The mean is {:.6g}: without `nominal_frequency` values are taken "
+                                 "for fractional frequencies, which are small.",
+                                 found_.mean)
+                   : fmt::format("The mean, {:.6g}, is far from the nominal frequency of {:.6g}.",
+                                 found_.mean,
+                                 nominal));
+}
+
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string ChannelStage::unit_of_rate(const std::string& unit) const {
   if (options_->data == SampleKind::phase)
@@ -376,6 +392,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
         "`rate_hz`)");
     return result;
   }
+  doubt_frequency(result);
   if (options_->data == SampleKind::phase) difference_kept(rate_hz);
   if (options_->data == SampleKind::frequency) noise_types_ = types_of_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);

@@ -87,6 +87,7 @@ class ChannelStage {
   Quantization quantization() const;
   ChannelQuality quality_of_rate() const;
   bool is_noise(ChannelResult& result) const;
+  void doubt_frequency(ChannelResult& result) const;
   bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) const;
   void find_digital(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
