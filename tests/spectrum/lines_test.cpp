@@ -29,8 +29,10 @@ std::vector<double> coloured(std::size_t n, double exponent, unsigned seed) {
     const double size = std::pow(
         2 * std::sin(std::numbers::pi * static_cast<double>(k) / (2 * static_cast<double>(n))),
         -exponent / 2);
-    bins[k] = size * std::complex<double>(normal(generator), normal(generator)) /
-              std::sqrt(4.0 * static_cast<double>(n));
+    // One after the other: compilers differ in the order of arguments.
+    const double imaginary = normal(generator), real = normal(generator);
+    bins[k] =
+        size * std::complex<double>(real, imaginary) / std::sqrt(4.0 * static_cast<double>(n));
   }
   const auto y = fft.inverse();
   return {y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n)};
