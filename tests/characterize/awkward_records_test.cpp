@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/model_curve.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "tests/support/noise.hpp"
+#include "tests/support/npy.hpp"
+#include "tests/support/shared.hpp"
 
 using namespace libchar;
 
@@ -67,6 +70,55 @@ TEST_CASE("the quality of a clock's frequency is in fractions of it, as its nois
   CHECK(*quality.resolution == Approx(1e-9).epsilon(1e-6));
   CHECK(std::abs(quality.mean) < 1e-10);
   CHECK(quality.maximum == Approx((*std::max_element(y.begin(), y.end()) - 1e7) / 1e7));
+}
+
+TEST_CASE("a frequency far from nominal, or with none, is doubted in a sentence") {
+  Recording recording;
+  recording.info.channels.resize(1);
+  recording.info.time.rate_hz = 1;
+  recording.samples = {white(2000, 7)};
+  for (double& v : recording.samples[0]) v += 1e7;
+  CharacterizeOptions options;
+  options.data = SampleKind::frequency;
+  for (const auto& [nominal, sentence] :
+       {std::pair{0.0, "without `nominal_frequency`"}, {5e6, "far from the nominal"}, {1e7, ""}}) {
+    options.nominal_frequency = nominal;
+    const auto problems = characterize(recording, options).channels[0].problems;
+    CAPTURE(nominal);
+    REQUIRE(problems.empty() == (nominal == 1e7));
+    if (!problems.empty()) CHECK(problems[0].find(sentence) != std::string::npos);
+  }
+}
+
+TEST_CASE("the model of half a quartz clock is its Allan curve, no narrow filter's") {
+  NEEDS_SHARED("data/clock_ocxo10mhz_freq.npy");
+  Recording recording;
+  recording.info.channels.resize(1);
+  recording.info.time.rate_hz = 1;
+  recording.samples = {test::npy(test::shared("data/clock_ocxo10mhz_freq.npy")).values};
+  recording.samples[0].resize(recording.samples[0].size() / 2);
+  CharacterizeOptions options;
+  options.data = SampleKind::frequency;
+  options.nominal_frequency = 1e7;
+  const Characterization result = characterize(recording, options);
+  const ChannelResult& channel = result.channels[0];
+  REQUIRE(channel.fit);
+  for (const AllanPoint& p : channel.allan.points) {
+    if (p.tau_s > 8) break;
+    CAPTURE(p.tau_s);
+    const auto m = static_cast<double>(p.m);
+    CHECK(*model_deviation(*channel.fit, channel.allan.type, m, 1) ==
+          Approx(p.deviation).epsilon(0.35));
+  }
+}
+
+TEST_CASE("a record of five samples is called too short, not constant") {
+  const Characterization result = of(white(5, 8));
+  const auto& problems = result.channels[0].problems;
+  REQUIRE_FALSE(problems.empty());
+  CHECK(std::none_of(problems.begin(), problems.end(), [](const std::string& p) {
+    return p.find("constant") != std::string::npos;
+  }));
 }
 
 TEST_CASE("a step that was taken out is in the verdict") {

@@ -92,6 +92,18 @@ TEST_CASE("clean records: the whole spectrum, no shape, in all but two of a hund
   CHECK(shaped <= 3);
 }
 
+TEST_CASE("a clean record that fails by chance in its slow part keeps its white noise") {
+  // The only one of these whose whole spectrum has .001 < p < .005, and no band but the lowest a better one.
+  test::NoiseSource source(200'000, 200, 99);
+  std::vector<double> y;
+  for (int i = 0; i <= 35; ++i) y = source.record(1e-3, 1e-2, 5e-3);
+  const NoiseFit fit = fit_record(y, 200, nullptr);
+  CHECK(fit.goodness.p < 0.01);
+  CHECK(fit.band.whole);
+  REQUIRE(fit[Term::white].value);
+  CHECK(*fit[Term::white].value == Approx(1e-3).epsilon(0.02));
+}
+
 TEST_CASE("a filter is named or described, and Q, B and K are those of the noise in front of it") {
   for (const Case& c : cases()) {
     CAPTURE(c.name);

@@ -36,6 +36,7 @@ NoiseFit fit_of(const Mixture& theta) {
     fit.term[t].status = Status::detected;
     fit.term[t].value = std::sqrt(theta[t]);
     fit.term[t].relative_sd = 0.01;
+    fit.term[t].ci95 = {0.98 * std::sqrt(theta[t]), 1.02 * std::sqrt(theta[t])};
   }
   return fit;
 }
@@ -57,6 +58,7 @@ TEST_CASE(
   answer_contradictions(fit, curve_of({1e-4, 0, 1e-8, 0, 0}));
   REQUIRE(fit.sentences.size() == 1);
   CHECK(fit[Term::walk].status == Status::undetermined);
+  CHECK(fit[Term::walk].ci95.low == 0);  // it may be absent
   CHECK(fit[Term::white].status == Status::detected);
 }
 
@@ -70,5 +72,6 @@ TEST_CASE("a second opinion far away counts only when the fit does not describe 
     fit.second_opinion->sd[0] = 1e-5;
     answer_contradictions(fit, curve_of(theta));
     CHECK((fit[Term::white].status == Status::undetermined) == (p < 1e-3));
+    CHECK((fit[Term::white].ci95.low <= 0.5e-2) == (p < 1e-3));  // the other value is inside
   }
 }
