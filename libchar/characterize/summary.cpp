@@ -96,6 +96,11 @@ void look_at_fit(const NoiseFit& fit, Found& found) {
     found.add(
         Rating::caution,
         letters + " undetermined: not told from another term, or contradicted by the Allan curve");
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
+      found.add(
+          Rating::caution,
+          fmt::format("{} may be next to nothing: its interval begins at 0", kTermNames[t].letter));
   for (const Remedy& remedy : fit.remedies)
     for (const auto& [kind, phrase] : kRemedies)
       if (remedy.kind == kind) found.add(Rating::caution, std::string(phrase));
@@ -122,12 +127,23 @@ void look_at_motion(const Motion& motion, Found& found) {
               fmt::format("the noise changes its strength {} times", motion.changes.size()));
 }
 
+/// A noise of which a hundredth does not fit into the range is not the one that was recorded.
+constexpr double kMostSaturated = 0.01;
+
 // What a fit or its absence leaves in sentences; reasons for no fit stand in the sentence itself.
 void look_at_record(const ChannelResult& channel, Found& found) {
   const ChannelQuality& q = channel.quality;
   if (channel.verification && !channel.verification->agrees)
-    found.add(Rating::bad, "a simulation of the model does not agree");
-  if (q.saturated > 0 && q.suggestions.empty())
+    found.add(channel.verification->nearly ? Rating::caution : Rating::bad,
+              channel.verification->nearly ? "a simulation of the model differs by a few per cent"
+                                           : "a simulation of the model does not agree");
+  const double cut =
+      q.samples == 0 ? 0 : static_cast<double>(q.saturated) / static_cast<double>(q.samples);
+  if (cut > kMostSaturated)
+    found.add(Rating::bad,
+              fmt::format("{} % of the samples stand at the end of the range",
+                          number_text(100 * cut, 2)));
+  else if (q.saturated > 0 && q.suggestions.empty())
     found.add(Rating::caution,
               fmt::format("{} {} at the end of the range",
                           count_text(q.saturated),

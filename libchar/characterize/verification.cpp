@@ -82,16 +82,18 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   return stage.finish(recorded.channel, log.time.rate_hz);
 }
 
+// The model is the truth of the simulation; but how much of a measured shape's beginning is the term's own is as uncertain as the term.
 TermVerification compare_term(Term term,
                               const Coefficient& model,
                               const Coefficient& simulated,
+                              bool shape_measured,
                               const VerifyOptions& how) {
   TermVerification out{term, model, simulated, true};
   if (model.value && simulated.value && *model.value > 0) {
     // A wide interval is skew: its nearer end is what counts.
     const bool inside = *model.value >= simulated.ci95.low && *model.value <= simulated.ci95.high;
-    const double z =
-        std::log(*simulated.value / *model.value) / std::max(simulated.relative_sd, 1e-12);
+    const double sd = std::hypot(simulated.relative_sd, shape_measured ? model.relative_sd : 0);
+    const double z = std::log(*simulated.value / *model.value) / std::max(sd, 1e-12);
     out.agrees = inside || std::abs(z) <= how.term_sd;
   } else if (model.value && simulated.upper95) {
     // Not seen again: no contradiction while the limit reaches the model.
@@ -189,9 +191,17 @@ std::string process_disagreement(const NoiseFit& model,
 }
 
 bool compares(Term term, const NoiseFit& model, const NoiseFit& simulated) {
+  const auto known = [term](const NoiseFit& fit) { return fit[term].value || fit[term].upper95; };
   const bool slow = term == Term::flicker || term == Term::walk;
-  return model[term].status != Status::not_fitted &&
+  return known(model) && known(simulated) &&
          (!slow || has_process(model) == has_process(simulated));
+}
+
+bool nearly(const ChannelVerification& v, const VerifyOptions& how) {
+  return std::all_of(v.terms.begin(), v.terms.end(), [](const auto& t) { return t.agrees; }) &&
+         std::all_of(v.points.begin(), v.points.end(), [&how](const PointVerification& p) {
+           return p.agrees || std::abs(std::log(p.ratio)) <= std::log1p(how.tolerable);
+         });
 }
 
 ChannelVerification compared(const ChannelResult& recorded,
@@ -203,7 +213,11 @@ ChannelVerification compared(const ChannelResult& recorded,
   for (std::size_t t = 0; simulated.fit && t < kTerms; ++t) {
     const Coefficient& model = recorded.fit->term[t];
     if (!compares(static_cast<Term>(t), *recorded.fit, *simulated.fit)) continue;
-    out.terms.push_back(compare_term(static_cast<Term>(t), model, simulated.fit->term[t], how));
+    out.terms.push_back(compare_term(static_cast<Term>(t),
+                                     model,
+                                     simulated.fit->term[t],
+                                     recorded.fit->shape.kind == NoiseShape::Kind::measured,
+                                     how));
     if (!out.terms.back().agrees)
       disagreements.push_back(
           term_sentence(out.terms.back(), std::string(term_title(static_cast<Term>(t)))));
@@ -213,6 +227,7 @@ ChannelVerification compared(const ChannelResult& recorded,
     if (!sentence.empty()) disagreements.push_back(std::move(sentence));
   }
   out.agrees = disagreements.empty() && simulated.fit.has_value();
+  out.nearly = out.agrees || (simulated.fit && nearly(out, how));
 
   const auto good = std::count_if(
       out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });

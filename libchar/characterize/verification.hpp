@@ -34,6 +34,8 @@ struct ChannelVerification {
   std::vector<TermVerification> terms;
   std::vector<PointVerification> points;
   bool agrees = false;
+  /// the coefficients agree, and no averaging time is further off than `VerifyOptions::tolerable`: true where all agrees
+  bool nearly = false;
   std::vector<std::string> sentences;  ///< the verdict first, then what disagrees
 };
 
@@ -44,6 +46,8 @@ struct VerifyOptions {
   double point_probability = 0.01;  ///< over all points of a curve together (each gets its share)
   double small_difference =
       0.03;  ///< relative difference of deviations that is never called a disagreement
+  double tolerable =
+      0.1;  ///< relative difference of deviations up to which a model is nearly right
 };
 
 /// Simulates every fitted channel for as long as its samples went, characterizes it with the same

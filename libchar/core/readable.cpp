@@ -58,6 +58,10 @@ std::string duration_text(double seconds) {
   return number_text(seconds / (365.25 * 86400), 3) + " years";
 }
 
+std::string place_text(double seconds) {
+  return std::fabs(seconds) < 1e6 ? fmt::format("{:.6g}", seconds) : fmt::format("{:.0f}", seconds);
+}
+
 std::string value_text(const Coefficient& c, double factor) {
   if (c.value) return number_text(*c.value * factor, digits_of(c));
   if (c.upper95) return "≤ " + number_text(*c.upper95 * factor, 3);

@@ -29,6 +29,9 @@ std::string coefficient_text(const Coefficient& coefficient, double factor = 1);
 /// The value, or the upper limit with "≤" in front, or "–".
 std::string value_text(const Coefficient& coefficient, double factor = 1);
 
+/// A place in a record, in seconds from its start, without an exponent: "2153.67", "1290550".
+std::string place_text(double seconds);
+
 /// "12 345": thin spaces between groups of three digits.
 std::string count_text(std::uint64_t count);
 

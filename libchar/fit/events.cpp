@@ -395,10 +395,10 @@ void judge_many(const Search& search,
     found.sentences.push_back(fmt::format(
         "There are more than {} steps and drifts: the record is no noise with a few of them, but "
         "handled, moved, or shaken by what happens around it; they stay in. The longest stretch "
-        "without a step that was found is from {:.6g} to {:.6g} s.",
+        "without a step that was found is from {} to {} s.",
         search.options.most,
-        quiet.low,
-        quiet.high));
+        place_text(quiet.low),
+        place_text(quiet.high)));
   }
 }
 
@@ -472,15 +472,15 @@ std::string event_sentence(const Event& event, std::string_view unit) {
   std::string text;
   if (event.kind == EventKind::step)
     text = event.in_gap
-               ? fmt::format("A step of {} while nothing was recorded, between {:.6g} and {:.6g} s",
+               ? fmt::format("A step of {} while nothing was recorded, between {} and {} s",
                              size,
-                             event.at_ci95.low,
-                             event.at_ci95.high)
-               : fmt::format("A step of {} at {:.6g} s (between {:.6g} and {:.6g} s)",
+                             place_text(event.at_ci95.low),
+                             place_text(event.at_ci95.high))
+               : fmt::format("A step of {} at {} s (between {} and {} s)",
                              size,
-                             event.at_s,
-                             event.at_ci95.low,
-                             event.at_ci95.high);
+                             place_text(event.at_s),
+                             place_text(event.at_ci95.low),
+                             place_text(event.at_ci95.high));
   if (event.kind == EventKind::warm_up)
     text = event.tau_ci95.high > 0 || !(event.tau_ci95.low > 0)
                ? fmt::format("A warm-up of {} with a time constant of {:.3g} s", size, event.tau_s)

@@ -257,11 +257,11 @@ std::string change_sentence(const StrengthChange& change) {
                                          number_text(change.factor_ci95.low, 3),
                                          number_text(change.factor_ci95.high, 3));
   if (change.kind == EventKind::step)
-    return fmt::format("The noise is {} from {:.6g} s on (between {:.6g} and {:.6g} s).",
+    return fmt::format("The noise is {} from {} s on (between {} and {} s).",
                        factor,
-                       change.at_s,
-                       change.at_ci95.low,
-                       change.at_ci95.high);
+                       place_text(change.at_s),
+                       place_text(change.at_ci95.low),
+                       place_text(change.at_ci95.high));
   if (change.kind == EventKind::ramp)
     return fmt::format("The noise changes little by little: at the end it is {}.", factor);
   return fmt::format("The noise settles: at the beginning it is {}.", factor);
@@ -279,16 +279,16 @@ void describe(Motion& motion, double duration_s) {
     for (const Interval& stretch : motion.moving_s) moving += stretch.high - stretch.low;
     motion.sentences.push_back(
         fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
-                    "{:.6g} to {:.6g} s; the longest "
-                    "still stretch is {:.6g} to {:.6g} s.",
+                    "{} to {} s; the longest "
+                    "still stretch is {} to {} s.",
                     motion.moving_s.size(),
                     motion.moving_s.size() == 1 ? "" : "es",
                     duration_text(moving),
                     duration_text(duration_s),
-                    motion.moving_s[0].low,
-                    motion.moving_s[0].high,
-                    motion.still_s ? motion.still_s->low : 0,
-                    motion.still_s ? motion.still_s->high : 0));
+                    place_text(motion.moving_s[0].low),
+                    place_text(motion.moving_s[0].high),
+                    place_text(motion.still_s ? motion.still_s->low : 0),
+                    place_text(motion.still_s ? motion.still_s->high : 0)));
   }
   for (const StrengthChange& change : motion.changes)
     motion.sentences.push_back(change_sentence(change));

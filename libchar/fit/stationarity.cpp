@@ -220,18 +220,18 @@ std::string sentence_of(const Stationarity& found, double limit) {
   return fmt::format(
       "The noise is not the same throughout: at an averaging time of {} the Allan deviation of "
       "stretches of {} differs by {} % (1 sd) beyond "
-      "chance, from {} of the whole record's at {:.6g} to {:.6g} s to {} at {:.6g} to {:.6g} s{}. "
+      "chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. "
       "Another recording may differ as "
       "much.",
       duration_text(found.clearest_tau_s),
       duration_text(found.stretch_s),
       number_text(100 * there, 2),
       number_text(found.smallest, 3),
-      found.smallest_s.low,
-      found.smallest_s.high,
+      place_text(found.smallest_s.low),
+      place_text(found.smallest_s.high),
       number_text(found.largest, 3),
-      found.largest_s.low,
-      found.largest_s.high,
+      place_text(found.largest_s.low),
+      place_text(found.largest_s.high),
       last > first ? fmt::format("; so it does at other averaging times between {} and {}",
                                  duration_text(first),
                                  duration_text(last))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/characterize/summary.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
@@ -17,10 +18,10 @@ namespace libchar {
 namespace {
 
 std::string rounded_length(double seconds) {
-  if (seconds < 120) return fmt::format("{} s", significant(seconds, 2));
-  if (seconds < 7200) return fmt::format("{} min", significant(seconds / 60, 2));
-  if (seconds < 172800) return fmt::format("{} h", significant(seconds / 3600, 2));
-  if (seconds < 3.2e8) return fmt::format("{} d", significant(seconds / 86400, 2));
+  if (seconds < 120) return fmt::format("{} s", number_text(seconds, 2));
+  if (seconds < 7200) return fmt::format("{} min", number_text(seconds / 60, 2));
+  if (seconds < 172800) return fmt::format("{} h", number_text(seconds / 3600, 2));
+  if (seconds < 3.2e8) return fmt::format("{} d", number_text(seconds / 86400, 2));
   return "> 10 years";
 }
 

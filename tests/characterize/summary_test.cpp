@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/verification.hpp"
 #include "libchar/report/characterization_text.hpp"
 #include "tests/report/synthetic.hpp"
 
@@ -55,6 +56,35 @@ TEST_CASE("summary: slow noise that is a Gauss-Markov process is not called unse
   CHECK_THAT(
       summary_of(c, "deg/s").sentence,
       Contains("a Gauss–Markov process of 0.02") && Contains(" deg/s with a correlation time of"));
+}
+
+TEST_CASE(
+    "summary: what may be next to nothing, cut off or nearly right is not simply good or bad") {
+  ChannelResult c = clean();
+  c.fit->term[2].ci95.low = 0;
+  ChannelSentence summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::caution);
+  CHECK_THAT(summary.sentence, Contains("K may be next to nothing"));
+
+  c = clean();
+  c.quality.samples = 1000;
+  c.quality.saturated = 5;
+  CHECK(summary_of(c, "deg/s").rating == Rating::caution);
+  c.quality.saturated = 480;
+  c.quality.suggestions = {"a larger full scale"};
+  summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::bad);
+  CHECK_THAT(summary.sentence, Contains("48 % of the samples stand at the end of the range"));
+
+  c = clean();
+  auto verification = std::make_shared<ChannelVerification>();
+  verification->sentences = {"it differs"};
+  c.verification = verification;
+  CHECK(summary_of(c, "deg/s").rating == Rating::bad);
+  verification->nearly = true;
+  summary = summary_of(c, "deg/s");
+  CHECK(summary.rating == Rating::caution);
+  CHECK_THAT(summary.sentence, Contains("differs by a few per cent"));
 }
 
 TEST_CASE("summary: a ratio has no unit to print") {

@@ -32,6 +32,8 @@ TEST_CASE("durations in the unit one would say") {
   CHECK(duration_text(600) == "10.0 min");
   CHECK(duration_text(36000) == "10.0 h");
   CHECK(duration_text(864000) == "10.0 d");
+  CHECK(place_text(2153.6698) == "2153.67");
+  CHECK(place_text(1290550.4) == "1290550");
   CHECK(duration_text(3.15576e8) == "10.0 years");
 }
 

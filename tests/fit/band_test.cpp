@@ -1,7 +1,11 @@
 // The band: clean records keep their whole spectrum, filters are found or described, and the slow coefficients stay.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <functional>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "libchar/fit/noise_fit.hpp"
@@ -116,6 +120,48 @@ TEST_CASE("a filter is named or described, and Q, B and K are those of the noise
     CHECK(std::abs(off_in_sd(fit, Term::walk)) < 3.5);
     CHECK(*fit[Term::white].value == Approx(kTruth[0]).epsilon(0.02));
   }
+}
+
+TEST_CASE(
+    "a swaying floor's peaks are left out one by one, and Q, B and K stand on both sides of them") {
+  // Frequency, times of white noise's density at the peak, quality; as under the accelerometers of ADIS16405.
+  const std::vector<std::array<double, 3>> peaks = {
+      {0.5, 1, 6}, {0.6, 4, 20}, {1.65, 1, 12}, {2.7, 0.3, 12}, {10.3, 0.6, 8}};
+  const auto sway = [&](std::vector<double> y, std::uint64_t seed) {
+    test::Gaussian gauss(seed);
+    for (const auto& [f, times, quality] : peaks) {
+      const std::complex<double> z = std::polar(1.0, 2 * std::numbers::pi * f / kRate);
+      const double r = std::exp(-std::numbers::pi * f / quality / kRate);
+      const double a1 = 2 * r * z.real(), a2 = -r * r;
+      const double gain = std::abs((1.0 - 1.0 / (z * z)) / (1.0 - a1 / z - a2 / (z * z)));
+      const double scale = kTruth[0] * std::sqrt(kRate * times) / gain;
+      double y1 = 0, y2 = 0, u1 = 0, u2 = 0;
+      for (double& sample : y) {
+        const double u = scale * gauss();
+        const double now = u - u2 + a1 * y1 + a2 * y2;  // nothing at f = 0 and at half the rate
+        u2 = std::exchange(u1, u);
+        y2 = std::exchange(y1, now);
+        sample += now;
+      }
+    }
+    return y;
+  };
+  int wide = 0, close = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    const NoiseFit fit = fit_record(
+        sway(filtered_record(seed, [](const auto& u) { return u; }), seed), kRate, nullptr);
+    wide += fit.band.top_hz > 6;
+    const Coefficient& white = fit[Term::white];
+    REQUIRE(white.value);
+    CHECK(*white.value == Approx(kTruth[0]).epsilon(0.08));
+    close += std::abs(*white.value / kTruth[0] - 1) < 0.02;
+    REQUIRE(fit[Term::flicker].value);
+    CHECK(*fit[Term::flicker].value == Approx(kTruth[1]).epsilon(0.2));
+    CHECK(std::abs(off_in_sd(fit, Term::walk)) < 3.5);
+  }
+  CHECK(wide >= 5);
+  CHECK(close >= 5);
 }
 
 TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the first point on") {

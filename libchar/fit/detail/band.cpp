@@ -28,6 +28,11 @@ constexpr std::size_t kFewestBins = 20;  ///< of a band
 constexpr double kTopOctaves = 1.5;
 constexpr double kBandStep = 0.5;  ///< octaves
 constexpr double kDeepCut = 0.25;  ///< of half the rate
+/// Of half the rate: below it hardly a filter has more than the beginning of its slope, and a free shape would take the place of slow noise.
+constexpr double kDeepest = 0.125;
+constexpr double kPeak = 4;        ///< standard deviations that a broad peak stands above its sides
+constexpr std::size_t kSkirt = 2;  ///< bins on each side of it that hold too much of it as well
+constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
 constexpr double kNull = 0.01;  ///< of a filter's power gain
 constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
@@ -186,19 +191,34 @@ double median_of_ratio(const std::vector<double>& ratio, std::size_t from, std::
   return *middle;
 }
 
-/// Bins of a broad peak (vibration, a wandering line): on the scale of the model a quarter and six standard deviations above the
-/// median of the ten bins before as well as of the ten after, so that a slope or a rising end is none.
-void leave_out_peaks(const std::vector<PowerBin>& bins, const Trial& trial, Band& band) {
-  constexpr std::size_t kReach = 10;
-  for (std::size_t i = 0; i < trial.index.size(); ++i) {
-    const double before = median_of_ratio(trial.ratio, i < kReach ? 0 : i - kReach, i);
-    const double after =
-        median_of_ratio(trial.ratio, i + 1, std::min(i + 1 + kReach, trial.ratio.size()));
-    const double excess = trial.ratio[i] / std::max(before, after) - 1;
-    const PowerBin& bin = bins[trial.index[i]];
-    const double limit = std::max(0.25, 6 * std::sqrt(2 / bin.dof));
-    if (bin.dof > 32 && excess > limit) band.inside[trial.index[i]] = 0;
+/// Neighbouring bins that stand above those on both sides of them.
+struct BroadPeak {
+  std::size_t from = 0, to = 0;  ///< of a trial's entries, to beyond the last
+  double deviations = 0;         ///< standard deviations of noise
+};
+
+/// A broad peak (vibration, a floor that sways, a wandering line): up to ten bins whose mean, on the scale of the model, is above the median
+/// of the ten bins before as well as of the ten after, so that a slope or a rising end is none.
+BroadPeak highest_peak(const std::vector<PowerBin>& bins, const Trial& trial) {
+  constexpr std::size_t kReach = 10, kLongest = 10;
+  constexpr double kFewestDof = 16, kLowest = 0.02;
+  BroadPeak best;
+  for (std::size_t from = kReach; from < trial.index.size(); ++from) {
+    const double before = median_of_ratio(trial.ratio, from - kReach, from);
+    double sum = 0, dof = 0;
+    for (std::size_t to = from + 1; to <= std::min(from + kLongest, trial.index.size()); ++to) {
+      const PowerBin& bin = bins[trial.index[to - 1]];
+      if (bin.dof < kFewestDof) break;
+      sum += bin.dof * trial.ratio[to - 1];
+      dof += bin.dof;
+      const double after =
+          median_of_ratio(trial.ratio, to, std::min(to + kReach, trial.ratio.size()));
+      const double excess = sum / dof / std::max(before, after) - 1;
+      const double deviations = excess / std::sqrt(2 / dof);
+      if (excess > kLowest && deviations > best.deviations) best = {from, to, deviations};
+    }
   }
+  return best;
 }
 
 struct Search {
@@ -223,12 +243,49 @@ struct Search {
     for (;; top_hz *= std::exp2(-kBandStep)) {
       Band band = cut_at(from, bins, top_hz);
       if (members(bins, band).size() < kFewestBins) return std::nullopt;
-      for (band.orders = 0; band.orders <= options.most_orders; ++band.orders) {
+      const int most =
+          top_hz < kDeepest * rate_hz / 2 ? std::min(1, options.most_orders) : options.most_orders;
+      for (band.orders = 0; band.orders <= most; ++band.orders) {
         std::optional<Trial> trial = at(band);
         if (trial && trial->band.passes) return trial->band;
         keep_closest(std::move(trial));
       }
     }
+  }
+
+  /// Without its broad peaks and their skirts, the highest first, each seen beside what is left of the others.
+  Band without_peaks(Band band) const {
+    std::size_t most = band.inside.size() / kMostLeftOut;
+    for (bool first = true;; first = false) {
+      const std::optional<Trial> trial = at(band);
+      if (!trial) break;
+      const BroadPeak peak = highest_peak(bins, *trial);
+      const std::size_t from = peak.from - std::min(peak.from, kSkirt);
+      const std::size_t to = std::min(peak.to + kSkirt, trial->index.size());
+      const bool found = peak.deviations > kPeak && to - from <= most;
+      if (!found && !first) break;
+      for (std::size_t i = from; found && i < to; ++i) band.inside[trial->index[i]] = 0;
+      if (found) most -= to - from;
+      // The highest would distort a shape; the lowest are not seen without one.
+      band.orders = options.most_orders;
+    }
+    band.orders = 0;
+    return band;
+  }
+
+  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small misfit, and moves the
+  /// coefficients less than a deep cut does: there a smaller probability passes.
+  std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
+    const Band holes = without_peaks(whole);
+    if (holes.inside == whole.inside) return narrow;
+    BandOptions lenient = options;
+    lenient.probability = options.misfit;
+    Search eased{bins, rate_hz, terms, lenient, std::nullopt};
+    for (Search* search : {this, &eased}) {
+      const std::optional<Band> found = search->widest(holes, rate_hz / 2);
+      if (found && (!narrow || found->top_hz > 2 * narrow->top_hz)) narrow = found;
+    }
+    return narrow;
   }
 
   /// With one order more; a cut band that passes without a shape is halved.
@@ -299,17 +356,7 @@ Band find_band(const std::vector<PowerBin>& bins,
   if (low_pass.low_pass)
     if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
-  const double narrow_hz = best ? best->top_hz : 0;
-  if (narrow_hz < rate_hz / 2 * 0.99) {
-    Band holes = whole;
-    leave_out_peaks(bins, *plain, holes);
-    if (const auto again = tried(bins, rate_hz, terms, holes, options))
-      leave_out_peaks(bins, *again, holes);
-    if (holes.inside != whole.inside) {
-      const std::optional<Band> without = search.widest(holes, rate_hz / 2);
-      if (without && without->top_hz > 2 * narrow_hz) best = without;
-    }
-  }
+  if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
   const bool barely = std::min(plain->band.goodness.p, plain->band.top.p) >= options.misfit;
   if (barely && (!best || best->top_hz < rate_hz / 2 * kDeepCut)) {

@@ -11,7 +11,8 @@ namespace libchar {
 Json verification_json(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
   const ChannelVerification& v = *channel.verification;
-  Json out = {{"name", json_text(channel.channel.name)}, {"agrees", v.agrees}};
+  Json out = {
+      {"name", json_text(channel.channel.name)}, {"agrees", v.agrees}, {"nearly", v.nearly}};
   out["sentences"] = Json::array();
   for (const std::string& sentence : v.sentences) out["sentences"].push_back(json_text(sentence));
   out["terms"] = Json::array();

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMostTaps = std::size_t{1} << 16U;
 constexpr std::size_t kFewestTaps = 64;
-constexpr double kTapsPerPeriod = 16;  ///< of the lowest frequency of a measured shape
+/// Of the lowest frequency of a measured shape: its bins are an eighth of an octave wide, and the window smears none into the next.
+constexpr double kTapsPerPeriod = 96;
 
 std::size_t power_of_two(double at_least) {
   std::size_t n = 1;
