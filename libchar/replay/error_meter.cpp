@@ -1,9 +1,7 @@
-// RMSE = sqrt(sum e^2 / n). Its interval: moving-block bootstrap (H. R. Künsch, Ann. Stat. 17
-// (1989) 1217): stretches of record/blocks consecutive samples, starting anywhere, are drawn with
-// replacement until the record is full; percentiles of the resampled RMSE. Stretches run on from
-// the end at the beginning (Politis & Romano 1992), or both ends, where filters settle, would be
-// drawn too seldom. Errors are correlated in time, and a stretch keeps their correlation. Cells are
-// the grain at which stretches begin.
+// RMSE = sqrt(sum e^2 / n). ln RMSE is half the logarithm of a mean of squares, so a cell of n_k samples moves it by
+//   z_k = (sum e^2 - n_k RMSE^2) K / (2 n RMSE^2),   the mean of z over the K cells is 0;
+// how well that mean is known (detail/mean_uncertainty.hpp) is how well ln RMSE is. For ratios it is the difference of two such series:
+// what both errors have in common cancels.
 #include "libchar/replay/error_meter.hpp"
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include <limits>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/simulate/random.hpp"
+#include "libchar/replay/detail/mean_uncertainty.hpp"
 
 namespace libchar {
 namespace {
@@ -36,62 +34,79 @@ double rms(const ErrorCell& cell) {
   return cell.n > 0 ? std::sqrt(cell.squares / cell.n) : kNone;
 }
 
-// Starts of the stretches of one replicate; drawn alike for every meter of one length.
-class Resampler {
- public:
-  Resampler(std::size_t cells, const ScoreOptions& options)
-      : cells_(cells),
-        length_(std::max<std::size_t>(1, cells / std::max<std::size_t>(options.blocks, 1))),
-        deviates_({options.seed, 0, Purpose::bootstrap}) {}
-  const std::vector<std::size_t>& draw() {
-    starts_.clear();
-    const double places = static_cast<double>(cells_);
-    for (std::size_t filled = 0; filled < cells_; filled += length_)
-      starts_.push_back(static_cast<std::size_t>(deviates_.uniform() * places));
-    return starts_;
-  }
-  std::size_t length() const { return length_; }
-
- private:
-  std::size_t cells_, length_;
-  DeviateStream deviates_;
-  std::vector<std::size_t> starts_;
-};
-
-// Sums before each cell, the record once round and once more: a stretch is a difference.
+// Sums before each cell.
 std::vector<ErrorCell> cumulated(const std::vector<ErrorCell>& cells) {
-  std::vector<ErrorCell> sums(2 * cells.size() + 1);
-  for (std::size_t i = 0; i + 1 < sums.size(); ++i)
-    sums[i + 1] = merged(sums[i], cells[i % cells.size()]);
+  std::vector<ErrorCell> sums(cells.size() + 1);
+  for (std::size_t i = 0; i < cells.size(); ++i) sums[i + 1] = merged(sums[i], cells[i]);
   return sums;
 }
 
-ErrorCell of_stretches(const std::vector<ErrorCell>& sums,
-                       const std::vector<std::size_t>& starts,
-                       std::size_t length) {
-  ErrorCell all;
-  for (const std::size_t start : starts) {
-    const ErrorCell &a = sums[start], &b = sums[start + length];
-    all.n += b.n - a.n;
-    all.sum += b.sum - a.sum;
-    all.squares += b.squares - a.squares;
-  }
-  return all;
+/// Adds `share` of what each cell moves ln RMS by.
+void add_influence(const std::vector<ErrorCell>& cells, double share, std::vector<double>& z) {
+  const ErrorCell all = total(cells);
+  const double mean_square = all.squares / all.n;
+  if (!(mean_square > 0)) return;
+  const double scale = share * static_cast<double>(cells.size()) / (2 * all.n * mean_square);
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    z[k] += scale * (cells[k].squares - cells[k].n * mean_square);
 }
 
-Interval percentiles(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }),
-               values.end());
-  if (values.empty()) return {kNone, kNone};
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double p) {
-    const double position = p * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(position);
-    const double rest = position - static_cast<double>(below);
-    return below + 1 < values.size() ? values[below] + rest * (values[below + 1] - values[below])
-                                     : values.back();
-  };
-  return {at(0.025), at(0.975)};
+std::vector<double> influence(const Meters& meters) {
+  std::vector<double> z(meters.empty() ? 0 : meters[0]->cells().size(), 0.0);
+  for (const ErrorMeter* meter : meters)
+    add_influence(meter->cells(), 1 / static_cast<double>(meters.size()), z);
+  return z;
+}
+
+std::vector<double> cell_means(const std::vector<ErrorCell>& cells, double otherwise) {
+  std::vector<double> means;
+  for (const ErrorCell& cell : cells) means.push_back(cell.n > 0 ? cell.sum / cell.n : otherwise);
+  return means;
+}
+
+double log_geometric_mean(const Meters& meters) {
+  double sum = 0;
+  for (const ErrorMeter* meter : meters) sum += std::log(rms(total(meter->cells())));
+  return sum / static_cast<double>(meters.size());
+}
+
+/// Takes the mean of each stretch out.
+void centre(const ErrorMeter& meter, const ScoreOptions& options, std::vector<double>& z) {
+  std::vector<std::size_t> edges = {0};
+  for (const std::int64_t start : options.sections) {
+    const auto cell = static_cast<std::size_t>(std::max<std::int64_t>(start, 0)) /
+                      static_cast<std::size_t>(meter.cell_samples());
+    if (cell > edges.back() && cell < z.size()) edges.push_back(cell);
+  }
+  edges.push_back(z.size());
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    double mean = 0;
+    for (std::size_t k = edges[i]; k < edges[i + 1]; ++k)
+      mean += z[k] / static_cast<double>(edges[i + 1] - edges[i]);
+    for (std::size_t k = edges[i]; k < edges[i + 1]; ++k) z[k] -= mean;
+  }
+}
+
+/// Beyond this slope the slow part grows with time; flicker is at 0 +- 0.25 in 95 % of records.
+constexpr double kWalks = 0.25;
+
+void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorScore& out) {
+  const std::vector<ErrorCell> cells = meter.cells();
+  std::vector<double> z(cells.size(), 0.0);
+  add_influence(cells, 1, z);
+  std::vector<double> means = cell_means(cells, out.bias);
+  for (std::vector<double>* series : {&z, &means}) centre(meter, options, *series);
+  const MeanUncertainty spread = mean_uncertainty(z), bias = mean_uncertainty(means);
+  const double slope = slow_slope(means);
+  out.stationary = !(spread.long_memory && slope > kWalks);
+  if (!out.stationary) return;
+  // The square of the record's own mean is one draw, with one degree of freedom, of what others have: no batch of it shows that.
+  const double offset =
+      bias.long_memory ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse) : 0;
+  const double reach = std::hypot(spread.reach95, offset);
+  out.rmse_ci95 = {out.rmse * std::exp(-reach), out.rmse * std::exp(reach)};
+  if (!(bias.long_memory && slope > kWalks))
+    out.bias_ci95 = {out.bias - bias.reach95, out.bias + bias.reach95};
 }
 
 // The final level is the RMS of the second half; windows are a fiftieth of the record.
@@ -155,32 +170,32 @@ ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& op
   out.rmse_ci95 = out.bias_ci95 = {kNone, kNone};
   out.converged_s = kNone;
   if (all.n == 0) return out;
-  const auto sums = cumulated(cells);
-  Resampler resampler(cells.size(), options);
-  std::vector<double> rmses, biases;
-  for (std::size_t r = 0; r < options.replicates; ++r) {
-    const ErrorCell drawn = of_stretches(sums, resampler.draw(), resampler.length());
-    rmses.push_back(rms(drawn));
-    biases.push_back(drawn.n > 0 ? drawn.sum / drawn.n : kNone);
-  }
-  out.rmse_ci95 = percentiles(std::move(rmses));
-  out.bias_ci95 = percentiles(std::move(biases));
+  if (options.intervals) add_intervals(meter, options, out);
   out.converged_s = convergence(cells, static_cast<double>(meter.cell_samples()) / rate_hz);
   return out;
 }
 
-Interval rmse_ratio_ci95(const ErrorMeter& a, const ErrorMeter& b, const ScoreOptions& options) {
-  const auto cells_a = a.cells(), cells_b = b.cells();
-  if (cells_a.size() != cells_b.size() || cells_a.empty()) return {kNone, kNone};
-  const auto sums_a = cumulated(cells_a), sums_b = cumulated(cells_b);
-  Resampler resampler(cells_a.size(), options);
-  std::vector<double> ratios;
-  for (std::size_t r = 0; r < options.replicates; ++r) {
-    const auto& starts = resampler.draw();
-    ratios.push_back(rms(of_stretches(sums_a, starts, resampler.length())) /
-                     rms(of_stretches(sums_b, starts, resampler.length())));
-  }
-  return percentiles(std::move(ratios));
+GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options) {
+  if (meters.empty()) return {kNone, {kNone, kNone}};
+  const double rms_of_all = std::exp(log_geometric_mean(meters));
+  std::vector<double> z = influence(meters);
+  centre(*meters[0], options, z);
+  const double reach = mean_uncertainty(z).reach95;
+  return {rms_of_all, {rms_of_all * std::exp(-reach), rms_of_all * std::exp(reach)}};
+}
+
+Interval rms_ratio_interval(const Meters& a,
+                            const Meters& b,
+                            const ScoreOptions& options,
+                            double level) {
+  std::vector<double> z = influence(a);
+  const std::vector<double> other = influence(b);
+  if (z.size() != other.size() || z.empty()) return {kNone, kNone};
+  for (std::size_t k = 0; k < z.size(); ++k) z[k] -= other[k];
+  centre(*a[0], options, z);
+  const double ratio = log_geometric_mean(a) - log_geometric_mean(b);
+  const double reach = mean_uncertainty(z, level).reach95;
+  return {std::exp(ratio - reach), std::exp(ratio + reach)};
 }
 
 }  // namespace libchar

@@ -44,21 +44,36 @@ struct ErrorScore {
   std::uint64_t samples = 0;
   double converged_s =
       0;  ///< from here on the RMS of a window is within a tenth of its final level; NaN: never
+  /// false: the error walks or drifts over the record, so that another stretch may have any other; then there are no intervals
+  bool stationary = true;
 };
 
 struct ScoreOptions {
-  std::size_t blocks = 40;  ///< length of a bootstrap block: record / blocks
-  std::size_t replicates = 1000;
-  std::uint64_t seed = 1;
+  bool intervals = true;
+  /// first samples of stretches that are known to differ (a sensor fails, or comes back), rising: intervals are about records with the
+  /// same stretches
+  std::vector<std::int64_t> sections = {};
 };
 
-/// All scores of one estimate. Intervals by moving-block bootstrap (Künsch 1989) on the cells.
+/// All scores of one estimate. Intervals from the scatter of batch means, extended to the whole record (detail/mean_uncertainty.hpp).
 ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& options = {});
 
-/// 95 % interval of RMSE_a / RMSE_b, the same resampled stretches for both (equally long meters).
-/// Contains 1: the difference is not resolved.
-Interval rmse_ratio_ci95(const ErrorMeter& a,
-                         const ErrorMeter& b,
-                         const ScoreOptions& options = {});
+/// Errors that are judged together: one, or one for each sensor.
+using Meters = std::vector<const ErrorMeter*>;
+
+/// Geometric mean of the root mean squares, so that none counts for more because it is larger (the Gaussian predictive likelihood of all,
+/// each with a variance of its own), and its 95 % interval.
+struct GeometricRms {
+  double rms = 0;
+  Interval ci95;
+};
+GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options = {});
+
+/// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both saw at the same time (equally long
+/// meters). `level`: share of such intervals that miss. Contains 1: the difference is not resolved.
+Interval rms_ratio_interval(const Meters& a,
+                            const Meters& b,
+                            const ScoreOptions& options = {},
+                            double level = 0.05);
 
 }  // namespace libchar

@@ -265,10 +265,10 @@ class Replay {
     return out;
   }
 
-  /// A result, and the error by which it is compared with others; null: by none.
+  /// A result, and the errors by which it is compared with others; empty: by none.
   struct Scored {
     AlgorithmResult result;
-    const ErrorMeter* meter = nullptr;
+    Meters meters;
   };
   ReplayResult collect();
   void add_facts(ReplayResult& out) const;
@@ -277,8 +277,7 @@ class Replay {
                 const BlindRun* blind,
                 const ReplayResult& so_far,
                 const ScoreOptions& scoring) const;
-  std::vector<const ErrorMeter*> add_algorithms(ReplayResult& out,
-                                                const ScoreOptions& scoring) const;
+  std::vector<Meters> add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
   const Scene& scene_;
@@ -349,19 +348,19 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
       out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
 }
 
-// One that ran, and by which of its errors it is compared with others; null: by none.
+// One that ran, and by which of its errors it is compared with others; empty: by none.
 Replay::Scored Replay::scored(const AlgorithmRun& run,
                               const BlindRun* blind,
                               const ReplayResult& so_far,
                               const ScoreOptions& scoring) const {
-  Scored out{run.result(scoring, so_far.window_s), nullptr};
+  Scored out{run.result(scoring, so_far.window_s), {}};
   AlgorithmResult& result = out.result;
-  if (result.ran && !result.inputs.empty()) out.meter = &run.meters()[0];
+  if (result.ran && !result.inputs.empty()) out.meters = {&run.meters()[0]};
   if (result.ran && blind != nullptr && !so_far.has_reference) {
     result.blind = blind->result(so_far.rate_hz, scoring);
-    result.rmse = result.blind->leave_one_out_rms;
-    result.rmse_ci95 = result.blind->leave_one_out_ci95;
-    out.meter = &blind->meter();
+    result.rmse = result.blind->predictive_rms;
+    result.rmse_ci95 = result.blind->predictive_ci95;
+    out.meters = blind->meters();
   }
   if (!options_.allan)
     for (InputScore& input : result.inputs) input.allan = {};
@@ -370,9 +369,8 @@ Replay::Scored Replay::scored(const AlgorithmRun& run,
 }
 
 // All that were asked for. Returns by which error each is compared.
-std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
-                                                      const ScoreOptions& scoring) const {
-  std::vector<const ErrorMeter*> meters;
+std::vector<Meters> Replay::add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const {
+  std::vector<Meters> meters;
   std::size_t next = 0;
   for (const PlannedAlgorithm& algorithm : plan_.algorithms) {
     Scored one;
@@ -388,7 +386,7 @@ std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
       if (!algorithm.asked) continue;
       one.result = not_run(algorithm, algorithm.why);
     }
-    meters.push_back(one.meter);
+    meters.push_back(one.meters);
     answer_faults(one.result, out);
     out.algorithms.push_back(std::move(one.result));
   }
@@ -396,7 +394,8 @@ std::vector<const ErrorMeter*> Replay::add_algorithms(ReplayResult& out,
 }
 
 ReplayResult Replay::collect() {
-  const ScoreOptions scoring{40, 1000, options_.seed};
+  ScoreOptions scoring;
+  scoring.sections = plan_.array.section_starts;
   if (instants_.info().has_reference && truths_ == 0)
     throw Error({ErrorKind::input,
                  "E0902",
@@ -407,12 +406,15 @@ ReplayResult Replay::collect() {
   ReplayResult out;
   add_facts(out);
   add_sensors(out, scoring);
-  const std::vector<const ErrorMeter*> meters = add_algorithms(out, scoring);
+  const std::vector<Meters> meters = add_algorithms(out, scoring);
   std::vector<double> healthy_rms;
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
   judge_optimum(out, optimum_, healthy_rms, plan_.array);
   judge_best(out, meters, scoring);
+  Meters single;
+  for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
+  judge_best_sensor(out, meters, single, scoring);
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
     out.work.learnt += bound.learnt();

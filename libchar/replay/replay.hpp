@@ -32,9 +32,8 @@ struct ReplayOptions {
   std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
   double window_s = 0;                             ///< of the window RMS; 0: a fiftieth of the run
   bool allan = true;                               ///< Allan deviation of each error
-  bool no_skip = false;    ///< do all work, whether an output needs it or not: same numbers
-  std::size_t block = 0;   ///< instants at once; 0: by length. Results do not depend on it
-  std::uint64_t seed = 1;  ///< of the bootstrap
+  bool no_skip = false;   ///< do all work, whether an output needs it or not: same numbers
+  std::size_t block = 0;  ///< instants at once; 0: by length. Results do not depend on it
 };
 
 /// What a replay works with besides its options; none of it changes what is found.

@@ -54,6 +54,11 @@ struct BlindScore {
   double split_rms =
       0;  ///< RMS of half the difference of two parts of the array; NaN: could not run
   Interval leave_one_out_ci95;
+  /// geometric mean over the sensors of their leave-one-out RMS: what methods are ranked by
+  double predictive_rms = 0;
+  Interval predictive_ci95;
+  double offset_share =
+      0;  ///< of leave_one_out_rms squared, that is in the sensors' mean differences from the others
 };
 
 struct AlgorithmResult {
@@ -66,13 +71,15 @@ struct AlgorithmResult {
 
   std::vector<InputScore> inputs;  ///< empty without a reference
   std::optional<BlindScore> blind;
-  double rmse = 0;  ///< of the first input, or leave-one-out without a reference: what tables sort
-                    ///< by; NaN: none
+  double rmse =
+      0;  ///< of the first input, or the predictive one without a reference: what tables sort
+          ///< by; NaN: none
   Interval rmse_ci95;
   double regret = 0;  ///< root mean square over the inputs of RMSE / optimum, minus 1; NaN: unknown
   std::optional<Interval> ratio_to_best;  ///< 95 % interval of RMSE / RMSE of the best method
                                           ///< (bounds apart); none: it is the best
-  bool as_good_as_best = false;           ///< that interval holds 1: the difference is not resolved
+  bool as_good_as_best =
+      false;  ///< that interval (corrected for the number of methods) holds 1, or the difference is below one per cent
   double availability = 0;
 
   double ns_per_sample = 0;  ///< median over interleaved blocks; NaN: too short to measure
@@ -140,6 +147,11 @@ struct ReplayResult {
   std::vector<SensorFault> faults;          ///< that the scene knows, injected or simulated
   std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
   std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`
+  /// the sensor with the smallest error, and the 95 % interval of the best method's RMSE over its; one input and a reference
+  std::optional<std::size_t> best_sensor;
+  std::optional<Interval> best_over_sensor;
+  /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
+  bool offsets_decide = false;
   Warnings warnings;
   ReplayWork work;
   double seconds = 0;  ///< measured

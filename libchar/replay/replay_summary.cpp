@@ -102,8 +102,11 @@ AlgorithmSummary algorithm(const MapReader& map) {
   out.rmse_ci95 = interval_or_none(map, "rmse_ci95");
   if (map.has("without_reference")) {
     const MapReader blind = open_map(map, "without_reference");
-    out.rmse = number_or_none(blind, "leave_one_out_rms", kNotNegative);
-    out.rmse_ci95 = interval_or_none(blind, "leave_one_out_ci95");
+    // Reports of earlier versions are ranked by the root of the mean over the sensors.
+    const bool geometric = blind.has("predictive_rms");
+    out.rmse =
+        number_or_none(blind, geometric ? "predictive_rms" : "leave_one_out_rms", kNotNegative);
+    out.rmse_ci95 = interval_or_none(blind, geometric ? "predictive_ci95" : "leave_one_out_ci95");
   }
   out.regret = number_or_none(map, "regret");
   out.ns_per_sample = map.number_or("ns_per_sample", kNone, kNotNegative);

@@ -15,6 +15,7 @@ namespace {
 
 /// Names of equals beyond so many are only counted.
 constexpr std::size_t kMostEquals = 4;
+constexpr double kClose = 1.05;  ///< times the best method's error
 
 std::string list_of(const std::vector<std::string>& names) {
   if (names.size() == 1) return names[0];
@@ -26,11 +27,12 @@ bool learns(const AlgorithmResult& a) {
   return a.description->needs.reference;
 }
 
-// The cheapest of those that cannot be told from the best.
+// The cheapest of those that cannot be told from the best; where the record tells little, not one whose error is clearly larger in it.
 const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
   const AlgorithmResult* out = nullptr;
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && !a.bound && a.as_good_as_best && a.ns_per_sample > 0 &&
+        a.rmse <= kClose * r.algorithms[*r.best].rmse &&
         (out == nullptr || a.ns_per_sample < out->ns_per_sample))
       out = &a;
   return out;
@@ -81,12 +83,14 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
           return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
         });
     return others == 0 ? "No other method has a score."
-                       : "Every other method is worse, and the record is long enough to tell.";
+                       : "Every other method is worse, by more than one per cent, and the record "
+                         "is long enough to tell.";
   }
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out = fmt::format("This record does not tell {} from it.", list_of(equals));
+  std::string out = fmt::format(
+      "Within one per cent of it, or not told from it by this record: {}.", list_of(equals));
   const AlgorithmResult* cheap = cheapest_equal(r);
   if (costs && cheap != nullptr && cheap->label != best.label &&
       cheap->ns_per_sample < 0.8 * best.ns_per_sample)
@@ -123,6 +127,51 @@ std::string bounds_sentence(const ReplayResult& r) {
                    ".";
 }
 
+// Whether the array is worth more than its best sensor. Below one per cent nothing is worth a sentence.
+std::string sensor_sentence(const ReplayResult& r) {
+  if (!r.best_sensor || !r.best_over_sensor) return "";
+  constexpr double kTolerance = 0.01;
+  const SensorResult& sensor = r.sensors[*r.best_sensor];
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  const double ratio = best.rmse / sensor.error.rmse;
+  const Interval& interval = *r.best_over_sensor;
+  const std::string alone = fmt::format("{}, the best single sensor ({})",
+                                        sensor.name,
+                                        error_text(sensor.error.rmse, r.inputs[0].unit));
+  const auto percent = [](double x) { return significant(100 * std::abs(x), 2); };
+  if (ratio > 1 + kTolerance && interval.low > 1)
+    return fmt::format(
+        "Fusion does not pay here: the error of {} is {} % larger than that of {}: use that sensor "
+        "alone.",
+        best.label,
+        percent(ratio - 1),
+        alone);
+  if (ratio < 1 - kTolerance && interval.high < 1)
+    return fmt::format("Fusion pays: its error is {} % (95 %: {} to {} %) below that of {}.",
+                       percent(1 - ratio),
+                       percent(1 - interval.high),
+                       percent(1 - interval.low),
+                       alone);
+  return fmt::format(
+      "Whether fusion pays is not resolved: its error is {} times that of {} (95 %: {} to {}).",
+      significant(ratio, 3),
+      alone,
+      significant(interval.low, 3),
+      significant(interval.high, 3));
+}
+
+std::string offsets_sentence(const ReplayResult& r) {
+  double share = 0;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
+  return fmt::format(
+      "No method is recommended: {} % of the differences between the sensors (mean squares) are in "
+      "their "
+      "means, and offsets would decide. Give the scene a `rest`, a reference, or sensors without "
+      "offsets.",
+      significant(100 * share, 3));
+}
+
 }  // namespace
 
 std::string optimum_of(const ReplayResult& r) {
@@ -130,6 +179,7 @@ std::string optimum_of(const ReplayResult& r) {
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
+  if (r.offsets_decide) return {offsets_sentence(r)};
   if (!r.best)
     return {
         "No algorithm has a score: without a reference and with these sensors nothing can be "
@@ -143,6 +193,11 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
+  std::string single = sensor_sentence(r);
+  if (single.starts_with("Fusion does not pay"))
+    out.insert(out.begin(), std::move(single));
+  else
+    add(single);
   add(without_reference_sentence(r, best, costs));
   add(equals_sentence(r, best, costs));
   if (r.has_reference)

@@ -68,7 +68,7 @@ Json comparison_json(const Comparison& c) {
   Json out = {{"a", report(c.a)},
               {"b", report(c.b)},
               {"verdict", json_text(comparison_verdict(c))},
-              {"score", c.a.has_reference ? "rmse" : "leave_one_out_rms"},
+              {"score", c.a.has_reference ? "rmse" : "predictive_rms"},
               {"unlike", sentences(c.unlike)},
               {"remarks", sentences(c.remarks)},
               {"algorithms", Json::array()}};

@@ -52,15 +52,19 @@ std::string scores_note(const ReplayView& view) {
   if (!view.result->has_reference)
     return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
            "(the "
-           "estimate from all other sensors) − (the sensor left out), over all sensors; it holds "
-           "that sensor's own noise. Split-array RMS: of half the difference between the estimates "
+           "estimate from all other sensors) − (the sensor left out), geometric mean over the "
+           "sensors, so that a bad one counts no more "
+           "than a good one; it holds that sensor's own noise. Split-array RMS: of half the "
+           "difference between the estimates "
            "from two halves of the array. Neither sees an error that all sensors share.</p>\n";
-  return "<p class=\"note\">Below each figure: its 95 % interval by moving-block bootstrap. "
+  return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or "
+         "drifts. "
          "Regret: "
          "RMSE ÷ RMSE of the optimum of " +
          view.optimum +
          " on this run, minus 1; beyond 100 % the ratio itself. “× best”: interval of the ratio of "
-         "RMSEs on the same resampled stretches; when it holds 1 the difference is not resolved. "
+         "RMSEs, from what both saw at the same time; when it holds 1 the difference is not "
+         "resolved. "
          "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
          "look at the reference of the run itself: they are for comparison. A click on a column's "
          "head sorts by it.</p>\n";

@@ -77,6 +77,7 @@ Json error_json(const ErrorScore& e) {
           {"maximum", json_number(e.maximum)},
           {"availability", json_number(e.availability)},
           {"samples", e.samples},
+          {"stationary", e.stationary},
           {"converged_s", json_number(e.converged_s)}};
 }
 
@@ -112,6 +113,9 @@ Json blind_json(const std::optional<BlindScore>& blind) {
   return {{"leave_one_out_rms", json_number(blind->leave_one_out_rms)},
           {"leave_one_out_ci95", interval_json(blind->leave_one_out_ci95)},
           {"leave_one_out", numbers(blind->leave_one_out)},
+          {"predictive_rms", json_number(blind->predictive_rms)},
+          {"predictive_ci95", interval_json(blind->predictive_ci95)},
+          {"offset_share", json_number(blind->offset_share)},
           {"split_array_rms", json_number(blind->split_rms)}};
 }
 
@@ -267,7 +271,7 @@ void add_run(Json& out, const ReplayResult& result) {
   out["evaluation"] = window(result.evaluation);
   out["window_s"] = json_number(result.window_s);
   out["reference"] = reference_json(result);
-  out["score"] = result.has_reference ? "rmse" : "leave_one_out_rms";
+  out["score"] = result.has_reference ? "rmse" : "predictive_rms";
   out["optimum_rmse"] =
       result.inputs.empty() ? Json(nullptr) : json_number(result.inputs[0].optimum_rmse);
   out["inputs"] = Json::array();
@@ -304,6 +308,12 @@ Json replay_json(const ReplayView& view) {
   out["faults"] = known_faults_json(result);
   out["best"] =
       result.best ? Json(json_text(result.algorithms[*result.best].label)) : Json(nullptr);
+  out["best_sensor"] = result.best_sensor
+                           ? Json(json_text(result.sensors[*result.best_sensor].name))
+                           : Json(nullptr);
+  out["best_over_sensor_ci95"] =
+      result.best_over_sensor ? interval_json(*result.best_over_sensor) : Json(nullptr);
+  out["offsets_decide"] = result.offsets_decide;
   out["algorithms"] = Json::array();
   for (const AlgorithmView& algorithm : view.algorithms)
     out["algorithms"].push_back(algorithm_json(result, algorithm));

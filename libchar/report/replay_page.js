@@ -6,7 +6,7 @@
   const { report, INK, DIM, MEASURED, numberText, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
 
   // ---- who is who ----
-  const score = (a) => (report.score === "rmse" ? a.rmse : a.without_reference && a.without_reference.leave_one_out_rms);
+  const score = (a) => (report.score === "rmse" ? a.rmse : a.without_reference && a.without_reference.predictive_rms);
   const scoreName = report.score === "rmse" ? "RMSE" : "leave-one-out RMS";
   const ran = report.algorithms.filter((a) => a.status === "ran");
   const order = ran.slice().sort((a, b) => (score(a) === null) - (score(b) === null) || score(a) - score(b));

@@ -55,11 +55,12 @@ TEST_CASE("replay json: several inputs give weights a row a sensor") {
 
 TEST_CASE("replay json: without a reference no figure is called RMSE") {
   const Json j = replay_json(test::without_reference());
-  CHECK(j["score"] == "leave_one_out_rms");
+  CHECK(j["score"] == "predictive_rms");
   CHECK(j["reference"].is_null());
   const Json& a = j["algorithms"][0];
   CHECK(a["rmse"].is_null());
   CHECK(a["without_reference"]["leave_one_out_rms"].get<double>() > 0);
+  CHECK(a["without_reference"]["predictive_rms"].get<double>() > 0);
   CHECK(a["without_reference"]["leave_one_out"][1].is_null());
   CHECK(a["without_reference"]["split_array_rms"].get<double>() > 0);
 }

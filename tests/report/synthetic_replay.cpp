@@ -195,6 +195,8 @@ ReplayResult without_reference() {
     a.blind->leave_one_out[1] = kNan;
     a.blind->split_rms = 0.7 * a.rmse;
     a.blind->leave_one_out_ci95 = a.rmse_ci95;
+    a.blind->predictive_rms = a.rmse;
+    a.blind->predictive_ci95 = a.rmse_ci95;
   }
   return r;
 }

@@ -41,7 +41,6 @@ struct ReplayVerb {
   bool explain = false, list = false, force = false, json = false, no_allan = false,
        no_skip = false, no_faults = false, allow_outside = false;
   std::optional<double> window_s;
-  std::uint64_t seed = 1;
 };
 
 [[noreturn]] void refuse_replay(const std::string& where,
@@ -127,8 +126,7 @@ Scene read_scene(const ReplayVerb& verb) {
 std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& result) {
   std::vector<std::string> faults;
   for (const std::string& fault : verb.faults) faults.push_back(printable(fault));
-  return {{"seed", verb.seed},
-          {"window_s", finite_or_null(result.window_s)},
+  return {{"window_s", finite_or_null(result.window_s)},
           {"allan", !verb.no_allan},
           {"no_skip", verb.no_skip},
           {"no_faults", verb.no_faults},
@@ -157,7 +155,6 @@ ReplayOptions options_of(const ReplayVerb& verb, const Scene& scene) {
   options.window_s = verb.window_s.value_or(0);
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
-  options.seed = verb.seed;
   return options;
 }
 
@@ -266,7 +263,6 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                 verb->estimates,
                 "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       .value_name("FORMAT");
-  options.add_count("--seed", verb->seed, "seed of the bootstrap intervals (default: 1)");
   options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
   options.add_flag("--explain",
                    verb->explain,

@@ -94,16 +94,32 @@ void BlindRun::run(const Eigen::MatrixXd& samples) {
   split_.push(errors_);
 }
 
+Meters BlindRun::meters() const {
+  Meters out;
+  for (const ErrorMeter& meter : meters_)
+    if (score(meter, 1, {false}).samples > 0) out.push_back(&meter);
+  return out;
+}
+
 BlindScore BlindRun::result(double rate_hz, const ScoreOptions& options) const {
   ScoreOptions without_interval = options;
-  without_interval.replicates = 0;
+  without_interval.intervals = false;
   BlindScore out;
   const ErrorScore all = score(all_, rate_hz, options);
   out.leave_one_out_rms = all.rmse;
   out.leave_one_out_ci95 = all.rmse_ci95;
-  for (const ErrorMeter& meter : meters_)
-    out.leave_one_out.push_back(
-        meter.cells().empty() ? kNone : score(meter, rate_hz, without_interval).rmse);
+  double squares = 0, offsets = 0;
+  for (const ErrorMeter& meter : meters_) {
+    const ErrorScore one = score(meter, rate_hz, without_interval);
+    out.leave_one_out.push_back(one.samples > 0 ? one.rmse : kNone);
+    if (one.samples == 0) continue;
+    squares += one.rmse * one.rmse;
+    offsets += one.bias * one.bias;
+  }
+  out.offset_share = squares > 0 ? offsets / squares : 0;
+  const GeometricRms predictive = geometric_rms(meters(), options);
+  out.predictive_rms = predictive.rms;
+  out.predictive_ci95 = predictive.ci95;
   out.split_rms = split_.cells().empty() ? kNone : score(split_, rate_hz, without_interval).rmse;
   return out;
 }

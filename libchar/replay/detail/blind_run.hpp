@@ -19,8 +19,8 @@ class BlindRun {
   BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array);
   void run(const Eigen::MatrixXd& samples);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
-  /// Root mean square over the sensors, instant by instant: for intervals and comparisons.
-  const ErrorMeter& meter() const { return all_; }
+  /// Leave-one-out errors of the sensors that were left out, one meter each: by these methods are compared.
+  Meters meters() const;
   std::uint64_t steps() const { return steps_; }
 
  private:

@@ -46,7 +46,7 @@ void judge_optimum(ReplayResult& result,
                    const fusion::Array& array) {
   if (!result.has_reference) return;
   ScoreOptions quick;
-  quick.replicates = 0;
+  quick.intervals = false;
   if (array.one_common_input() || array.tilt) {
     for (const AlgorithmRun& bound : optimum)
       if (bound.alive())
@@ -114,30 +114,74 @@ void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result) {
   }
 }
 
-void judge_best(ReplayResult& result,
-                const std::vector<const ErrorMeter*>& meters,
-                const ScoreOptions& scoring) {
+namespace {
+
+/// A difference that is not worth a choice.
+constexpr double kTolerance = 0.01;
+/// Of a mean square difference from the others, in the means: beyond it nothing else is compared.
+constexpr double kMostOffsets = 0.9;
+
+std::optional<std::size_t> smallest_error(const ReplayResult& result) {
   double most_available = 0;
   for (const AlgorithmResult& a : result.algorithms)
     if (a.ran && !a.bound) most_available = std::max(most_available, a.availability);
+  std::optional<std::size_t> best;
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     const AlgorithmResult& a = result.algorithms[k];
     if (!a.ran || a.bound || !std::isfinite(a.rmse) ||
         a.availability < kLeastShare * most_available)
       continue;
-    if (!result.best || a.rmse < result.algorithms[*result.best].rmse) result.best = k;
+    if (!best || a.rmse < result.algorithms[*best].rmse) best = k;
   }
+  return best;
+}
+
+}  // namespace
+
+void judge_best(ReplayResult& result,
+                const std::vector<Meters>& meters,
+                const ScoreOptions& scoring) {
+  result.best = smallest_error(result);
   if (!result.best) return;
   const std::size_t best = *result.best;
+  const auto& blind = result.algorithms[best].blind;
+  result.offsets_decide = !result.has_reference && blind && blind->offset_share > kMostOffsets;
+  if (result.offsets_decide) return result.best.reset();
   result.algorithms[best].as_good_as_best = true;
+  // As many chances to look worse as there are others (Bonferroni).
+  double others = 0;
+  for (std::size_t k = 0; k < meters.size(); ++k) others += k != best && !meters[k].empty();
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     AlgorithmResult& a = result.algorithms[k];
-    if (k == best || meters[k] == nullptr || !std::isfinite(a.rmse)) continue;
-    a.ratio_to_best = rmse_ratio_ci95(*meters[k], *meters[best], scoring);
+    if (k == best || meters[k].empty() || !std::isfinite(a.rmse)) continue;
+    a.ratio_to_best = rms_ratio_interval(meters[k], meters[best], scoring);
+    const Interval corrected = rms_ratio_interval(meters[k], meters[best], scoring, 0.05 / others);
+    const double smallest = result.algorithms[best].rmse;
     // Equal errors, zero among them, have no ratio to speak of.
-    a.as_good_as_best = a.rmse == result.algorithms[best].rmse ||
-                        (a.ratio_to_best->low <= 1 && a.ratio_to_best->high >= 1);
+    a.as_good_as_best =
+        a.rmse <= (1 + kTolerance) * smallest || (corrected.low <= 1 && corrected.high >= 1);
   }
+}
+
+void judge_best_sensor(ReplayResult& result,
+                       const std::vector<Meters>& meters,
+                       const Meters& sensors,
+                       const ScoreOptions& scoring) {
+  if (!result.best || !result.has_reference || result.scene.tilt || result.inputs.size() != 1)
+    return;
+  double most_available = 0;
+  for (const SensorResult& sensor : result.sensors)
+    most_available = std::max(most_available, sensor.error.availability);
+  for (std::size_t i = 0; i < result.sensors.size(); ++i) {
+    const double rmse = result.sensors[i].error.rmse;
+    const bool most = result.sensors[i].error.availability >= kLeastShare * most_available;
+    if (std::isfinite(rmse) && most && !result.sensors[i].constant &&
+        (!result.best_sensor || rmse < result.sensors[*result.best_sensor].error.rmse))
+      result.best_sensor = i;
+  }
+  if (result.best_sensor && !meters[*result.best].empty())
+    result.best_over_sensor =
+        rms_ratio_interval(meters[*result.best], {sensors[*result.best_sensor]}, scoring);
 }
 
 }  // namespace libchar

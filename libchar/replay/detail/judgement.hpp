@@ -30,10 +30,15 @@ void judge_tracking(AlgorithmResult& algorithm,
 /// Which known faults were found, and when.
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
 
-/// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, an
-/// algorithm each, null where there is none.
+/// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, for each algorithm, empty where there are none.
 void judge_best(ReplayResult& result,
-                const std::vector<const ErrorMeter*>& meters,
+                const std::vector<Meters>& meters,
                 const ScoreOptions& scoring);
+
+/// The best single sensor beside the best method: one input, a reference. `sensors`: of their errors, in order.
+void judge_best_sensor(ReplayResult& result,
+                       const std::vector<Meters>& meters,
+                       const Meters& sensors,
+                       const ScoreOptions& scoring);
 
 }  // namespace libchar

@@ -1,0 +1,109 @@
+#include "libchar/replay/verdict.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "libchar/replay/replay.hpp"
+#include "tests/replay/replay_numbers.hpp"
+#include "tests/replay/scene_text.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+using Catch::StartsWith;
+using test::named;
+
+namespace {
+
+struct Sensor {
+  double noise = 1, offset = 0, gain = 1;
+};
+
+// A recording of sensors that see one slow signal, beside the signal itself.
+std::string array_log(const std::vector<Sensor>& sensors, std::size_t rows, std::uint64_t seed) {
+  test::Gaussian gauss(seed);
+  std::string out = "t[s]";
+  for (std::size_t i = 0; i < sensors.size(); ++i) out += ",s" + std::to_string(i + 1);
+  out += ",truth\n";
+  for (std::size_t k = 0; k < rows; ++k) {
+    const double x = 3 * std::sin(0.003 * static_cast<double>(k));
+    out += std::to_string(static_cast<double>(k) * 0.01);
+    char cell[32];
+    for (const Sensor& sensor : sensors) {
+      std::snprintf(
+          cell, sizeof cell, ",%.9g", sensor.gain * x + sensor.offset + sensor.noise * gauss());
+      out += cell;
+    }
+    std::snprintf(cell, sizeof cell, ",%.9g\n", x);
+    out += cell;
+  }
+  return out;
+}
+
+std::string scene_of(std::size_t sensors, const std::string& more) {
+  std::string text = "format: scene\nversion: 1\nrecording: array.csv\nsensors: [";
+  for (std::size_t i = 0; i < sensors; ++i) text += (i == 0 ? "s" : ", s") + std::to_string(i + 1);
+  return text + "]\n" + more;
+}
+
+}  // namespace
+
+TEST_CASE("verdict: whether fusion pays is said against the best single sensor, by name") {
+  const test::SceneBench bench;
+  bench.put("array.csv", array_log({{1}, {1}, {0.9}, {1}, {1}}, 8000, 1));
+  ReplayResult result =
+      replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean, median]\n")));
+  REQUIRE(result.best_sensor == std::size_t{2});
+  CHECK(result.best_over_sensor->high < 0.6);
+  CHECK_THAT(replay_verdict(result, false),
+             StartsWith("Use mean") && Contains("Fusion pays") && Contains("below that of s3"));
+
+  bench.put("array.csv", array_log({{1}, {1}, {0.1}, {1}, {1}}, 8000, 2));
+  result = replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean]\n")));
+  CHECK_THAT(replay_verdict(result, false),
+             StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
+}
+
+TEST_CASE(
+    "verdict: without a reference the method is chosen that is best with one, whatever the worst "
+    "sensors do") {
+  // Two good sensors of seven, gains and noise mixed; the scale of the worst is a hundred times that of the best.
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const test::SceneBench bench;
+    bench.put("array.csv",
+              array_log({{0.05}, {0.07}, {0.5}, {1}, {3}, {5, 0, 0.8}, {5, 0, 1.3}}, 20000, seed));
+    const std::string methods = "algorithms: [mean, median, minque]\n";
+    const ReplayResult blind = replay(bench.read(scene_of(7, methods)));
+    const ReplayResult seen = replay(bench.read(scene_of(7, "reference: truth\n" + methods)));
+    REQUIRE(blind.best);
+    const std::string chosen = blind.algorithms[*blind.best].label;
+    CHECK(named(seen, chosen.c_str()).rmse <= 1.15 * seen.algorithms[*seen.best].rmse);
+  }
+}
+
+TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
+  const test::SceneBench bench;
+  bench.put("array.csv", array_log({{1, -1000}, {1, 300}, {1, 900}, {1, 0}}, 4000, 3));
+  ReplayResult result = replay(bench.read(scene_of(4, "algorithms: [mean, median]\n")));
+  CHECK(result.offsets_decide);
+  CHECK_FALSE(result.best);
+  CHECK_THAT(replay_verdict(result, false),
+             StartsWith("No method is recommended") && Contains("`rest`"));
+  result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
+  CHECK_FALSE(result.offsets_decide);
+  CHECK(result.best);
+}
+
+TEST_CASE("verdict: one per cent is no difference") {
+  const test::SceneBench bench;
+  bench.put("array.csv", array_log({{1}, {1.02}, {0.98}, {1}}, 60000, 4));
+  const ReplayResult result =
+      replay(bench.read(scene_of(4, "reference: truth\nalgorithms: [mean, minque]\n")));
+  CHECK(named(result, "mean").as_good_as_best);
+  CHECK(named(result, "minque").as_good_as_best);
+  CHECK_THAT(replay_verdict(result, false), Contains("Within one per cent of it"));
+}
