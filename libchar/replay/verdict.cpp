@@ -167,7 +167,8 @@ std::string offsets_sentence(const ReplayResult& r) {
   return fmt::format(
       "No method is recommended: {} % of the differences between the sensors (mean squares) are in "
       "their "
-      "means, and offsets would decide. Give the scene a `rest`, a reference, or sensors without "
+      "means, and offsets would decide. Give the scene a stretch at rest, a reference, or sensors "
+      "without "
       "offsets.",
       significant(100 * share, 3));
 }

@@ -92,7 +92,7 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   CHECK(result.offsets_decide);
   CHECK_FALSE(result.best);
   CHECK_THAT(replay_verdict(result, false),
-             StartsWith("No method is recommended") && Contains("`rest`"));
+             StartsWith("No method is recommended") && Contains("a stretch at rest"));
   result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
   CHECK_FALSE(result.offsets_decide);
   CHECK(result.best);
