@@ -19,7 +19,7 @@ constexpr double kSamplesWithoutRate = 2e7;
 /// A square below so many rounding errors proves nothing.
 constexpr double kRoundingErrors = 1e4;
 /// Own samples by which a newcomer is known.
-constexpr double kNewcomerSamples = 64;
+constexpr double kNewcomerSamples = 256;
 /// Own samples after which the falling gain of the variances starts anew: until then the means were learnt.
 constexpr double kMeansLearnt[] = {256, 2048};
 
@@ -221,7 +221,7 @@ void FaultDetector::slow_work(Variances& variances) {
     samples = std::max(samples, base_.count[i]);
   }
   if (restarts_ < std::size(kMeansLearnt) && samples >= kMeansLearnt[restarts_]) {
-    variances.restart();
+    variances.restart(kStart / 2);
     base_.forget_blocks();
     ++restarts_;
   }
@@ -322,7 +322,11 @@ void FaultDetector::meet_newcomers(Variances& variances, const double* y) {
     variances.assume(i, std::max({square - shared, 0.01 * square, kTiny}));
     base_.bias[i] = new_mean_[i];
     base_.bias_var[i] = square / new_count_[i];
-    base_.count[i] = 1;
+    // Its variance is known from few samples, and the weights of all hang on it: nobody is judged before
+    // all have been seen with it.
+    variances.restart(kNewcomerSamples);
+    for (double& count : base_.count) count = std::min(count, kNewcomerSamples);
+    base_.count[i] = kNewcomerSamples;
     base_.mean_f[i] = base_.f[i];
     known_[i] = 1;
     --count_new_;

@@ -139,8 +139,8 @@ void ReweightedMatrix::apply(double a) {
   }
 }
 
-void ReweightedMatrix::restart() {
-  instants_ = 16;
+void ReweightedMatrix::restart(double instants) {
+  instants_ = std::min(instants_, instants);
 }
 
 void ReweightedMatrix::assume(std::size_t i, double variance) {

@@ -28,7 +28,7 @@ class ReweightedMatrix {
   void update();
   Estimate estimate() const;
   /// As ReweightedVariances.
-  void restart();
+  void restart(double instants);
   void assume(std::size_t i, double variance);
 
   std::size_t size() const { return v_.size(); }

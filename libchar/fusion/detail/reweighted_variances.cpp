@@ -86,8 +86,8 @@ void ReweightedVariances::begin(const double* variances, double instants) {
   weigh();
 }
 
-void ReweightedVariances::restart() {
-  instants_ = kFirstInstants;
+void ReweightedVariances::restart(double instants) {
+  instants_ = std::min(instants_, instants);
 }
 
 void ReweightedVariances::assume(std::size_t i, double variance) {

@@ -61,8 +61,8 @@ class ReweightedVariances {
 
   /// Starts from these variances, as if they had been seen in `instants`.
   void begin(const double* variances, double instants);
-  /// The gain falls again as it did at the start.
-  void restart();
+  /// The gain falls again as it did after so many instants.
+  void restart(double instants);
   /// From here on channel i has this variance.
   void assume(std::size_t i, double variance);
 
