@@ -8,19 +8,37 @@
 
 namespace libchar::fusion {
 
-/// Which rule took the channel out.
+/// What was seen of the channel, or which rule of [RV] saw it.
 enum class FaultRule {
   variance,         ///< its estimated variance is beyond a threshold [RV 4.34]
   residual_moment,  ///< the second moment of its residual about zero is: noise, bias or gain
+  bias,             ///< its residual has a mean: bias or ramp
+  gain,             ///< its residual follows the input
+  noise,            ///< its residual scatters more: it stays in use, with less weight
+  dead,             ///< it says nothing about the input any more
+  stuck,            ///< it repeats a value that it could not repeat
+  saturated,        ///< it stands at the end of its range
 };
 constexpr std::string_view name(FaultRule rule) {
-  return rule == FaultRule::variance ? "variance" : "residual_moment";
+  constexpr std::string_view names[] = {
+      "variance", "residual_moment", "bias", "gain", "noise", "dead", "stuck", "saturated"};
+  return names[static_cast<int>(rule)];
 }
+
+/// A stretch in which the faults could not be told: two sets of channels contradict each other and
+/// either may be the sound one, or most channels are off at once.
+struct FaultDoubt {
+  std::int64_t sample = 0;  ///< where it was seen
+  bool ambiguous = false;   ///< two sets explain it alike; false: no set is consistent
+  std::uint64_t one_side = 0,
+                other_side = 0;  ///< ambiguous: channels, bit by bit (of the first 64)
+};
 
 struct FaultEvent {
   std::int64_t sample = 0;  ///< instant of the run, 0 = first
   int channel = 0;
-  bool faulty = false;  ///< true: taken out from here on; false: in again
+  bool faulty =
+      false;  ///< true: faulty from here on (taken out, noise: re-weighted); false: sound again
   FaultRule rule = FaultRule::variance;
 };
 
@@ -29,10 +47,15 @@ struct FaultEvent {
 class FaultLog {
  public:
   static constexpr std::size_t kRoom = 4096;
-  FaultLog() { events_.reserve(kRoom); }
+  static constexpr std::size_t kRoomForDoubts = 256;
+  FaultLog() {
+    events_.reserve(kRoom);
+    doubts_.reserve(kRoomForDoubts);
+  }
   FaultLog(const FaultLog& other) : FaultLog() { *this = other; }
   FaultLog& operator=(const FaultLog& other) {
     events_.assign(other.events_.begin(), other.events_.end());
+    doubts_.assign(other.doubts_.begin(), other.doubts_.end());
     dropped_ = other.dropped_;
     return *this;
   }
@@ -42,11 +65,16 @@ class FaultLog {
     else
       ++dropped_;
   }
+  void note(const FaultDoubt& doubt) {
+    if (doubts_.size() < kRoomForDoubts) doubts_.push_back(doubt);
+  }
+  std::span<const FaultDoubt> doubts() const { return doubts_; }
   std::span<const FaultEvent> events() const { return events_; }
   std::uint64_t dropped() const { return dropped_; }
 
  private:
   std::vector<FaultEvent> events_;
+  std::vector<FaultDoubt> doubts_;
   std::uint64_t dropped_ = 0;
 };
 

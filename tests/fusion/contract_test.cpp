@@ -104,6 +104,8 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
 TEST_CASE("fault rules have names") {
   CHECK(name(FaultRule::variance) == "variance");
   CHECK(name(FaultRule::residual_moment) == "residual_moment");
+  CHECK(name(FaultRule::bias) == "bias");
+  CHECK(name(FaultRule::saturated) == "saturated");
 }
 
 TEST_CASE("what cannot run is refused with the same sentence") {

@@ -43,7 +43,10 @@ TEST_CASE("minque: faults are found, kept out and let in again") {
   const test::Vectors inputs("faults_input.csv");
   Array array = test::array(6);
   array.fault_free_samples = 2000;
-  auto minque = test::make("minque", array, {{"recovery_samples", 200}});
+  const double detection = GENERATE(1, 2);
+  INFO("detection " << detection);
+  auto minque =
+      test::make("minque", array, {{"fault_detection", detection}, {"recovery_samples", 200}});
   const test::Run out = test::run(*minque, inputs.block("y", 6));
   // Sensor 1 dead from 3000 on (counted from zero), sensor 2 -30 % from 3800, sensor 3 +25 % from
   // 4400 to 4999.
@@ -62,7 +65,11 @@ TEST_CASE("minque: faults are found, kept out and let in again") {
     CHECK(events[i].sample <= expected[i].to);
     CHECK(events[i].channel == expected[i].channel);
     CHECK(events[i].faulty == expected[i].faulty);
-    CHECK(events[i].rule == FaultRule::residual_moment);
+    if (detection == 2) CHECK(events[i].rule == FaultRule::residual_moment);
+  }
+  if (detection == 1) {
+    CHECK(events[0].rule == FaultRule::dead);
+    for (const std::size_t i : {1U, 2U, 3U}) CHECK(events[i].rule == FaultRule::gain);
   }
   const auto error = [&](Eigen::Index from) {
     return std::sqrt((out.x.row(0).transpose() - inputs["x"]).tail(6000 - from).squaredNorm() /

@@ -33,7 +33,7 @@ bool shorter(double fault_gamma, double gamma) {
 Minque::Minque(const Array& array, const Settings& settings)
     : scalar_(static_cast<std::size_t>(array.channels), reweighting(settings)),
       watch_(static_cast<std::size_t>(array.channels), watching(settings)),
-      asked_(settings["fault_detection"] != 0),
+      asked_(settings["fault_detection"] == 2),
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
       // The variances must have settled before they can accuse anybody.
       armed_from_(std::max<std::int64_t>(
@@ -43,6 +43,10 @@ Minque::Minque(const Array& array, const Settings& settings)
       present_(static_cast<std::size_t>(array.channels)),
       m_(static_cast<int>(array.channels)) {
   std::iota(present_.begin(), present_.end(), 0);
+  if (settings["fault_detection"] == 1)
+    detector_.emplace(array,
+                      FaultDetectorOptions{settings["false_alarm_s"],
+                                           static_cast<std::int64_t>(settings["recovery_window"])});
   if (!array.one_common_input()) general_.emplace(array.observation_matrix, reweighting(settings));
 }
 
@@ -52,9 +56,11 @@ Estimate Minque::step(const Sample& y) {
 
 template <class Variances>
 Estimate Minque::step_with(Variances& variances, const Sample& y) {
+  if (detector_) detect(variances, y);
   // Where the last instant was complete, this one is taken to be, and looked at when it shows that
   // it is not.
-  if (!all_in_use()) use_present(y);
+  if (!all_in_use() || !variances.started() || (detector_ && detector_->set_changed()))
+    use_present(y);
   const auto fuse = [&] {
     return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan("");
   };
@@ -67,13 +73,14 @@ Estimate Minque::step_with(Variances& variances, const Sample& y) {
   }
   Estimate estimate = Estimate::none(inputs_);
   if (good(x)) {
-    const bool found = detection_ && found_fault(variances);
-    if (found) {
+    const bool judged = detector_ && detector_->set_changed();
+    const bool found = judged || (detection_ && found_fault(variances));
+    if (found && !judged) {
       use_present(y);
       x = fuse();
     }
     if (good(x)) estimate = variances.estimate();
-    if (good(x) && watch_.count_out() > 0) check_recovery(variances, y);
+    if (good(x) && detection_ && watch_.count_out() > 0) check_recovery(variances, y);
     // What a failing channel has done to the residuals of this instant is not to be learnt.
     if (good(x) && !found) variances.update();
   }
@@ -81,14 +88,25 @@ Estimate Minque::step_with(Variances& variances, const Sample& y) {
   return estimate;
 }
 
+/// The detector judges the instant first: the estimate is made of those that it leaves in.
+template <class Variances>
+void Minque::detect(Variances& variances, const Sample& y) {
+  detector_->step(y.data());
+  if (!variances.started()) return;
+  for (const VarianceChange& change : detector_->changes()) {
+    const auto i = static_cast<std::size_t>(change.channel);
+    variances.assume(i, variances.variance(i) * change.ratio);
+  }
+}
+
 bool Minque::all_in_use() const {
-  return m_ == static_cast<int>(present_.size()) && watch_.count_out() == 0;
+  return m_ == static_cast<int>(present_.size()) && count_out() == 0;
 }
 
 void Minque::use_present(const Sample& y) {
   m_ = 0;
   for (int i = 0; i < static_cast<int>(y.size()); ++i)
-    if (usable(y[i]) && !watch_.out(static_cast<std::size_t>(i)))
+    if (usable(y[i]) && !out(static_cast<std::size_t>(i)))
       present_[static_cast<std::size_t>(m_++)] = i;
 }
 
@@ -101,7 +119,7 @@ bool Minque::found_fault(const Variances& variances) {
   const int* const all = present_.data();
   if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_)
     return false;
-  const int where = watch_.worst(expected, least, all, m_);
+  const int where = watch_.worst(all, m_);
   for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use(k)));
   watch_.take_out(static_cast<std::size_t>(where), now_);
   return true;
@@ -119,6 +137,7 @@ void Minque::check_recovery(const Variances& variances, const Sample& y) {
 }
 
 void Minque::remarks(Warnings& warnings) const {
+  if (detector_) detector_->remarks(description.name, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",
                  "minque looks for no faults: the memory of the variances (gamma) is not five "

@@ -1,13 +1,14 @@
 #pragma once
 // Adaptive weights from variances that the channels tell about each other: recursive re-weighted
-// MINQUE (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by the mended rule
-// (fault_watch.hpp), then the weighted mean or generalized least squares.
+// MINQUE (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by a bank of
+// cumulative sums (fault_detector.hpp) or by the mended rule of [RV] (fault_watch.hpp), then the weighted mean or generalized least squares.
 
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/fault_detector.hpp"
 #include "libchar/fusion/detail/fault_watch.hpp"
 #include "libchar/fusion/detail/reweighted_matrix.hpp"
 #include "libchar/fusion/detail/reweighted_variances.hpp"
@@ -42,21 +43,49 @@ struct Minque {
              0,
              1e300,
              "of every channel at the start; 0: from the first instants"},
-      Option{"fault_detection", "", 1, 0, 1, "1: channels that fail are taken out", true},
+      Option{"fault_detection",
+             "",
+             1,
+             0,
+             2,
+             "1: channels that fail are taken out or re-weighted, by cumulative sums; 2: by the "
+             "second "
+             "moment; 0: neither",
+             true},
       Option{
-          "fault_gamma", "", 0.99, 0.5, 0.999999, "memory of the second moment that shows a fault"},
+          "false_alarm_s",
+          "s",
+          1e5,
+          1,
+          1e15,
+          "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 "
+          "samples)"},
+      Option{"recovery_window",
+             "samples",
+             200,
+             16,
+             1e9,
+             "own samples that must agree with the others before a channel comes in again "
+             "(detection 1)",
+             true},
+      Option{"fault_gamma",
+             "",
+             0.99,
+             0.5,
+             0.999999,
+             "memory of the second moment that shows a fault (detection 2)"},
       Option{"fault_threshold",
              "",
              2,
              1,
              1e6,
-             "of that moment relative to the channel's own variance"},
+             "of that moment relative to the channel's own variance (detection 2)"},
       Option{"recovery_samples",
              "samples",
              1000,
              1,
              1e12,
-             "instants below the threshold before a channel comes in again",
+             "instants below the threshold before a channel comes in again (detection 2)",
              true}};
 
   Minque(const Array& array, const Settings& settings);
@@ -65,7 +94,7 @@ struct Minque {
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const;
   Eigen::VectorXd variances() const;
-  const FaultLog& faults() const { return watch_.log(); }
+  const FaultLog& faults() const { return detector_ ? detector_->log() : watch_.log(); }
   void remarks(Warnings& warnings) const;
 
  private:
@@ -75,13 +104,18 @@ struct Minque {
   bool found_fault(const Variances& variances);
   template <class Variances>
   void check_recovery(const Variances& variances, const Sample& y);
+  template <class Variances>
+  void detect(Variances& variances, const Sample& y);
+  bool out(std::size_t i) const { return detector_ ? detector_->out(i) : watch_.out(i); }
+  int count_out() const { return detector_ ? detector_->count_out() : watch_.count_out(); }
   bool all_in_use() const;
   int in_use(int k) const { return present_[static_cast<std::size_t>(k)]; }
   void use_present(const Sample& y);
 
   ReweightedVariances scalar_;               // one input seen by all alike
   std::optional<ReweightedMatrix> general_;  // any other H
-  FaultWatch watch_;
+  std::optional<FaultDetector> detector_;    // detection 1
+  FaultWatch watch_;                         // detection 2
   bool asked_, detection_;
   std::int64_t armed_from_, now_ = 0;
   Eigen::Index inputs_;

@@ -5,9 +5,11 @@
 // worst channel is taken out first; it comes in again when its moment has been below the threshold
 // for the whole recovery time.
 //
-//   m_i <- m_i + a (r_i^2 - m_i),  out when m_i > threshold x (v_i - V),  V = 1 / sum 1/v
-//   while out:  e_i = y_i - x,  in again when m_i < threshold x (v_i + V) for `recovery` instants
+//   m_i <- m_i + a (r_i^2 / (v_i - V) - m_i),  out when m_i > threshold,  V = 1 / sum 1/v
+//   while out:  m_i of (y_i - x)^2 / (v_i + V), in again when m_i < threshold for `recovery` instants
 //   on end
+//
+// What is expected changes with the set of channels: the ratio is kept, not the square.
 
 #include <algorithm>
 #include <cstdint>
@@ -40,8 +42,7 @@ class FaultWatch {
   /// threshold. `expected`: of the squares, by channel, never taken for less than `least`.
   bool beyond(
       const double* residuals, const double* expected, double least, const int* index, int m) {
-    for (int k = 0; not_begun_ > 0 && k < m; ++k)
-      begin(index[k], std::max(expected[index[k]], least));
+    for (int k = 0; not_begun_ > 0 && k < m; ++k) begin(index[k]);
     const double* __restrict const r = residuals;
     const double* __restrict const e = expected;
     double* __restrict const moment = moment_.data();
@@ -50,8 +51,8 @@ class FaultWatch {
     double over[2] = {-1, -1};
     const auto take_in = [&](int i, int lane) {
       const double expectation = e[i] > least ? e[i] : least;
-      moment[i] += gain * (r[i] * r[i] - moment[i]);
-      const double beyond = moment[i] - threshold * expectation;
+      moment[i] += gain * (r[i] * r[i] / expectation - moment[i]);
+      const double beyond = moment[i] - threshold;
       over[lane] = beyond > over[lane] ? beyond : over[lane];
     };
     if (m == static_cast<int>(moment_.size())) {
@@ -65,12 +66,11 @@ class FaultWatch {
     return over[0] > 0 || over[1] > 0;
   }
   /// The channel whose moment is the largest multiple of what is expected.
-  int worst(const double* expected, double least, const int* index, int m) const {
+  int worst(const int* index, int m) const {
     double largest = 0;
     int where = index[0];
     for (int k = 0; k < m; ++k) {
-      const double ratio =
-          moment_[static_cast<std::size_t>(index[k])] / std::max(expected[index[k]], least);
+      const double ratio = moment_[static_cast<std::size_t>(index[k])];
       if (ratio > largest) {
         largest = ratio;
         where = index[k];
@@ -91,11 +91,11 @@ class FaultWatch {
   }
   /// A channel that is out: true when it may come in again.
   bool calmed(std::size_t i, double residual, double expectation) {
-    begin(static_cast<int>(i), expectation);
-    moment_[i] += gain_ * (residual * residual - moment_[i]);
-    const bool calm = !(moment_[i] > options_.threshold * expectation);
+    begin(static_cast<int>(i));
+    moment_[i] += gain_ * (residual * residual / expectation - moment_[i]);
+    const bool calm = !(moment_[i] > options_.threshold);
     // However bad it has been: what counts is how long ago.
-    moment_[i] = std::min(moment_[i], 2 * options_.threshold * expectation);
+    moment_[i] = std::min(moment_[i], 2 * options_.threshold);
     calm_[i] = calm ? calm_[i] + 1 : 0;
     return calm_[i] >= options_.recovery;
   }
@@ -108,10 +108,10 @@ class FaultWatch {
   const FaultLog& log() const { return log_; }
 
  private:
-  void begin(int i, double expectation) {
+  void begin(int i) {
     double& moment = moment_[static_cast<std::size_t>(i)];
     if (!(moment < 0)) return;
-    moment = expectation;
+    moment = 1;
     --not_begun_;
   }
 

@@ -139,6 +139,17 @@ void ReweightedMatrix::apply(double a) {
   }
 }
 
+void ReweightedMatrix::restart(double instants) {
+  instants_ = std::min(instants_, instants);
+}
+
+void ReweightedMatrix::assume(std::size_t i, double variance) {
+  v_[i] = variance;
+  factored_ = false;
+  gathered_ = 0;
+  squares_.setZero();
+}
+
 Estimate ReweightedMatrix::estimate() const {
   Estimate estimate{x_, State::Constant(x_.size(), std::numeric_limits<double>::quiet_NaN())};
   if (started_)

@@ -27,6 +27,9 @@ class ReweightedMatrix {
   double fuse(const double* y, const int* index, int m);
   void update();
   Estimate estimate() const;
+  /// As ReweightedVariances.
+  void restart(double instants);
+  void assume(std::size_t i, double variance);
 
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }

@@ -26,6 +26,7 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
       b_(n),
       e_(n),
       index_(n, -1),
+      sorted_(options.start_variance > 0 ? 0 : n),
       first_(options.start_variance > 0 ? 0 : n * kFirstInstants),
       last_gain_(1 - options.gamma),
       started_(options.start_variance > 0) {}
@@ -57,10 +58,43 @@ double ReweightedVariances::fuse(const double* y, const int* index, int m) {
                        : m != m_ || (!all() && !std::equal(index, index + m, index_.data())))
     use(index, m);
   y_ = y;
-  x_ = all() ? fuse_in_use<true>(y) : fuse_in_use<false>(y);
+  x_ = !started_ ? median(y) : all() ? fuse_in_use<true>(y) : fuse_in_use<false>(y);
   const double ulp = std::numeric_limits<double>::epsilon() * x_;
   rounding_ = std::max(ulp * ulp, kTiny);
   return x_;
+}
+
+/// Before anything is known of the channels: one that is far off moves nothing.
+double ReweightedVariances::median(const double* y) {
+  const auto from = sorted_.begin(), to = from + m_, middle = from + m_ / 2;
+  for (int k = 0; k < m_; ++k) sorted_[static_cast<std::size_t>(k)] = y[index_[k]];
+  std::nth_element(from, middle, to);
+  const double high = *middle;
+  const double low = m_ % 2 == 1 ? high : *std::max_element(from, middle);
+  const double x = low + (high - low) / 2;
+  for (int k = 0; k < m_; ++k) r_[index_[k]] = y[index_[k]] - x;
+  return x;
+}
+
+void ReweightedVariances::begin(const double* variances, double instants) {
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    v_[i] = variances[i];
+    inverse_[i] = 1 / v_[i];
+  }
+  instants_ = instants;
+  started_ = true;
+  weigh();
+}
+
+void ReweightedVariances::restart(double instants) {
+  instants_ = std::min(instants_, instants);
+}
+
+void ReweightedVariances::assume(std::size_t i, double variance) {
+  if (gathered_gain_ > 0) renew(last_gain_);
+  v_[i] = variance;
+  inverse_[i] = 1 / variance;
+  weigh();
 }
 
 void ReweightedVariances::use(const int* index, int m) {

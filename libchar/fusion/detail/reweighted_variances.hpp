@@ -59,6 +59,13 @@ class ReweightedVariances {
     if (gathered_gain_ >= kRenewal || ++gathered_instants_ >= kMostGathered) renew(a);
   }
 
+  /// Starts from these variances, as if they had been seen in `instants`.
+  void begin(const double* variances, double instants);
+  /// The gain falls again as it did after so many instants.
+  void restart(double instants);
+  /// From here on channel i has this variance.
+  void assume(std::size_t i, double variance);
+
   /// Of the last `fuse`.
   Estimate estimate() const {
     return Estimate::scalar(x_, started_ ? fused_ : std::numeric_limits<double>::quiet_NaN());
@@ -90,6 +97,7 @@ class ReweightedVariances {
   static constexpr int kMostGathered = 16;
 
  private:
+  double median(const double* y);
   void start(const double* y);
   void start_from_pairs();
   bool all() const { return m_ == static_cast<int>(v_.size()); }
@@ -114,6 +122,7 @@ class ReweightedVariances {
   std::vector<double> gathered_;  // sum of gain x r^2 since the variances were renewed
   std::vector<double> b_, e_;     // right side, 1 / (1 - 2p + lambda)
   std::vector<int> index_;        // channels in use, rising: the first m_
+  std::vector<double> sorted_;    // scratch of the start
   std::vector<double> first_;  // samples of the first instants, NaN where a channel was not in use
   int m_ = 0;
   double fused_ = 1;  // 1 / sum of the inverse variances in use
