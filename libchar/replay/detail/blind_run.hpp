@@ -16,8 +16,12 @@ namespace libchar {
 
 class BlindRun {
  public:
-  BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array);
-  void run(const Eigen::MatrixXd& samples);
+  /// `live`: the sensors that have samples; empty: all.
+  BlindRun(const PlannedAlgorithm& planned,
+           const fusion::Array& array,
+           const std::vector<Eigen::Index>& live);
+  /// The first `skip` instants of the block are not scored.
+  void run(const Eigen::MatrixXd& samples, Eigen::Index skip);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
   /// Root mean square over the sensors, instant by instant: for intervals and comparisons.
   const ErrorMeter& meter() const { return all_; }
