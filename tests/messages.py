@@ -18,6 +18,7 @@ NO_FLAGS = {
     "recording": "key of a scene",
     "recursive": "value of an option",
     "repeat": "key of a signal in a scene",
+    "scale": "key of a scene",
     "simulate": "key of a scene",
     "taps": "key of a sensor model",
     "tau_s": "key of a sensor model",

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace libchar {
@@ -51,6 +52,18 @@ PivotedSolution pivoted_least_squares(const MatrixXd& a,
   // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
   if (qr.rank() == 0) return {VectorXd::Zero(a.cols()), 0};
   return {qr.solve(b), qr.rank()};
+}
+
+PivotedSolution shortest_least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
+  cod.setThreshold(threshold);
+  cod.compute(a);
+  if (cod.rank() == 0) return {VectorXd::Zero(a.cols()), 0};
+  return {cod.solve(b), cod.rank()};
+}
+
+MatrixXd general_solve(const MatrixXd& a, const MatrixXd& b) {
+  return Eigen::PartialPivLU<MatrixXd>(a).solve(b);
 }
 
 std::optional<MatrixXd> cholesky_factor(const MatrixXd& a) {

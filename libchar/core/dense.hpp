@@ -41,6 +41,15 @@ PivotedSolution pivoted_least_squares(const Eigen::MatrixXd& a,
                                       const Eigen::VectorXd& b,
                                       std::optional<double> threshold = {});
 
+/// The same, but of all x that do as well the shortest (complete orthogonal decomposition): columns
+/// that say the same share what they are worth.
+PivotedSolution shortest_least_squares(const Eigen::MatrixXd& a,
+                                       const Eigen::VectorXd& b,
+                                       double threshold);
+
+/// A^-1 B of a square A, by LU with partial pivoting.
+Eigen::MatrixXd general_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
 /// L of A = L L', A symmetric; none when A is not positive definite.
 std::optional<Eigen::MatrixXd> cholesky_factor(const Eigen::MatrixXd& a);
 /// L^-1, whether A is positive definite or not.

@@ -79,6 +79,7 @@ struct Needs {
   /// looks at the reference of the run itself: a bound, not a method
   bool reference_throughout = false;
   bool noise_levels = false;  ///< a noise variance for each channel
+  bool noise_models = false;  ///< a noise model for each channel
   /// takes any H (otherwise every channel must see the one input with gain one)
   bool observation_matrix = false;
   bool accepts_missing = false;   ///< otherwise an instant with a missing sample has no estimate

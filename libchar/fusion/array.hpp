@@ -15,6 +15,20 @@ struct TiltChannels {
   Eigen::Index accelerometer_z = 2;  ///< grows with cos(tilt)
 };
 
+/// A noise that is remembered for a while: sigma^2 exp(-|t| / tau).
+struct RememberedNoise {
+  double sigma = 0;  ///< U
+  double tau_s = 0;
+};
+
+/// What a sensor's model says of its noise, in the unit of the samples.
+struct NoiseModel {
+  double white = 0;    ///< variance of a sample's white noise, U^2; above zero
+  double flicker = 0;  ///< B, U: two-sided density B^2 / (2 pi f)
+  double walk = 0;     ///< K, U/sqrt(s): K^2 / (2 pi f)^2
+  std::vector<RememberedNoise> gauss_markov;
+};
+
 /// What is known of an array of sensors before its samples come.
 struct Array {
   Eigen::Index channels = 0;  ///< n
@@ -22,6 +36,8 @@ struct Array {
   Eigen::MatrixXd observation_matrix;
   /// variance of a sample's noise, channel by channel; empty: not known
   Eigen::VectorXd noise_levels;
+  /// of each channel; empty: not known
+  std::vector<NoiseModel> noise_models;
   double rate_hz = 0;  ///< 0: not known
   /// instants with a reference before the run (0: no learning window)
   std::int64_t learning_samples = 0;

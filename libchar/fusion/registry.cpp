@@ -6,7 +6,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithms/blind_calibration.hpp"
+#include "libchar/fusion/algorithms/blind_gls.hpp"
 #include "libchar/fusion/algorithms/bounds.hpp"
+#include "libchar/fusion/algorithms/covariance_intersection.hpp"
 #include "libchar/fusion/algorithms/inverse_variance.hpp"
 #include "libchar/fusion/algorithms/kalman_takens.hpp"
 #include "libchar/fusion/algorithms/kalman_takens_published.hpp"
@@ -20,6 +22,7 @@
 #include "libchar/fusion/algorithms/tilt_complementary.hpp"
 #include "libchar/fusion/algorithms/tilt_kalman.hpp"
 #include "libchar/fusion/algorithms/tilt_tuned.hpp"
+#include "libchar/fusion/algorithms/virtual_sensor.hpp"
 #include "libchar/fusion/why_not.hpp"
 
 // A build may bring algorithms of its own, which stand first: their header by -include, their
@@ -51,6 +54,7 @@ constexpr std::array kAlgorithms{
     LIBCHAR_MORE_ALGORITHMS entry<Mean>(),
     entry<Median>(),
     entry<InverseVariance>(),
+    entry<CovarianceIntersection>(),
     entry<Minque>(),
     entry<MinquePublished>(),
     entry<RandomWeighting>(),
@@ -59,8 +63,12 @@ constexpr std::array kAlgorithms{
     entry<KalmanTakensPublished>(),
     entry<BlindCalibration>(),
     entry<BlindCalibrationPublished>(),
+    entry<BlindGls>(),
+    entry<VirtualSensor>(),
     entry<LeastSquares>(),
     entry<LeastSquaresPublished>(),
+    entry<ShrunkLeastSquares>(),
+    entry<NonNegativeLeastSquares>(),
     entry<Perceptron>(),
     entry<KalmanTakensTaught>(),
     entry<TiltGyroscope>(),

@@ -48,7 +48,15 @@ inline constexpr Option kStartAtZero{
     0,
     0,
     1,
-    "1: angle zero before the first instant, as in [RV]; 0: the first angle of gravity",
+    "1: angle zero before the first instant, as in [RV]; 0: the angles of gravity of the start",
     true};
+inline constexpr Option kStart{"start_s",
+                               "s",
+                               1,
+                               0,
+                               1e6,
+                               "the start is the mean of the angles of gravity of so long, carried "
+                               "along by the gyroscope; 0: the "
+                               "first one alone"};
 
 }  // namespace libchar::fusion

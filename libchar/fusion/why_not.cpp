@@ -57,6 +57,9 @@ std::string why_not(const Description& description, const Array& array) {
     return name +
            " needs a noise level (above zero) for each channel; give a sensor model, noise or a "
            "rest";
+  if (needs.noise_models && static_cast<Eigen::Index>(array.noise_models.size()) != array.channels)
+    return name +
+           " needs a noise model of each channel, and its noise level; give each sensor its model";
   if (needs.reference_throughout && !array.reference_throughout)
     return name + " looks at the reference all along; this scene has none over the run";
   if (needs.reference && array.learning_samples == 0)

@@ -14,6 +14,7 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   if (n.learning_samples > 0)
     out.push_back(fmt::format("at least {} learning instants", n.learning_samples));
   if (n.noise_levels) out.emplace_back("noise levels");
+  if (n.noise_models) out.emplace_back("noise models");
   if (n.fault_free_start) out.emplace_back("a start without faults");
   if (n.tilt) out.emplace_back("one gyroscope axis and two accelerometer axes");
   if (n.rate) out.emplace_back("the sampling rate");

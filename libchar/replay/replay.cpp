@@ -9,8 +9,11 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
+#include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/plan.hpp"
@@ -89,10 +92,12 @@ class Replay {
 
   void prepare() {
     frame_.array = &plan_.array;
+    frame_.live = &plan_.live;
     frame_.heap = workspace_.heap;
     frame_.rate_hz = instants_.info().rate_hz;
     frame_.start_s =
         instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
+    frame_.scored_from_s = frame_.start_s + static_cast<double>(plan_.warm_up) / frame_.rate_hz;
     frame_.output_scale = instants_.info().output_scale;
     frame_.tilt = scene_.tilt.has_value();
     frame_.allan = (options_.allan || options_.no_skip) && instants_.info().has_reference;
@@ -102,7 +107,7 @@ class Replay {
       if (algorithm.runs()) {
         runs_.emplace_back(algorithm, frame_);
         if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run())
-          blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.array));
+          blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.array, plan_.live));
         else
           blind_.push_back(nullptr);
       }
@@ -178,11 +183,14 @@ class Replay {
           for (AlgorithmRun& run : runs_) run.run(samples);
           const Eigen::MatrixXd& healthy = without_faults(first, samples);
           for (AlgorithmRun& run : optimum_) run.run(healthy);
-          for (AlgorithmRun& run : runs_) run.score(first - plan_.run_from, truth);
-          for (AlgorithmRun& run : optimum_) run.score(first - plan_.run_from, truth);
+          const std::int64_t done = first - plan_.run_from;
+          const Eigen::Index skip =
+              std::clamp<std::int64_t>(plan_.warm_up - done, 0, samples.cols());
+          for (AlgorithmRun& run : runs_) run.score(done, truth, skip);
+          for (AlgorithmRun& run : optimum_) run.score(done, truth, skip);
           for (const auto& blind : blind_)
-            if (blind) blind->run(samples);
-          judge_sensors(samples, healthy, truth);
+            if (blind) blind->run(samples, skip);
+          judge_sensors(samples, healthy, truth, skip);
           if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
@@ -191,8 +199,10 @@ class Replay {
 
   void judge_sensors(const Eigen::MatrixXd& samples,
                      const Eigen::MatrixXd& healthy,
-                     const Eigen::MatrixXd& truth) {
+                     const Eigen::MatrixXd& truth,
+                     Eigen::Index skip) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
+    copies_.push(samples);
     if (truth.rows() > 0) truths_ += truth.row(0).array().isFinite().count();
     if (errors) expected_ = plan_.array.h() * truth;
     std::vector<double> error(static_cast<std::size_t>(samples.cols()));
@@ -208,16 +218,20 @@ class Replay {
         } else if (y != meter.first) {
           meter.constant = false;
         }
+        if (fusion::usable(y))
+          largest_ = std::max(largest_, std::abs(y));
+        else
+          beyond_ = beyond_ || !std::isnan(y);
         if (errors) {
           const double e = y - expected_(row, k);
           error[static_cast<std::size_t>(k)] = std::isfinite(e) ? e : kMissing;
-          if (std::isfinite(e) && std::isfinite(healthy(row, k))) {
+          if (k >= skip && std::isfinite(e) && std::isfinite(healthy(row, k))) {
             meter.healthy_squares += e * e;
             meter.healthy_samples += 1;
           }
         }
       }
-      if (errors) meter.error.push(error);
+      if (errors) meter.error.push(std::span(error).subspan(static_cast<std::size_t>(skip)));
     }
   }
 
@@ -271,6 +285,7 @@ class Replay {
     Meters meters;
   };
   ReplayResult collect();
+  void refuse_sizes() const;
   void add_facts(ReplayResult& out) const;
   void add_sensors(ReplayResult& out, const ScoreOptions& scoring) const;
   Scored scored(const AlgorithmRun& run,
@@ -292,6 +307,9 @@ class Replay {
   std::vector<AlgorithmRun> runs_, optimum_;
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
+  CopiedSensors copies_;
+  double largest_ = 0;   // magnitude of the sensors' usable samples
+  bool beyond_ = false;  // there are larger ones
   std::vector<Eigen::MatrixXd> kept_;
   Eigen::MatrixXd expected_, healthy_;
   Eigen::Index truths_ = 0;  // instants of the run with a truth
@@ -310,6 +328,7 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   out.missing =
       static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
   out.constant = sensors_[i].constant;
+  if (!out.constant) out.copy_of = copies_.original_of(i);
   out.h = scene_.sensors[i].h;
   return out;
 }
@@ -346,6 +365,12 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
   for (const SensorResult& sensor : out.sensors)
     if (sensor.constant)
       out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
+  for (const SensorResult& sensor : out.sensors)
+    if (sensor.copy_of)
+      out.warnings.add(
+          "copied_sensor",
+          "sensors that repeat another one, sample by sample: one sensor counted twice",
+          sensor.name + " repeats " + out.sensors[*sensor.copy_of].name);
 }
 
 // One that ran, and by which of its errors it is compared with others; empty: by none.
@@ -393,6 +418,20 @@ std::vector<Meters> Replay::add_algorithms(ReplayResult& out, const ScoreOptions
   return meters;
 }
 
+// Beyond, squares of samples are infinite or zero, and every score is made of them.
+void Replay::refuse_sizes() const {
+  if (!beyond_ && (largest_ == 0 || largest_ >= 1 / fusion::kLargestSample)) return;
+  if (beyond_ && largest_ > 0) return;
+  throw Error(
+      {ErrorKind::input,
+       "E0909",
+       scene_.file,
+       "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that "
+       "size cannot be squared",
+       beyond_ ? "beyond 1e100" : significant(largest_, 3),
+       "give the sensors a `scale` and a `unit`"});
+}
+
 ReplayResult Replay::collect() {
   ScoreOptions scoring;
   scoring.sections = plan_.array.section_starts;
@@ -403,6 +442,7 @@ ReplayResult Replay::collect() {
                  "the reference has no value within the evaluation",
                  "",
                  "its stamps, its lag or its gaps put it elsewhere"});
+  refuse_sizes();
   ReplayResult out;
   add_facts(out);
   add_sensors(out, scoring);

@@ -213,6 +213,7 @@ Json sensors_json(const ReplayResult& result) {
     one.erase("converged_s");
     one["missing"] = json_number(s.missing);
     one["constant"] = s.constant;
+    if (s.copy_of) one["copy_of"] = json_text(result.sensors[*s.copy_of].name);
     one["offset"] = json_number(s.offset);
     one["noise_variance"] = json_number(s.noise_variance);
     one["noise_source"] = s.noise_source.empty() ? Json(nullptr) : Json(json_text(s.noise_source));

@@ -97,7 +97,9 @@ std::string sensors_section(const ReplayView& view) {
     const SensorResult& s = r.sensors[i];
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(s.name),
-                       s.constant ? " (constant)" : "",
+                       s.constant  ? " (constant)"
+                       : s.copy_of ? " (= " + markdown_text(r.sensors[*s.copy_of].name) + ")"
+                                   : "",
                        markdown_text(s.unit),
                        significant_or_dash(s.error.rmse, 4),
                        significant_or_dash(s.error.bias, 2),

@@ -20,6 +20,8 @@ struct SceneSensor {
   std::optional<SensorModel> model;  ///< inline or from a file beside the scene
   std::vector<double> h = {1};       ///< row of the observation matrix
   double scale = 1;                  ///< the recording's samples are multiplied by it on reading
+  /// Of the samples after `scale`; empty: what the recording says, which another scale makes untrue.
+  std::string unit = {};
   /// Standard deviation of a sample's noise, in the unit after `scale`.
   std::optional<double> noise = std::nullopt;
 };
@@ -73,6 +75,8 @@ struct Scene {
   std::optional<TimeWindow> rest;  ///< the true inputs are zero there
   std::optional<double>
       fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
+  /// From the start of the evaluation: run, but not scored.
+  std::optional<double> warm_up_s;
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets

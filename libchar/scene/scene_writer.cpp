@@ -203,6 +203,7 @@ Entries scene_entries(const Scene& scene) {
   if (scene.learning) out.push_back(window_entry("learning", *scene.learning));
   if (scene.evaluation) out.push_back(window_entry("evaluation", *scene.evaluation));
   if (scene.rest) out.push_back(window_entry("rest", *scene.rest));
+  if (scene.warm_up_s) out.push_back({"warm_up_s", *scene.warm_up_s});
   if (scene.fault_free_s) out.push_back({"fault_free_s", *scene.fault_free_s});
   if (!scene.faults.empty()) out.push_back(faults_entry(scene.faults, scene));
   if (scene.simulated) out.push_back(simulated_entry(scene));

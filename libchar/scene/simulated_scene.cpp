@@ -61,6 +61,7 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.evaluation = original.evaluation;
   scene.rest = original.rest;
   scene.fault_free_s = original.fault_free_s;
+  scene.warm_up_s = original.warm_up_s;
   scene.tilt = original.tilt;
   scene.algorithms = original.algorithms;
   scene.file = recording.scene_file;

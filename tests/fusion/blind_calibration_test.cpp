@@ -84,3 +84,26 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
   CHECK(error(false, 1) < 0.03);
   CHECK(error(true, 1) < 0.03);
 }
+
+TEST_CASE("blind calibration: an offset of the input moves the estimate by itself") {
+  // Four barometers: gains within a percent, the input 1013 with a swing of 3.
+  test::Gaussian gauss(6);
+  const Eigen::Vector4d gain(1.02, 0.99, 0.97, 1.01);
+  Eigen::MatrixXd y(4, 4000);
+  Eigen::RowVectorXd x(4000);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    x[k] = 3 * std::sin(0.01 * static_cast<double>(k));
+    for (Eigen::Index i = 0; i < 4; ++i) y(i, k) = gain[i] * x[k] + 0.05 * gauss();
+  }
+  for (const char* name : {"blind-calibration", "blind-gls"}) {
+    INFO(name);
+    const test::Values gauge{{"gauge", 0}};
+    const Eigen::MatrixXd low = test::run(*test::make(name, test::array(4), gauge), y).x;
+    const Eigen::MatrixXd high =
+        test::run(*test::make(name, test::array(4), gauge), y.array() + 1013).x.array() - 1013;
+    CHECK((low - high).cwiseAbs().maxCoeff() < 1e-9);
+    // No worse than the plain mean, to which the gains are a correction.
+    const double mean = (y.colwise().mean() - x).norm(), ours = (high - x).norm();
+    CHECK(ours < 1.1 * mean);
+  }
+}

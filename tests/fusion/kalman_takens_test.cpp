@@ -210,3 +210,23 @@ TEST_CASE("kalman-takens: blocks of any size give the same bits") {
       CHECK(test::run(*test::make(name, levels(variances)), y, 1, block).x == whole);
   }
 }
+
+TEST_CASE("kalman-takens: what lives on repetition says so") {
+  const auto remark = [](bool periodic) {
+    test::Gaussian gauss(4);
+    Array array = test::array(3);
+    array.noise_levels = Eigen::Vector3d::Constant(0.04);
+    Eigen::MatrixXd y(3, 4000);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      const double x = periodic ? std::sin(0.15 * static_cast<double>(k)) : gauss();
+      for (Eigen::Index i = 0; i < 3; ++i) y(i, k) = x + 0.2 * gauss();
+    }
+    auto fusion = test::make("kalman-takens", array);
+    test::run(*fusion, y);
+    libchar::Warnings warnings;
+    fusion->remarks(warnings);
+    return warnings.find("input_repeats") != nullptr;
+  };
+  CHECK(remark(true));
+  CHECK_FALSE(remark(false));
+}

@@ -3,6 +3,7 @@
 #include "libchar/fusion/algorithms/least_squares.hpp"
 
 #include <catch2/catch.hpp>
+#include <functional>
 
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/algorithms/bounds.hpp"
@@ -136,4 +137,93 @@ TEST_CASE("bounds: best channel, optimal weights, sections") {
   CHECK(rms("sectioned-least-squares", 3000, 3000) == Approx(std::sqrt(50.0 / 27)).epsilon(0.03));
   CHECK(rms("optimal-weights", 0, 6000) > rms("sectioned-least-squares", 0, 6000));
   CHECK(rms("best-sensor", 0, 6000) == Approx(2).epsilon(0.03));
+}
+
+namespace {
+
+/// Weights of five channels, the last ones made of the first three by `copy`.
+Eigen::VectorXd learnt_weights(Eigen::Index rows,
+                               const std::function<void(Eigen::VectorXd&)>& copy,
+                               libchar::Warnings& warnings,
+                               const std::string& name = "optimal-weights",
+                               double level = 0) {
+  test::Gaussian gauss(21);
+  Array array = test::array(5);
+  array.reference_throughout = true;
+  array.learning_samples = rows;
+  auto fusion = test::make(name, array);
+  Eigen::MatrixXd y(5, 1000), x(1, 1000);
+  for (Eigen::Index from = 0; from < rows; from += y.cols()) {
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      x(0, k) = level + 3 * std::sin(0.01 * static_cast<double>(from + k));
+      Eigen::VectorXd channels = Eigen::VectorXd::Zero(5);
+      for (Eigen::Index i = 0; i < 3; ++i)
+        channels[i] = x(0, k) + 0.2 * (1.0 + static_cast<double>(i)) * gauss();
+      copy(channels);
+      y.col(k) = channels;
+    }
+    fusion->learn(y, x);
+  }
+  fusion->finish_learning();
+  fusion->remarks(warnings);
+  return *fusion->weights();
+}
+
+}  // namespace
+
+TEST_CASE("least squares: one channel twice is one channel, however long the record") {
+  // By 1/v: 36, 9 and 4 of 49; each copy has half of its original's.
+  const Eigen::VectorXd expected = (Eigen::VectorXd(5) << 18, 4.5, 4, 18, 4.5).finished() / 49;
+  for (const Eigen::Index rows : {2000, 20000, 200000})
+    for (const bool as_float : {false, true}) {
+      INFO(rows << (as_float ? " as float" : ""));
+      libchar::Warnings warnings;
+      const Eigen::VectorXd w = learnt_weights(
+          rows,
+          [&](Eigen::VectorXd& y) {
+            for (const Eigen::Index i : {0, 1})
+              y[3 + i] = as_float ? static_cast<double>(static_cast<float>(y[i])) : y[i];
+          },
+          warnings);
+      CHECK((w - expected).cwiseAbs().maxCoeff() < 3 / std::sqrt(static_cast<double>(rows)));
+      REQUIRE(warnings.find("duplicate_channels") != nullptr);
+      CHECK(warnings.find("duplicate_channels")->count == 2);
+      CHECK(warnings.find("duplicate_channels")->places[1] == "channel 5 of channel 2");
+    }
+}
+
+TEST_CASE("least squares: channels made of others get the shortest weights") {
+  for (const Eigen::Index rows : {2000, 200000}) {
+    INFO(rows);
+    libchar::Warnings warnings;
+    const Eigen::VectorXd w = learnt_weights(
+        rows,
+        [](Eigen::VectorXd& y) {
+          y[3] = 0.5 * (y[0] + y[1]);
+          y[4] = 0.5 * (y[1] + y[2]);
+        },
+        warnings);
+    CHECK(w.cwiseAbs().maxCoeff() < 1.5);
+    // What counts is what they come to.
+    const Eigen::Vector3d total(w[0] + w[3] / 2, w[1] + (w[3] + w[4]) / 2, w[2] + w[4] / 2);
+    CHECK((total - Eigen::Vector3d(36, 9, 4) / 49).cwiseAbs().maxCoeff() <
+          3 / std::sqrt(static_cast<double>(rows)));
+    REQUIRE(warnings.find("dependent_channels") != nullptr);
+    CHECK(warnings.find("dependent_channels")->count == 2);
+  }
+}
+
+TEST_CASE("least squares: good channels far from zero are no copies") {
+  libchar::Warnings warnings;
+  test::Gaussian gauss(5);
+  const Eigen::VectorXd w = learnt_weights(
+      2000,
+      [&](Eigen::VectorXd& y) {
+        for (const Eigen::Index i : {3, 4}) y[i] = y[0] + 0.02 * gauss();
+      },
+      warnings,
+      "optimal-weights",
+      1e8);
+  CHECK(warnings.find("duplicate_channels") == nullptr);
+  CHECK(w.sum() == Approx(1).margin(1e-12));
 }

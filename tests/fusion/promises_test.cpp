@@ -27,6 +27,7 @@ const std::map<std::string_view, Promise> kPromises{
     {"mean", {true, 0}},
     {"median", {true, 0}},
     {"inverse-variance", {true, 0}},
+    {"covariance-intersection", {true, 0}},
     {"minque", {true, 0}},
     {"minque-published", {true, 0}},
     {"random-weighting", {true, 0}},
@@ -35,8 +36,12 @@ const std::map<std::string_view, Promise> kPromises{
     {"kalman-takens-published", {false, kInUnits}},
     {"blind-calibration", {false, 1e-10}},  // gains of its own
     {"blind-calibration-published", {false, 0}},
-    {"least-squares", {false, 1e-12}},  // weights of either sign
+    {"blind-gls", {false, 1e-10}},
+    {"virtual-sensor", {false, 1e-12}},  // leans on its own past
+    {"least-squares", {false, 1e-12}},   // weights of either sign
     {"least-squares-published", {false, 1e-12}},
+    {"shrunk-least-squares", {false, 1e-12}},  // calibrated
+    {"non-negative-least-squares", {false, 1e-12}},
     {"perceptron", {false, 1e-10}},
     {"kalman-takens-taught", {false, 0}},
     {"best-sensor", {true, 0}},
@@ -66,7 +71,7 @@ test::Run run(const Entry& entry, const test::FusionScene& scene) {
 test::FusionScene scaled(test::FusionScene scene, double factor) {
   scene.y *= factor;
   scene.truth *= factor;
-  scene.array.noise_levels *= factor * factor;
+  test::scale_levels(scene.array, factor);
   return scene;
 }
 

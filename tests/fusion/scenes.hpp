@@ -25,6 +25,24 @@ struct FusionScene {
                        ///< rounding
 };
 
+/// White noise of these variances, flicker a tenth and a walk a thousandth of its deviation.
+inline std::vector<libchar::fusion::NoiseModel> drifting(const Eigen::VectorXd& variances) {
+  std::vector<libchar::fusion::NoiseModel> models;
+  for (const double v : variances)
+    models.push_back({v, 0.1 * std::sqrt(v), 0.001 * std::sqrt(v), {}});
+  return models;
+}
+
+/// Everything that is in units of the samples, in another unit.
+inline void scale_levels(libchar::fusion::Array& array, double factor) {
+  array.noise_levels *= factor * factor;
+  for (libchar::fusion::NoiseModel& model : array.noise_models) {
+    model.white *= factor * factor;
+    model.flicker *= factor;
+    model.walk *= factor;
+  }
+}
+
 inline FusionScene noisy_scene(const std::string& name,
                                const Eigen::VectorXd& variances,
                                Eigen::Index instants = 600,
@@ -45,6 +63,7 @@ inline FusionScene noisy_scene(const std::string& name,
   }
   scene.array.channels = n;
   scene.array.noise_levels = variances;
+  if (n <= 10) scene.array.noise_models = drifting(variances);  // not states without end
   scene.array.rate_hz = 200;
   scene.array.learning_samples = instants;
   scene.array.fault_free_samples = instants / 3;

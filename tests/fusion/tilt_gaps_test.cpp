@@ -10,7 +10,7 @@ using namespace libchar::fusion;
 
 namespace {
 
-constexpr Eigen::Index kInstants = 4000;
+constexpr Eigen::Index kGapInstants = 4000;
 
 struct Swing {
   Eigen::MatrixXd y, truth;
@@ -21,10 +21,10 @@ struct Swing {
 Swing swing(double jitter = 0, double gyroscope_noise = 0.01, double gravity_noise = 0.02) {
   Swing made;
   made.array = test::tilt_scene().array;
-  made.y.resize(3, kInstants);
-  made.truth.resize(1, kInstants);
+  made.y.resize(3, kGapInstants);
+  made.truth.resize(1, kGapInstants);
   test::Gaussian gauss(8);
-  for (Eigen::Index k = 0; k < kInstants; ++k) {
+  for (Eigen::Index k = 0; k < kGapInstants; ++k) {
     const double off = jitter * std::clamp(gauss(), -3.0, 3.0);
     const double t = (static_cast<double>(k + 1) + off) / 100, angle = 0.7 * std::sin(2 * t);
     made.truth(0, k) = angle;
@@ -42,7 +42,8 @@ test::Run kalman(const Swing& swing) {
 }
 
 double rms(const Eigen::MatrixXd& x, const Swing& swing) {
-  return std::sqrt((x - swing.truth).rightCols(kInstants - 500).squaredNorm() / (kInstants - 500));
+  return std::sqrt((x - swing.truth).rightCols(kGapInstants - 500).squaredNorm() /
+                   (kGapInstants - 500));
 }
 
 }  // namespace
@@ -67,16 +68,16 @@ TEST_CASE("tilt: an instant without samples takes its time") {
 TEST_CASE("tilt-kalman: a silent gyroscope costs accuracy, and the variance says so") {
   const Swing whole = swing();
   Swing silent = whole;
-  for (Eigen::Index k = 600; k + 50 < kInstants; k += 400)
+  for (Eigen::Index k = 600; k + 50 < kGapInstants; k += 400)
     silent.y.row(0).segment(k, 50).setConstant(test::kNaN);
   const test::Run good = kalman(whole), held = kalman(silent);
   CHECK(rms(good.x, whole) < 0.006);
   // Holding the last rate for half a second alone would be off by up to 0.35 rad.
   CHECK(rms(held.x, silent) < 0.012);
-  CHECK((held.x - silent.truth).rightCols(kInstants - 500).cwiseAbs().maxCoeff() < 0.1);
+  CHECK((held.x - silent.truth).rightCols(kGapInstants - 500).cwiseAbs().maxCoeff() < 0.1);
   // In the gaps the errors stay within what the filter claims: mean square over claimed variance.
   double squares = 0, count = 0;
-  for (Eigen::Index k = 600; k + 50 < kInstants; k += 400)
+  for (Eigen::Index k = 600; k + 50 < kGapInstants; k += 400)
     for (Eigen::Index j = k; j < k + 50; ++j) {
       squares += std::pow(held.x(0, j) - silent.truth(0, j), 2) / held.variance(0, j);
       count += 1;

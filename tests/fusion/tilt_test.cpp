@@ -251,3 +251,18 @@ TEST_CASE("tilt tuned: near the best constants there are; unlike noise, unlike c
   deaf->learn(silent, y.block(3, 0, 1, 1000));
   CHECK_THROWS_AS(deaf->finish_learning(), libchar::Error);
 }
+
+TEST_CASE("tilt: a wild first sample of the accelerometer is not carried on") {
+  Eigen::MatrixXd y = turning(20000, 0.02, 0).topRows(3);
+  const Eigen::MatrixXd truth = turning(20000, 0.02, 0).row(3);
+  y(1, 0) += 9;  // a knock: tens of degrees
+  const auto error = [&](const char* name, const test::Values& values) {
+    const Eigen::MatrixXd x = test::run(*test::make(name, tilt_array(), values), y).x;
+    return std::sqrt(
+        (x - truth).unaryExpr([](double a) { return wrapped(a); }).rightCols(19500).squaredNorm() /
+        19500);
+  };
+  CHECK(error("tilt-gyroscope", {{"start_s", 0}}) > 0.5);
+  CHECK(error("tilt-gyroscope", {}) < 0.05);
+  CHECK(error("tilt-complementary", {{"time_constant", 100}}) < 0.05);
+}

@@ -57,7 +57,7 @@ TEST_CASE("instants: columns of the recording in blocks of the size that was ask
   Instants instants(scene, no_progress());
   CHECK(instants.info().rate_hz == Approx(10).epsilon(1e-9));
   CHECK(instants.info().count == 1000);
-  CHECK(instants.info().units == std::vector<std::string>{"deg/s", "deg/s"});
+  CHECK(instants.info().units == std::vector<std::string>{"deg/s (× -0.5)", "deg/s"});
   const Columns whole = all_of(instants, 0, 1000, 4096);
   REQUIRE(whole.samples.cols() == 1000);
   CHECK(whole.samples(0, 7) == -3.5);

@@ -1,7 +1,10 @@
 #include "libchar/replay/replay.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "libchar/replay/detail/instants.hpp"
 #include "tests/replay/replay_numbers.hpp"
@@ -340,4 +343,131 @@ TEST_CASE("replay: what cannot be scored or does not change is said") {
   const ReplayResult golden = replay(bench.read(scene + "reference: b\n"));
   REQUIRE(golden.warnings.find("reference_is_a_sensor") != nullptr);
   CHECK(golden.warnings.find("reference_is_a_sensor")->count == 1);
+}
+
+namespace {
+
+/// Five sensors of a sine at 100 Hz; `cell(sensor, instant)` may replace a sample by text.
+std::string five_sensors(int rows, const std::function<std::string(int, int)>& cell) {
+  std::string log = "t[s],a[deg/s],b[deg/s],c[deg/s],d[deg/s],e[deg/s],x[deg/s]\n";
+  std::uint64_t state = 1;
+  const auto noise = [&] {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<double>(state >> 11U) * 0x1p-53 - 0.5;
+  };
+  for (int k = 0; k < rows; ++k) {
+    const double x = std::sin(0.02 * k);
+    log += fmt::format("{:.2f}", 0.01 * k);
+    for (int i = 0; i < 5; ++i) {
+      const std::string own = fmt::format("{:.12g}", x + 0.1 * (i + 1) * noise());
+      const std::string other = cell(i, k);
+      log += "," + (other == "keep" ? own : other);
+    }
+    log += fmt::format(",{:.12g}\n", x);
+  }
+  return log;
+}
+
+const std::string kFive =
+    "format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, c, d, e]\n";
+
+}  // namespace
+
+TEST_CASE("replay: a sensor that dies at once is left out of everything, with a sentence") {
+  const test::SceneBench bench;
+  const std::string more = "reference: x\nlearning: [0, 20]\n";
+  bench.put("five.csv", five_sensors(4000, [](int i, int k) {
+              return i == 2 && k > 0 ? std::string() : std::string("keep");
+            }));
+  const ReplayResult dead = replay(bench.read(kFive + more));
+  REQUIRE(dead.warnings.find("sensor_without_samples") != nullptr);
+  CHECK(dead.warnings.find("sensor_without_samples")->places == std::vector<std::string>{"c"});
+  // What the others give is what they give without it, bit for bit.
+  bench.put("four.csv", five_sensors(4000, [](int, int) { return std::string("keep"); }));
+  const ReplayResult four = replay(
+      bench.read("format: scene\nversion: 1\nrecording: four.csv\nsensors: [a, b, d, e]\n" + more));
+  int compared = 0;
+  for (const AlgorithmResult& algorithm : four.algorithms) {
+    if (!algorithm.ran) continue;
+    INFO(algorithm.label);
+    const AlgorithmResult& same = named(dead, algorithm.label);
+    REQUIRE(same.ran);
+    CHECK(same.rmse == algorithm.rmse);
+    CHECK(same.availability == algorithm.availability);
+    if (same.weights) CHECK((*same.weights)(2, 0) == 0);
+    ++compared;
+  }
+  CHECK(compared > 12);
+  CHECK(dead.inputs[0].optimum_rmse == four.inputs[0].optimum_rmse);
+  // Without a reference too.
+  const ReplayResult blind = replay(bench.read(kFive));
+  CHECK(named(blind, "mean").blind->leave_one_out_rms > 0);
+  CHECK(std::isnan(named(blind, "mean").blind->leave_one_out[2]));
+}
+
+TEST_CASE("replay: a sensor that repeats another one is named") {
+  const test::SceneBench bench;
+  bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));
+  const ReplayResult twice = replay(
+      bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, "
+                 "channel: a}, d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
+  REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
+  CHECK(twice.warnings.find("copied_sensor")->places ==
+        std::vector<std::string>{"again repeats a"});
+  CHECK(twice.sensors[2].copy_of == std::size_t{0});
+  CHECK_FALSE(twice.sensors[3].copy_of.has_value());
+  const Eigen::MatrixXd w = *named(twice, "optimal-weights").weights;
+  CHECK(w(0, 0) == w(2, 0));
+  CHECK(w.cwiseAbs().maxCoeff() < 1);
+}
+
+TEST_CASE("replay: the warm-up runs and is not scored") {
+  const test::SceneBench bench;
+  bench.put("five.csv", five_sensors(3000, [](int i, int k) {
+              return i == 0 && k < 500 ? std::string("100") : std::string("keep");
+            }));
+  const std::string scene = kFive + "reference: x\nalgorithms: [mean, median]\n";
+  const ReplayResult all = replay(bench.read(scene)),
+                     warm = replay(bench.read(scene + "warm_up_s: 5\n"));
+  CHECK(named(all, "mean").rmse > 5);
+  CHECK(named(warm, "mean").rmse < 0.2);
+  CHECK(named(warm, "mean").inputs[0].error.samples == 2500);
+  CHECK(warm.sensors[0].error.rmse < 0.1);
+  CHECK(named(warm, "mean").availability == 1);
+  ReplayOptions options;
+  options.block = 7;
+  const ReplayResult small = replay(bench.read(scene + "warm_up_s: 5\n"), options);
+  CHECK(named(small, "mean").rmse == named(warm, "mean").rmse);
+  CHECK(small.sensors[0].error.rmse == warm.sensors[0].error.rmse);
+  CHECK(small.inputs[0].optimum_rmse == warm.inputs[0].optimum_rmse);
+  CHECK_THROWS_WITH(replay(bench.read(scene + "warm_up_s: 30\n")), Contains("E0903"));
+}
+
+TEST_CASE("replay: another scale is another unit") {
+  const test::SceneBench bench;
+  bench.put("five.csv", five_sensors(300, [](int, int) { return std::string("keep"); }));
+  const auto units = [&](const std::string& sensor) {
+    return replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [" + sensor +
+                             ", b]\nalgorithms: [mean]\n"))
+        .sensors[0]
+        .unit;
+  };
+  CHECK(units("a") == "deg/s");
+  CHECK(units("{name: a, scale: -1}") == "deg/s");
+  CHECK(units("{name: a, scale: 0.0174533}") == "deg/s (× 0.0174533)");
+  CHECK(units("{name: a, scale: 0.0174533, unit: rad/s}") == "rad/s");
+}
+
+TEST_CASE("replay: samples whose squares vanish are refused, a wild one is not") {
+  const test::SceneBench bench;
+  for (const char* size : {"1e-150", "1e150"}) {
+    bench.put("five.csv", five_sensors(300, [&](int i, int k) {
+                return (k + i) % 2 == 0 ? std::string(size) : "-" + std::string(size);
+              }));
+    CHECK_THROWS_WITH(replay(bench.read(kFive + "algorithms: [mean]\n")), Contains("E0909"));
+  }
+  bench.put("five.csv", five_sensors(300, [](int i, int k) {
+              return i == 1 && k == 50 ? std::string("1e300") : std::string("keep");
+            }));
+  CHECK_NOTHROW(replay(bench.read(kFive + "algorithms: [mean]\n")));
 }

@@ -10,13 +10,6 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr int kRounds = 60;
-/// Share of a channel's variance below which its noise is not followed.
-constexpr double kLeastNoise = 1e-14;
-/// Gains less certain than this (relative standard deviation) are none: of a scene that stands still
-/// they are ratios of noise.
-constexpr double kUncertainGain = 0.1;
-
 void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* option) {
   if (wanted > channels)
     throw Error(
@@ -35,11 +28,10 @@ BlindCalibration::BlindCalibration(const Array& array, const Settings& settings)
       noise_removal_(settings["noise_removal"] != 0),
       mean_(Eigen::VectorXd::Zero(array.channels)),
       delta_(mean_),
-      noise_(mean_),
-      factor_(mean_),
-      scratch_(mean_),
+      factor_(array.channels),
       inverse_gain_(Eigen::VectorXd::Ones(array.channels)),
       offset_(mean_),
+      solved_mean_(mean_),
       squares_(Eigen::MatrixXd::Zero(array.channels, array.channels)),
       conditions_(array.channels + 1, array.channels + 1),
       solution_(array.channels + 1),
@@ -57,9 +49,12 @@ Estimate BlindCalibration::step(const Sample& y) {
     solve();
   }
   const Eigen::Index n = y.size();
+  const double base = solved_ ? centre_ : y[0];
   double x = 0;
-  for (Eigen::Index i = 0; i < n; ++i) x += inverse_gain_[i] * (y[i] - offset_[i]);
-  return Estimate::scalar(x / static_cast<double>(n), std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index i = 0; i < n; ++i)
+    x += inverse_gain_[i] * (y[i] - (solved_ ? solved_mean_[i] : base));
+  return Estimate::scalar(base + x / static_cast<double>(n),
+                          std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Welford's update of mean and products.
@@ -84,42 +79,8 @@ void BlindCalibration::solve() {
 
 /// The one factor of the covariance; false while the channels do not move.
 bool BlindCalibration::solve_factor() {
-  const Eigen::Index n = mean_.size();
-  const auto covariance = squares_.selfadjointView<Eigen::Lower>();
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (!(squares_(i, i) > 0)) return false;
-  const bool known = levels_.size() == n;
-  if (!solved_) {
-    noise_ = 0.5 * squares_.diagonal() / instants_;
-    factor_ = noise_.cwiseSqrt();
-  }
-  if (known) noise_ = levels_;
-  // A factor in units of the noise, v = D^-1/2 g; a power step is v <- D^-1/2 C D^-1/2 v / |.|.
-  for (int round = 0; round < kRounds; ++round) {
-    scratch_ = factor_.cwiseQuotient(noise_);
-    delta_.noalias() = covariance * scratch_;
-    delta_ /= instants_;
-    // delta_ = C D^-1 g; Rayleigh quotient of the scaled problem: lambda = g'D^-1 C D^-1 g / g'D^-1
-    // g.
-    const double lambda = scratch_.dot(delta_) / scratch_.dot(factor_);
-    const double length = std::sqrt(delta_.cwiseAbs2().cwiseQuotient(noise_).sum());
-    if (!(lambda > 1) || !(length > 0)) return false;
-    factor_ = delta_ * (std::sqrt(lambda - 1) / length);
-    if (known) continue;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double all = squares_(i, i) / instants_;
-      noise_[i] = std::max(all - factor_[i] * factor_[i], kLeastNoise * all);
-    }
-  }
-  // Relative to the strongest: a channel without the input has no gain to be inverted.
-  const double strongest = factor_.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(std::abs(factor_[i]) > 1e-6 * strongest)) return false;
-    // var(g) / g^2 = v / (N g^2), as if the factor itself were known.
-    if (noise_[i] > kUncertainGain * kUncertainGain * instants_ * factor_[i] * factor_[i])
-      return false;
-  }
-  inverse_gain_ = factor_.cwiseInverse();
+  if (!factor_.solve(squares_, instants_, instants_, levels_)) return false;
+  inverse_gain_ = factor_.factor().cwiseInverse();
   return true;
 }
 
@@ -157,6 +118,8 @@ void BlindCalibration::set_gauge() {
 }
 
 void BlindCalibration::set_offsets() {
+  solved_mean_ = mean_;
+  centre_ = mean_[0] + (mean_.array() - mean_[0]).mean();
   const double t = mean_.sum() / inverse_gain_.cwiseInverse().sum();
   offset_ = mean_ - t * inverse_gain_.cwiseInverse();
 }

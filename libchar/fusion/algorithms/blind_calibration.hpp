@@ -4,7 +4,10 @@
 //
 //   u_i = g_i x + beta_i + e_i,  C = covariance of u so far,  a_i = 1 / g_i up to a common factor
 //   without noise: (P o C) a = 0, P = I - 11'/n; the gauge sets the factor: a_ref = 1, or mean(a) = 1
-//   beta_i = mean(u_i) - t / a_i with sum beta = 0;  x = mean of a_i (u_i - beta_i)
+//   x = mean of all means + mean of a_i (u_i - mean(u_i)): an offset of the input moves x by itself
+//   and by nothing else, whatever the gauge. The offsets that are reported belong to the gauge:
+//   beta_i = mean(u_i) - t / a_i with sum beta = 0. x of beta would be off by (sum 1/a - n)/n of the
+//   input's mean, since the mean of 1/a is not one where that of a is (Jensen)
 //
 // Noise adds its variances D to the diagonal of C and biases every gain. Default: D is taken off,
 // as the noise levels where they are given, else estimated with the gains as the one factor of C =
@@ -21,6 +24,7 @@
 #include <array>
 
 #include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/one_factor.hpp"
 
 namespace libchar::fusion {
 
@@ -67,12 +71,14 @@ struct BlindCalibration {
   Eigen::Index gauge_;
   bool noise_removal_;
   Eigen::VectorXd levels_;  // given noise variances, or empty
-  Eigen::VectorXd mean_, delta_, noise_, factor_, scratch_, inverse_gain_, offset_;
+  Eigen::VectorXd mean_, delta_;
+  OneFactor factor_;
+  Eigen::VectorXd inverse_gain_, offset_, solved_mean_;
   Eigen::MatrixXd squares_;  // sums of products about the mean, lower triangle
   Eigen::MatrixXd conditions_;
   Eigen::VectorXd solution_;
   Eigen::FullPivLU<Eigen::MatrixXd> elimination_;
-  double instants_ = 0, next_ = 0;
+  double instants_ = 0, next_ = 0, centre_ = 0;
   bool solved_ = false;
 };
 

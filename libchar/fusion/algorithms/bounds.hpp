@@ -47,6 +47,7 @@ struct OptimalWeights {
   void finish_learning() { mean_.take(learner_.weights(form_)); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
   Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
+  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
 
  private:
   LeastSquaresForm form_;

@@ -133,6 +133,17 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
   return estimate;
 }
 
+/// Below the error of the channels together the past says more than they do: the input repeats.
+void KalmanTakensFilter::remark(std::string_view name, Warnings& warnings) const {
+  const double fused = 1 / levels_.cwiseInverse().sum(), q = process_variance();
+  if (given_q_ > 0 || !(error_weight_ > kPriorErrors) || !(q < fused)) return;
+  warnings.add(
+      "input_repeats",
+      std::string(name) +
+          " predicts the input from its past better than the sensors measure it: the input "
+          "repeats itself or stands still; one that does not would not be estimated as well");
+}
+
 void KalmanTakensTaught::finish_learning() {
   if (filter_.learnt_stretches() >= 2 * filter_.neighbours()) return;
   throw Error({ErrorKind::numeric,

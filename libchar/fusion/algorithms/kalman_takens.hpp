@@ -45,6 +45,7 @@ class KalmanTakensFilter {
   std::size_t neighbours() const { return neighbours_; }
   Estimate step(const Sample& y);
   double process_variance() const;
+  void remark(std::string_view name, Warnings& warnings) const;
 
  private:
   double predict();
@@ -77,6 +78,7 @@ struct KalmanTakens {
   static constexpr std::array options = kKalmanTakensOptions;
   KalmanTakens(const Array& array, const Settings& settings) : filter_(array, settings, false) {}
   Estimate step(const Sample& y) { return filter_.step(y); }
+  void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
 
  private:
   KalmanTakensFilter filter_;
@@ -99,6 +101,7 @@ struct KalmanTakensTaught {
   /// Throws Error(numeric): the learning window is too short for M neighbours.
   void finish_learning();
   Estimate step(const Sample& y) { return filter_.step(y); }
+  void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
 
  private:
   KalmanTakensFilter filter_;

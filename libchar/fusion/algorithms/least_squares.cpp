@@ -6,6 +6,7 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/detail/error_weights.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -69,6 +70,100 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
   return error;
 }
 
+/// Lengths of a corrected channel's columns: what its rounding is relative to.
+Eigen::VectorXd WeightLearner::column_lengths(const Eigen::MatrixXd& upper,
+                                              const LearntWeights& learnt) const {
+  const double truth = upper.col(n_ + 1).norm();
+  Eigen::VectorXd out(n_);
+  for (Eigen::Index i = 0; i < n_; ++i)
+    out[i] = upper.col(1 + i).norm() + std::abs(learnt.gain[i] - 1) * truth;
+  return out;
+}
+
+/// Channels that follow the reference and are no copies of others.
+std::vector<Eigen::Index> WeightLearner::originals(const Eigen::MatrixXd& error,
+                                                   const Eigen::VectorXd& truth,
+                                                   LearntWeights& learnt) const {
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index i = 0; i < n_; ++i)
+    if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) ==
+        learnt.without_signal.end())
+      used.push_back(i);
+  if (used.empty()) cannot("no channel follows the reference in the learning window", "");
+  const Eigen::MatrixXd own = error(Eigen::all, used);
+  for (const auto& [copy, original] :
+       copies_of(own, own.colwise() + truth, rounding_of_rows(triangle_.rows())))
+    learnt.copies.emplace_back(static_cast<int>(used[static_cast<std::size_t>(copy)]),
+                               static_cast<int>(used[static_cast<std::size_t>(original)]));
+  std::erase_if(used, [&](Eigen::Index i) {
+    return std::any_of(learnt.copies.begin(), learnt.copies.end(), [i](const auto& pair) {
+      return pair.first == i;
+    });
+  });
+  return used;
+}
+
+/// Unknowns: weights (with sum w = 1 all but that of the last channel, by differences to it), then
+/// the constant. `lengths` of the channels used.
+void WeightLearner::solve(const LeastSquaresForm& form,
+                          const Rows& rows,
+                          const std::vector<Eigen::Index>& used,
+                          const Eigen::VectorXd& lengths,
+                          LearntWeights& learnt) const {
+  const auto m = static_cast<Eigen::Index>(used.size());
+  const Eigen::Index weights = form.sum_to_one ? m - 1 : m,
+                     unknowns = weights + (form.constant ? 1 : 0);
+  Eigen::MatrixXd problem(rows.error.rows(), unknowns + 1);
+  const Eigen::VectorXd last = rows.error.col(m - 1);
+  if (form.sum_to_one)
+    problem.leftCols(weights) = rows.error.leftCols(weights).colwise() - last;
+  else
+    problem.leftCols(weights) = rows.error.colwise() + rows.truth;
+  if (form.constant) problem.col(weights) = rows.one;
+  problem.col(unknowns) = form.sum_to_one ? (-last).eval() : rows.truth;
+  // What is left of channels that cancel is rounding, not a column to be scaled up; and where most
+  // of two channels cancels, the rounding is a larger share of what is left.
+  double rounding = rounding_of_rows(triangle_.rows());
+  const double unit = rounding;
+  for (Eigen::Index k = 0; k < weights; ++k) {
+    const double size = lengths[k] + (form.sum_to_one ? lengths[m - 1] : rows.truth.norm()),
+                 left = problem.col(k).norm();
+    if (left <= 100 * unit * size)
+      problem.col(k).setZero();
+    else
+      rounding = std::max(rounding, unit * size / left);
+  }
+  Eigen::VectorXd solution(unknowns);
+  if (unknowns > 0) solution = solve_scaled(problem, unknowns, rounding, learnt.dependent);
+  for (Eigen::Index k = 0; k < weights; ++k)
+    learnt.weights[used[static_cast<std::size_t>(k)]] = solution[k];
+  if (form.sum_to_one) learnt.weights[used.back()] = 1 - learnt.weights.sum();
+  if (form.constant) learnt.constant = solution[weights];
+  const double left = (problem.leftCols(unknowns) * solution - problem.col(unknowns)).squaredNorm();
+  learnt.variance =
+      left / static_cast<double>(std::max<std::int64_t>(1, triangle_.rows() - unknowns));
+}
+
+/// Sum one, from the errors alone: shrunk towards independent errors, or without negative weights.
+void WeightLearner::solve_shy(const LeastSquaresForm& form,
+                              const Eigen::MatrixXd& error,
+                              const std::vector<Eigen::Index>& used,
+                              const Eigen::VectorXd& lengths,
+                              LearntWeights& learnt) const {
+  if (form.non_negative) {
+    learnt.weights(used) = non_negative_weights(error);
+  } else {
+    const double share =
+        form.shrinkage < 0 ? estimated_shrinkage(error, triangle_.rows()) : form.shrinkage;
+    const Rows rows{shrunk(error, share), {}, {}};
+    solve({.sum_to_one = true}, rows, used, std::sqrt(1 - share) * lengths, learnt);
+  }
+  const Eigen::VectorXd weights = learnt.weights(used);
+  learnt.variance = (error * weights).squaredNorm() /
+                    static_cast<double>(std::max<std::int64_t>(
+                        1, triangle_.rows() - static_cast<std::int64_t>(used.size()) + 1));
+}
+
 LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
   const Eigen::MatrixXd& upper = triangle_.upper();
   LearntWeights learnt;
@@ -81,44 +176,22 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
            "a longer window, or fewer channels");
   const Eigen::MatrixXd error =
       form.calibrate ? calibrate(upper, learnt) : Eigen::MatrixXd(upper.middleCols(1, n_));
-  std::vector<Eigen::Index> used;
-  for (Eigen::Index i = 0; i < n_; ++i)
-    if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) ==
-        learnt.without_signal.end())
-      used.push_back(i);
-  if (used.empty()) cannot("no channel follows the reference in the learning window", "");
-
-  // Unknowns: weights (with sum w = 1 all but that of the last channel, by differences to it), then
-  // the constant.
-  const auto m = static_cast<Eigen::Index>(used.size());
-  const Eigen::Index weights = form.sum_to_one ? m - 1 : m,
-                     unknowns = weights + (form.constant ? 1 : 0);
-  Eigen::MatrixXd problem(upper.rows(), unknowns + 1);
-  const Eigen::VectorXd last = error.col(used.back());
   const Eigen::VectorXd truth = upper.col(n_ + 1) + origin_ * upper.col(0);
-  for (Eigen::Index k = 0; k < weights; ++k)
-    problem.col(k) = form.sum_to_one
-                         ? (error.col(used[static_cast<std::size_t>(k)]) - last).eval()
-                         : (error.col(used[static_cast<std::size_t>(k)]) + truth).eval();
-  if (form.constant) problem.col(weights) = upper.col(0);
-  problem.col(unknowns) = form.sum_to_one ? (-last).eval() : truth;
-  // What is left of channels that cancel is rounding, not a column to be scaled up.
-  const auto size = [&](Eigen::Index i) {
-    return upper.col(1 + i).norm() + upper.col(n_ + 1).norm();
-  };
-  for (Eigen::Index k = 0; k < weights; ++k)
-    if (problem.col(k).norm() <=
-        1e-14 * (size(used[static_cast<std::size_t>(k)]) + size(used.back())))
-      problem.col(k).setZero();
-  Eigen::VectorXd solution(unknowns);
-  if (unknowns > 0) solution = solve_scaled(problem, unknowns, learnt.dependent);
-  for (Eigen::Index k = 0; k < weights; ++k)
-    learnt.weights[used[static_cast<std::size_t>(k)]] = solution[k];
-  if (form.sum_to_one) learnt.weights[used.back()] = 1 - learnt.weights.sum();
-  if (form.constant) learnt.constant = solution[weights];
-  const double left = (problem.leftCols(unknowns) * solution - problem.col(unknowns)).squaredNorm();
-  learnt.variance =
-      left / static_cast<double>(std::max<std::int64_t>(1, triangle_.rows() - unknowns));
+  const std::vector<Eigen::Index> used = originals(error, truth, learnt);
+  const Eigen::MatrixXd own = error(Eigen::all, used);
+  const Eigen::VectorXd lengths = column_lengths(upper, learnt)(used);
+  if (form.non_negative || form.shrinkage != 0)
+    solve_shy(form, own, used, lengths, learnt);
+  else
+    solve(form, {own, upper.col(0), truth}, used, lengths, learnt);
+  // One channel twice: the shortest weights are equal ones.
+  for (const Eigen::Index i : used) {
+    double times = 1;
+    for (const auto& [copy, original] : learnt.copies) times += original == i ? 1 : 0;
+    learnt.weights[i] /= times;
+    for (const auto& [copy, original] : learnt.copies)
+      if (original == i) learnt.weights[copy] = learnt.weights[i];
+  }
   return learnt;
 }
 
@@ -158,22 +231,21 @@ Estimate LearntMean::of_present(const Sample& y) const {
   return Estimate::scalar(x + learnt_.constant, std::nan(""));
 }
 
-template <bool kPublished>
-void LeastSquaresOf<kPublished>::remarks(Warnings& warnings) const {
-  const LearntWeights& learnt = mean_.learnt();
+void remark_on(const LearntWeights& learnt, std::string_view name, Warnings& warnings) {
   for (const int i : learnt.without_signal)
+    warnings.add("channel_without_signal",
+                 std::string(name) + " left out a channel that does not follow the reference",
+                 "channel " + std::to_string(i + 1));
+  for (const auto& [copy, original] : learnt.copies)
     warnings.add(
-        "channel_without_signal",
-        std::string(description.name) + " left out a channel that does not follow the reference",
-        "channel " + std::to_string(i + 1));
+        "duplicate_channels",
+        std::string(name) + " found a channel that is a copy of another; they share a weight",
+        "channel " + std::to_string(copy + 1) + " of channel " + std::to_string(original + 1));
   if (learnt.dependent > 0)
     warnings.add("dependent_channels",
-                 std::string(description.name) + " found channels that are combinations of others",
+                 std::string(name) + " found channels that are combinations of others",
                  {},
                  static_cast<std::uint64_t>(learnt.dependent));
 }
-
-template struct LeastSquaresOf<false>;
-template struct LeastSquaresOf<true>;
 
 }  // namespace libchar::fusion

@@ -10,6 +10,8 @@
 // digits. No normal matrix; columns are scaled.
 
 #include <array>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
@@ -25,12 +27,20 @@ struct LearntWeights {
   double variance = 0;              ///< of the error in the learning window
   Eigen::Index dependent = 0;       ///< channels that say nothing beyond the others
   std::vector<int> without_signal;  ///< channels whose gain cannot be told from zero: weight zero
+  /// {copy, original}: one channel twice, which share one weight
+  std::vector<std::pair<int, int>> copies;
 };
+/// What of it the reader of a result must know.
+void remark_on(const LearntWeights& learnt, std::string_view name, Warnings& warnings);
 
 struct LeastSquaresForm {
   bool calibrate = false;
   bool sum_to_one = true;
   bool constant = false;
+  /// of the covariance of the errors towards its diagonal, sum w = 1 (error_weights.hpp); below zero:
+  /// estimated
+  double shrinkage = 0;
+  bool non_negative = false;  ///< weights of at least zero that sum to one
 };
 
 /// Gathers a learning window; instants with a missing sample are left out.
@@ -44,7 +54,26 @@ class WeightLearner {
   LearntWeights weights(const LeastSquaresForm& form);
 
  private:
+  /// Rows of the problem: errors of the channels used, ones, the reference.
+  struct Rows {
+    Eigen::MatrixXd error;
+    Eigen::VectorXd one, truth;
+  };
   Eigen::MatrixXd calibrate(const Eigen::MatrixXd& upper, LearntWeights& learnt) const;
+  Eigen::VectorXd column_lengths(const Eigen::MatrixXd& upper, const LearntWeights& learnt) const;
+  std::vector<Eigen::Index> originals(const Eigen::MatrixXd& error,
+                                      const Eigen::VectorXd& truth,
+                                      LearntWeights& learnt) const;
+  void solve(const LeastSquaresForm& form,
+             const Rows& rows,
+             const std::vector<Eigen::Index>& used,
+             const Eigen::VectorXd& lengths,
+             LearntWeights& learnt) const;
+  void solve_shy(const LeastSquaresForm& form,
+                 const Eigen::MatrixXd& error,
+                 const std::vector<Eigen::Index>& used,
+                 const Eigen::VectorXd& lengths,
+                 LearntWeights& learnt) const;
   Eigen::Index n_;
   double origin_ = 0;  // of the reference: its first value
   Triangle triangle_;
@@ -99,7 +128,7 @@ struct LeastSquaresOf {
   void finish_learning() { mean_.take(learner_.weights(form_)); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
   Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Warnings& warnings) const;
+  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
 
  private:
   LeastSquaresForm form_;
@@ -109,5 +138,59 @@ struct LeastSquaresOf {
 
 using LeastSquares = LeastSquaresOf<false>;
 using LeastSquaresPublished = LeastSquaresOf<true>;
+
+/// Weights that a short or drifting learning window cannot drive to extremes.
+template <bool kNonNegative>
+struct ShyLeastSquares {
+  static constexpr Needs kNeeds{
+      .min_channels = 2, .learning_samples = 2, .reference = true, .accepts_missing = true};
+  static constexpr Description description =
+      kNonNegative ? Description{.name = "non-negative-least-squares",
+                                 .title = "Least squares, weights at least zero that sum to one",
+                                 .source = "Lawson & Hanson 1974",
+                                 .complexity = "O(n)",
+                                 .needs = kNeeds,
+                                 .learning_complexity = "O(n^2)"}
+                   : Description{.name = "shrunk-least-squares",
+                                 .title = "Least squares on a shrunk covariance of the errors",
+                                 .source = "Ledoit & Wolf 2004; Schaefer & Strimmer 2005",
+                                 .complexity = "O(n)",
+                                 .needs = kNeeds,
+                                 .learning_complexity = "O(n^2)"};
+  static constexpr Option kCalibrate{
+      "calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true};
+  static constexpr Option kShrinkage{"shrinkage",
+                                     "",
+                                     0.1,
+                                     -1,
+                                     1,
+                                     "share of the covariance's diagonal; 0: none, below zero: "
+                                     "estimated as for independent instants"};
+  static constexpr auto options = [] {
+    if constexpr (kNonNegative)
+      return std::array{kCalibrate};
+    else
+      return std::array{kCalibrate, kShrinkage};
+  }();
+
+  ShyLeastSquares(const Array& array, const Settings& settings)
+      : form_{.calibrate = settings["calibrate"] != 0, .non_negative = kNonNegative},
+        learner_(array.channels) {
+    if constexpr (!kNonNegative) form_.shrinkage = settings["shrinkage"];
+  }
+  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
+  void finish_learning() { mean_.take(learner_.weights(form_)); }
+  Estimate step(const Sample& y) const { return mean_.step(y); }
+  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
+  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
+
+ private:
+  LeastSquaresForm form_;
+  WeightLearner learner_;
+  LearntMean mean_;
+};
+
+using ShrunkLeastSquares = ShyLeastSquares<false>;
+using NonNegativeLeastSquares = ShyLeastSquares<true>;
 
 }  // namespace libchar::fusion

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "libchar/core/error.hpp"
@@ -27,33 +28,44 @@ Perceptron::Perceptron(const Array& array, const Settings& settings)
       scales_(network_.inputs),
       z_(network_.inputs),
       most_(static_cast<std::size_t>(settings["most_samples"])),
+      choice_(~static_cast<std::uint64_t>(settings["seed"])),
       starts_(static_cast<std::size_t>(settings["starts"])),
       iterations_(static_cast<std::size_t>(settings["iterations"])),
       seed_(static_cast<std::uint64_t>(settings["seed"])),
       held_out_(settings["held_out"]) {}
 
-/// Halves what is kept, evenly in time.
-void Perceptron::thin() {
+void Perceptron::learn(const Sample& y, const Sample& truth) {
   const auto width = static_cast<std::ptrdiff_t>(network_.inputs) + 1;
-  std::size_t to = 0;
-  for (std::size_t from = 0; from < kept_; from += 2, ++to)
-    std::copy_n(window_.begin() + static_cast<std::ptrdiff_t>(from) * width,
-                width,
-                window_.begin() + static_cast<std::ptrdiff_t>(to) * width);
-  kept_ = to;
-  stride_ *= 2;
-  window_.resize(kept_ * (network_.inputs + 1));
+  std::size_t place = seen_++;
+  if (kept_ < most_) {
+    window_.resize(++kept_ * (network_.inputs + 1));
+    when_.push_back(0);
+  } else {
+    place = static_cast<std::size_t>(0.5 * (choice_() + 1) * static_cast<double>(seen_));
+    if (place >= most_) return;
+  }
+  when_[place] = seen_ - 1;
+  const auto to = window_.begin() + static_cast<std::ptrdiff_t>(place) * width;
+  std::copy(y.begin(), y.end(), to);
+  *(to + width - 1) = truth[0];
 }
 
-void Perceptron::learn(const Sample& y, const Sample& truth) {
-  if (seen_++ % stride_ != 0) return;
-  if (kept_ == most_) {
-    thin();
-    if ((seen_ - 1) % stride_ != 0) return;
+/// By time again: the last ones are held out.
+void Perceptron::put_in_order() {
+  if (seen_ == kept_) return;
+  std::vector<std::size_t> order(kept_);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+    return when_[a] < when_[b];
+  });
+  const auto width = static_cast<std::ptrdiff_t>(network_.inputs) + 1;
+  std::vector<double> sorted;
+  sorted.reserve(window_.size());
+  for (const std::size_t k : order) {
+    const auto row = window_.begin() + static_cast<std::ptrdiff_t>(k) * width;
+    sorted.insert(sorted.end(), row, row + width);
   }
-  window_.insert(window_.end(), y.begin(), y.end());
-  window_.push_back(truth[0]);
-  ++kept_;
+  window_ = std::move(sorted);
 }
 
 /// A constant drops out for good, also if it moves later: nothing has been learnt about it.
@@ -87,8 +99,17 @@ void Perceptron::finish_learning() {
                      std::to_string(network_.size()) + " weights)",
                  std::to_string(training),
                  "set fewer neurons, or lengthen the learning window"});
+  put_in_order();
   standardise();
-  if (!std::isfinite(target_.deviation)) target_.deviation = 1;  // a reference that stands still
+  if (!std::isfinite(target_.deviation))
+    throw Error(
+        {ErrorKind::numeric,
+         "E0864",
+         "",
+         "the reference stands still in the learning window: a network would learn one number "
+         "and no sensor",
+         "",
+         "learn where the input moves"});
   const TrainingRows training_rows{window_.data(), training};
   const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};
   Training best = train(
@@ -103,6 +124,7 @@ void Perceptron::finish_learning() {
   parameters_ = std::move(best.parameters);
   variance_ = best.held_out_square * target_.deviation * target_.deviation;
   std::vector<double>().swap(window_);
+  std::vector<std::size_t>().swap(when_);
 }
 
 Estimate Perceptron::step(const Sample& y) {

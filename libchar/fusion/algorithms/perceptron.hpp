@@ -3,7 +3,8 @@
 // Levenberg-Marquardt on   sum_k (out(z_k) - t_k)^2   over the learning window            [RV 3.7]
 // z and t are channels and reference with mean zero and deviation one, so an offset costs nothing.
 // Of several seeded starts the one that does best on the last part of the window (not used for the
-// slopes) is kept, as it stood where that part was predicted best.
+// slopes) is kept, as it stood where that part was predicted best. A window longer than the room is
+// sampled (Vitter 1985, algorithm R): even thinning would learn one phase of a periodic input.
 
 #include <array>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/tanh_network.hpp"
+#include "libchar/fusion/detail/uniform.hpp"
 
 namespace libchar::fusion {
 
@@ -25,7 +27,13 @@ struct Perceptron {
   static constexpr std::array options{
       Option{"neurons", "", 10, 1, 64, "h: hidden neurons; 3 to 30 make sense", true},
       Option{"starts", "", 3, 1, 100, "trainings from different random weights", true},
-      Option{"seed", "", 1, 0, 9007199254740992.0, "of the random weights", true},
+      Option{"seed",
+             "",
+             1,
+             0,
+             9007199254740992.0,
+             "of the random weights and of the choice of samples",
+             true},
       Option{"held_out",
              "",
              0.2,
@@ -38,7 +46,7 @@ struct Perceptron {
              10000,
              100,
              1e7,
-             "kept for training; beyond, every second one is dropped",
+             "kept for training: of a longer window as many at random, each as likely",
              true},
       Option{"most_weights",
              "",
@@ -65,7 +73,7 @@ struct Perceptron {
     double mean = 0, deviation = 1;
   };
   static Scale scale_of(const Eigen::Ref<const Eigen::VectorXd>& values);
-  void thin();
+  void put_in_order();
   void standardise();
 
   TanhNetwork network_;
@@ -77,7 +85,9 @@ struct Perceptron {
   double variance_ = 0;    // of the error on the held-out part
   // The learning window: n + 1 values an instant, the reference last.
   std::vector<double> window_;
-  std::size_t kept_ = 0, most_, seen_ = 0, stride_ = 1;
+  std::size_t kept_ = 0, most_, seen_ = 0;
+  std::vector<std::size_t> when_;  // of each instant kept: its place in the window
+  Uniform choice_;                 // of what a full window keeps
   std::size_t starts_, iterations_;
   std::uint64_t seed_;
   double held_out_;

@@ -84,7 +84,7 @@ void TiltComplementaryTuned::finish_learning() {
   window_.gravity_variance();  // refuses a window without any
   const auto tau = [](double decades) { return std::pow(10, decades); };
   const auto filter = [&](double decades) {
-    return ComplementaryFilter(tau(decades) / (tau(decades) + dt_), dt_, false);
+    return ComplementaryFilter(tau(decades) / (tau(decades) + dt_), dt_, false, kStart.standard);
   };
   const auto best = best_decades<1>(std::log10(dt_) - 1, 4, [&](const std::array<double, 1>& at) {
     return window_.mean_square(filter(at[0]));

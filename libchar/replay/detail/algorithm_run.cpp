@@ -92,13 +92,21 @@ AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& fram
   const auto inputs = static_cast<std::size_t>(frame.array->inputs());
   meters_.resize(inputs);
   if (frame.allan) allan_.resize(inputs);
-  guarded([&] { runner_ = planned.entry->make(*frame.array, planned.settings); });
+  guarded([&] {
+    runner_ = planned.entry->make(
+        some_left_out() ? subset(*frame.array, *frame.live) : *frame.array, planned.settings);
+  });
 }
 
 void AlgorithmRun::learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
   if (!alive()) return;
   learnt_ += static_cast<std::uint64_t>(samples.cols());
-  guarded([&] { runner_->learn(samples, truth); });
+  guarded([&] {
+    if (some_left_out())
+      runner_->learn(samples(*frame_->live, Eigen::all).eval(), truth);
+    else
+      runner_->learn(samples, truth);
+  });
 }
 
 void AlgorithmRun::finish_learning() {
@@ -107,7 +115,10 @@ void AlgorithmRun::finish_learning() {
 }
 
 void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
-  const double seconds = accounted([&] { runner_->run(samples, x_, variance_); });
+  Eigen::MatrixXd given;
+  if (some_left_out()) given = samples(*frame_->live, Eigen::all);
+  const Eigen::MatrixXd& all = some_left_out() ? given : samples;
+  const double seconds = accounted([&] { runner_->run(all, x_, variance_); });
   ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
 }
 
@@ -134,16 +145,18 @@ double AlgorithmRun::median_ns() const {
   return *middle;
 }
 
-void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth) {
+void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip) {
   if (!alive()) return;
-  available_ += static_cast<double>((x_.row(0).array().isFinite()).count());
+  const Eigen::Index scored = x_.cols() - skip;
+  available_ += static_cast<double>((x_.row(0).tail(scored).array().isFinite()).count());
+  scored_ += static_cast<double>(scored);
   for (Eigen::Index j = 0; j < truth.rows(); ++j) {
-    error_.resize(static_cast<std::size_t>(x_.cols()));
-    for (Eigen::Index k = 0; k < x_.cols(); ++k) {
+    error_.resize(static_cast<std::size_t>(scored));
+    for (Eigen::Index k = skip; k < x_.cols(); ++k) {
       double error = x_(j, k) - truth(j, k);
       if (frame_->tilt) error = fusion::wrapped(error);
       // An estimate that overflowed is none.
-      error_[static_cast<std::size_t>(k)] =
+      error_[static_cast<std::size_t>(k - skip)] =
           std::isfinite(error) ? error * frame_->output_scale : kNone;
     }
     meters_[static_cast<std::size_t>(j)].push(error_);
@@ -155,8 +168,8 @@ void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth) {
 }
 
 void AlgorithmRun::note_tracks(double time_s) {
-  const auto weights = runner_->weights();
-  const auto variances = runner_->variances();
+  const auto weights = this->weights();
+  const auto variances = this->variances();
   const bool one_input = weights && weights->cols() == 1;
   if (!one_input && !variances) return;
   track_times_.push_back(time_s);
@@ -169,6 +182,22 @@ void AlgorithmRun::note_tracks(double time_s) {
   if (variances) add(variance_samples_, *variances);
 }
 
+std::optional<Eigen::MatrixXd> AlgorithmRun::weights() const {
+  auto given = runner_->weights();
+  if (!given || !some_left_out()) return given;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(frame_->array->channels, given->cols());
+  all(*frame_->live, Eigen::all) = *given;
+  return all;
+}
+
+std::optional<Eigen::VectorXd> AlgorithmRun::variances() const {
+  auto given = runner_->variances();
+  if (!given || !some_left_out()) return given;
+  Eigen::VectorXd all = Eigen::VectorXd::Constant(frame_->array->channels, kNone);
+  all(*frame_->live) = *given;
+  return all;
+}
+
 std::vector<FoundFault> AlgorithmRun::found_faults() const {
   std::vector<FoundFault> out;
   const fusion::FaultLog* log = runner_->faults();
@@ -176,13 +205,14 @@ std::vector<FoundFault> AlgorithmRun::found_faults() const {
   std::vector<std::ptrdiff_t> open(static_cast<std::size_t>(frame_->array->channels), -1);
   for (const fusion::FaultEvent& event : log->events()) {
     const double time_s = frame_->start_s + static_cast<double>(event.sample) / frame_->rate_hz;
-    auto& place = open[static_cast<std::size_t>(event.channel)];
+    const std::size_t sensor =
+        some_left_out()
+            ? static_cast<std::size_t>((*frame_->live)[static_cast<std::size_t>(event.channel)])
+            : static_cast<std::size_t>(event.channel);
+    auto& place = open[sensor];
     if (event.faulty && place < 0) {
       place = static_cast<std::ptrdiff_t>(out.size());
-      out.push_back({static_cast<std::size_t>(event.channel),
-                     std::string(fusion::name(event.rule)),
-                     time_s,
-                     {}});
+      out.push_back({sensor, std::string(fusion::name(event.rule)), time_s, {}});
     } else if (!event.faulty && place >= 0) {
       out[static_cast<std::size_t>(place)].to_s = time_s;
       place = -1;
@@ -199,7 +229,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     InputScore input;
     input.error = libchar::score(meters_[j], frame_->rate_hz, options);
     input.optimum_ratio = kNone;
-    input.window_rms = window_rms(meters_[j], frame_->rate_hz, frame_->start_s, window_s);
+    input.window_rms = window_rms(meters_[j], frame_->rate_hz, frame_->scored_from_s, window_s);
     if (!allan_.empty()) input.allan = curve_of(allan_[j], 1 / frame_->rate_hz);
     out.inputs.push_back(std::move(input));
   }
@@ -207,13 +237,13 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     out.rmse = out.inputs[0].error.rmse;
     out.rmse_ci95 = out.inputs[0].error.rmse_ci95;
   }
-  out.availability = steps_ > 0 ? available_ / static_cast<double>(steps_) : 0;
+  out.availability = scored_ > 0 ? available_ / scored_ : 0;
   out.ns_per_sample = median_ns();
   out.learning_s = learning_s_;
   if (frame_->heap != nullptr)
     out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));
-  out.weights = runner_->weights();
-  out.variances = runner_->variances();
+  out.weights = weights();
+  out.variances = variances();
   out.weight_track = thinned(track_times_, weight_samples_, kTrackBins);
   out.variance_track = thinned(track_times_, variance_samples_, kTrackBins);
   out.faults = found_faults();

@@ -14,8 +14,10 @@ namespace libchar {
 /// What all runs of one replay share.
 struct RunFrame {
   const fusion::Array* array = nullptr;
+  const std::vector<Eigen::Index>* live = nullptr;  ///< the sensors it is given; none: all
   HeapMeter* heap = nullptr;
   double rate_hz = 0, start_s = 0;  ///< of the run
+  double scored_from_s = 0;         ///< after the warm-up
   double output_scale = 1;
   bool tilt = false;  ///< errors are taken the short way round
   bool allan = false;
@@ -36,8 +38,9 @@ class AlgorithmRun {
   void learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth);
   void finish_learning();
   void run(const Eigen::MatrixXd& samples);
-  /// After `run`: errors of its estimates. `first` instant of the run.
-  void score(std::int64_t first, const Eigen::MatrixXd& truth);
+  /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block
+  /// are warm-up.
+  void score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip);
   /// Once more on a block, for the clock alone: its state is not looked at afterwards.
   void repeat(const Eigen::MatrixXd& samples);
 
@@ -52,7 +55,9 @@ class AlgorithmRun {
   const std::vector<double>& track_times() const { return track_times_; }
   const std::vector<std::vector<double>>& weight_samples() const { return weight_samples_; }
   const std::vector<std::vector<double>>& variance_samples() const { return variance_samples_; }
-  std::optional<Eigen::MatrixXd> weights() const { return runner_->weights(); }
+  /// A row a sensor of the scene; zero (variances: NaN) for those it was not given.
+  std::optional<Eigen::MatrixXd> weights() const;
+  std::optional<Eigen::VectorXd> variances() const;
   std::uint64_t learnt() const { return learnt_; }
   std::uint64_t steps() const { return steps_; }
 
@@ -61,6 +66,7 @@ class AlgorithmRun {
   void guarded(const Work& work);
   template <class Work>
   double accounted(const Work& work);  // wall seconds
+  bool some_left_out() const { return frame_->live != nullptr && !frame_->live->empty(); }
   void timed_run(const Eigen::MatrixXd& samples);
   void note_tracks(double time_s);
   std::vector<FoundFault> found_faults() const;
@@ -76,7 +82,7 @@ class AlgorithmRun {
   std::vector<double> ns_;
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
-  double learning_s_ = 0, available_ = 0;
+  double learning_s_ = 0, available_ = 0, scored_ = 0;
   std::int64_t held_ = 0, peak_ = 0;
   std::uint64_t learnt_ = 0, steps_ = 0;
 };

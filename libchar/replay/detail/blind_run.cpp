@@ -16,23 +16,29 @@ constexpr Eigen::Index kMostLeftOut = 32;
 
 }  // namespace
 
-BlindRun::BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array)
+BlindRun::BlindRun(const PlannedAlgorithm& planned,
+                   const fusion::Array& array,
+                   const std::vector<Eigen::Index>& live)
     : planned_(&planned),
       array_(&array),
       h_(array.h()),
       meters_(static_cast<std::size_t>(array.channels)) {
   others_.resize(static_cast<std::size_t>(array.channels));
-  const Eigen::Index left_out = std::min(array.channels, kMostLeftOut);
+  std::vector<Eigen::Index> all = live;
+  for (Eigen::Index i = 0; live.empty() && i < array.channels; ++i) all.push_back(i);
+  const auto n = static_cast<Eigen::Index>(all.size());
+  const Eigen::Index left_out = std::min(n, kMostLeftOut);
   for (Eigen::Index k = 0; k < left_out; ++k) {
-    const Eigen::Index out = k * array.channels / left_out;
+    const Eigen::Index out = all[static_cast<std::size_t>(k * n / left_out)];
     std::vector<Eigen::Index> channels;
-    for (Eigen::Index i = 0; i < array.channels; ++i)
+    for (const Eigen::Index i : all)
       if (i != out) channels.push_back(i);
     others_[static_cast<std::size_t>(out)] = part(channels);
   }
   for (const Eigen::Index start : {0, 1}) {
     std::vector<Eigen::Index> channels;
-    for (Eigen::Index i = start; i < array.channels; i += 2) channels.push_back(i);
+    for (Eigen::Index i = start; i < n; i += 2)
+      channels.push_back(all[static_cast<std::size_t>(i)]);
     halves_.push_back(part(channels));
   }
 }
@@ -62,7 +68,8 @@ bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples) {
   return true;
 }
 
-void BlindRun::run(const Eigen::MatrixXd& samples) {
+void BlindRun::run(const Eigen::MatrixXd& samples, Eigen::Index skip) {
+  const auto scored = [&] { return std::span(errors_).subspan(static_cast<std::size_t>(skip)); };
   const auto m = static_cast<std::size_t>(samples.cols());
   squares_.assign(m, 0);
   counts_.assign(m, 0);
@@ -79,11 +86,11 @@ void BlindRun::run(const Eigen::MatrixXd& samples) {
         counts_[k] += 1;
       }
     }
-    meters_[i].push(errors_);
+    meters_[i].push(scored());
   }
   for (std::size_t k = 0; k < m; ++k)
     errors_[k] = counts_[k] > 0 ? std::sqrt(squares_[k] / counts_[k]) : kNone;
-  all_.push(errors_);
+  all_.push(scored());
   const bool even = step(halves_[0], samples), odd = step(halves_[1], samples);
   if (!even || !odd) return;
   for (std::size_t k = 0; k < m; ++k) {
@@ -91,7 +98,7 @@ void BlindRun::run(const Eigen::MatrixXd& samples) {
     const double e = 0.5 * (halves_[0].x.col(column) - halves_[1].x.col(column)).norm();
     errors_[k] = std::isfinite(e) ? e : kNone;
   }
-  split_.push(errors_);
+  split_.push(scored());
 }
 
 Meters BlindRun::meters() const {

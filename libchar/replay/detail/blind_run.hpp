@@ -16,8 +16,12 @@ namespace libchar {
 
 class BlindRun {
  public:
-  BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array);
-  void run(const Eigen::MatrixXd& samples);
+  /// `live`: the sensors that have samples; empty: all.
+  BlindRun(const PlannedAlgorithm& planned,
+           const fusion::Array& array,
+           const std::vector<Eigen::Index>& live);
+  /// The first `skip` instants of the block are not scored.
+  void run(const Eigen::MatrixXd& samples, Eigen::Index skip);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
   /// Leave-one-out errors of the sensors that were left out, one meter each: by these methods are compared.
   Meters meters() const;

@@ -26,6 +26,13 @@ double to_si(const std::string& unit, Quantity quantity) {
   return known && known->quantity == quantity ? known->to_si : 1;
 }
 
+// Another scale is another unit; where nobody says which, the scale is said.
+std::string unit_after_scale(const SceneSensor& sensor, const std::string& recorded) {
+  if (!sensor.unit.empty()) return sensor.unit;
+  if (std::abs(sensor.scale) == 1 || recorded.empty()) return recorded;
+  return fmt::format("{} (× {})", recorded, shortest(sensor.scale));
+}
+
 }  // namespace
 
 // Fills blocks of equal size whatever the source delivers.
@@ -174,7 +181,8 @@ Instants::Instants(const Scene& scene, Progress& progress)
   const SourceInfo& source = source_.info();
   info_.rate_hz = source.rate_hz;
   info_.count = static_cast<std::int64_t>(source.samples);
-  info_.units = source.units;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    info_.units.push_back(unit_after_scale(scene.sensors[i], source.units[i]));
   info_.logs = source.logs;
   info_.has_reference = scene.reference.has_value();
   std::vector<std::string> reference_units = source.reference_units;
@@ -231,7 +239,9 @@ void Instants::fit_slow_reference() {
 // Filters work in radians; scores speak the reference's unit.
 void Instants::convert_tilt() {
   const std::size_t gyroscope = scene_->tilt->gyroscope;
-  factors_[gyroscope] = to_si(info_.units[gyroscope], Quantity::angular_rate);
+  const std::string& own = scene_->sensors[gyroscope].unit;
+  factors_[gyroscope] =
+      to_si(own.empty() ? source_.info().units[gyroscope] : own, Quantity::angular_rate);
   info_.units[gyroscope] = "rad/s";
   truth_factor_ = to_si(info_.input_units[0], Quantity::angle);
   info_.output_scale = 1 / truth_factor_;

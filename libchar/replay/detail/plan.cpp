@@ -78,6 +78,18 @@ std::vector<std::int64_t> section_starts(const Instants& instants,
   return {starts.begin(), starts.end()};
 }
 
+// In the unit of the fused samples; `level` is the variance of one.
+fusion::NoiseModel noise_model(const SensorModel& model, double scale, double level) {
+  const double size = std::abs(scale * model.sensitivity.gain);
+  fusion::NoiseModel out;
+  out.white = level;
+  out.flicker = size * simulated_value(model[Term::flicker]);
+  out.walk = size * simulated_value(model[Term::walk]);
+  if (model.gauss_markov.sigma > 0)
+    out.gauss_markov.push_back({size * model.gauss_markov.sigma, model.gauss_markov.tau_s});
+  return out;
+}
+
 fusion::Array describe_array(const Scene& scene,
                              const Instants& instants,
                              const SensorKnowledge& knowledge,
@@ -86,9 +98,17 @@ fusion::Array describe_array(const Scene& scene,
   const InstantsInfo& info = instants.info();
   array.channels = static_cast<Eigen::Index>(scene.sensors.size());
   array.observation_matrix = observation_matrix(scene, info.input_names.size());
-  const auto& levels = knowledge.noise_variances;
-  if (std::all_of(levels.begin(), levels.end(), [](double v) { return v > 0; }))
-    array.noise_levels = Eigen::Map<const Eigen::VectorXd>(levels.data(), array.channels);
+  const Eigen::Map<const Eigen::VectorXd> levels(knowledge.noise_variances.data(), array.channels);
+  const bool known =
+      plan.live.empty() ? (levels.array() > 0).all() : (levels(plan.live).array() > 0).all();
+  if (known) array.noise_levels = levels;
+  if (known && std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const SceneSensor& s) {
+        return s.model.has_value();
+      }))
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+      array.noise_models.push_back(noise_model(*scene.sensors[i].model,
+                                               scene.sensors[i].scale * instants.factor(i),
+                                               levels[static_cast<Eigen::Index>(i)]));
   array.rate_hz = info.rate_hz;
   array.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
   array.reference_throughout = info.has_reference;
@@ -99,6 +119,40 @@ fusion::Array describe_array(const Scene& scene,
                                       static_cast<Eigen::Index>(scene.tilt->accelerometer_x),
                                       static_cast<Eigen::Index>(scene.tilt->accelerometer_z)};
   return array;
+}
+
+/// A sensor with samples at fewer instants than this share of the run measures nothing.
+constexpr double kLeastPresent = 1e-3;
+
+// A dead sensor must not leave every instant of the others incomplete.
+std::vector<Eigen::Index> live_sensors(const Scene& scene,
+                                       const Instants& instants,
+                                       ReplayPlan& plan) {
+  std::vector<Eigen::Index> live;
+  const SourceInfo& source = instants.source().info();
+  if (scene.tilt || source.presence.empty()) return live;
+  const auto sample = [&](std::int64_t instant) {
+    return (instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz) *
+           source.rate_hz;
+  };
+  const double from = sample(plan.run_from), to = sample(plan.run_to);
+  for (std::size_t i = 0; i < source.presence.size(); ++i) {
+    const Presence& at = source.presence[i];
+    const double overlap = std::min(to, static_cast<double>(at.last) + 1) -
+                           std::max(from, static_cast<double>(at.first));
+    if (at.samples > 0 &&
+        std::min(static_cast<double>(at.samples), overlap) > kLeastPresent * (to - from))
+      live.push_back(static_cast<Eigen::Index>(i));
+    else
+      plan.warnings.add("sensor_without_samples",
+                        "sensors without samples in the evaluation were left out of everything",
+                        scene.sensors[i].name);
+  }
+  if (live.size() == source.presence.size())
+    live.clear();
+  else if (live.empty())
+    refuse(scene, "E0909", "no sensor has samples in the evaluation");
+  return live;
 }
 
 // Seconds from the recording's first sample to instants.
@@ -142,6 +196,12 @@ void place_windows(const Scene& scene,
   plan.run_to = instants.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
     refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
+  plan.warm_up = std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz);
+  if (plan.warm_up > plan.run_to - plan.run_from - 2)
+    refuse(scene,
+           "E0903",
+           "warm_up_s: it leaves fewer than two instants of the evaluation to score",
+           significant(*scene.warm_up_s, 6));
   for (const SensorFault& fault : instants.source().known_faults())
     if (fault.from_s >= end_s)
       plan.warnings.add(
@@ -248,11 +308,13 @@ ReplayPlan make_plan(const Scene& scene,
                           "a sensor is part of the reference: its error is hidden in every score",
                           sensor.name);
     }
+  plan.live = live_sensors(scene, instants, plan);
   plan.array = describe_array(scene, instants, knowledge, plan);
+  const fusion::Array live = subset(plan.array, plan.live);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
-    algorithm.why = fusion::why_not(*algorithm.entry->description, plan.array);
-  if (instants.info().has_reference) plan.optimum = optimum(plan.array);
+    algorithm.why = fusion::why_not(*algorithm.entry->description, live);
+  if (instants.info().has_reference) plan.optimum = optimum(live);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {
       return a.runs() && wanted(a);
@@ -282,10 +344,16 @@ ReplayPlan make_plan(const Scene& scene,
 
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels) {
   fusion::Array part = array;
+  if (channels.empty()) return part;
   part.channels = static_cast<Eigen::Index>(channels.size());
   if (array.observation_matrix.size() > 0)
     part.observation_matrix = array.observation_matrix(channels, Eigen::all);
   if (array.noise_levels.size() > 0) part.noise_levels = array.noise_levels(channels);
+  if (!array.noise_models.empty()) {
+    part.noise_models.clear();
+    for (const Eigen::Index i : channels)
+      part.noise_models.push_back(array.noise_models[static_cast<std::size_t>(i)]);
+  }
   return part;
 }
 

@@ -25,9 +25,11 @@ struct PlannedAlgorithm {
 
 struct ReplayPlan {
   fusion::Array array;
+  std::vector<Eigen::Index> live;  ///< sensors that have samples; empty: all of them
   TimeWindow learning, evaluation;
   std::int64_t learn_from = 0, learn_to = 0;  ///< instants of the learning window; equal: none
   std::int64_t run_from = 0, run_to = 0;
+  std::int64_t warm_up = 0;  ///< instants of the run that are not scored
   std::size_t block = 0;
   bool learning_pass = false;      ///< some algorithm learns in the learning window
   bool run_learning_pass = false;  ///< some bound learns on the run itself
@@ -44,7 +46,7 @@ ReplayPlan make_plan(const Scene& scene,
                      const Instants& instants,
                      const SensorKnowledge& knowledge);
 
-/// The same array with some of its channels only.
+/// The same array with some of its channels only; `channels` empty: all of them.
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels);
 
 }  // namespace libchar

@@ -96,6 +96,10 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                             significant(instants.info().rate_hz, 6),
                             seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
+  if (plan.warm_up > 0)
+    out.push_back(
+        fmt::format("warm-up: the first {} of it are run and not scored",
+                    seconds(static_cast<double>(plan.warm_up) / instants.info().rate_hz)));
   if (plan.array.fault_free_samples > 0)
     out.push_back(fmt::format(
         "no sensor fails in the first {} of it",

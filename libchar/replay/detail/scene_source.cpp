@@ -23,9 +23,23 @@ constexpr std::size_t kSimulatedRows = 4096;
   throw Error({ErrorKind::input, code, scene.file, what, got, hint});
 }
 
-struct Silent final : BlockSink {
-  void begin(const LogInfo&) override {}
-  void block(const SampleBlock&) override {}
+void note_presence(Presence& presence, std::uint64_t first, std::span<const double> values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k])) continue;
+    if (presence.samples++ == 0) presence.first = first + k;
+    presence.last = first + k;
+  }
+}
+
+// The first reading, for length and rate, sees which channels have samples.
+struct Attendance final : BlockSink {
+  void begin(const LogInfo& log) override { channels.resize(log.channels.size()); }
+  void block(const SampleBlock& samples) override {
+    channels.resize(std::max(channels.size(), samples.channels.size()));
+    for (std::size_t c = 0; c < samples.channels.size(); ++c)
+      note_presence(channels[c], samples.first, {samples.channels[c], samples.rows});
+  }
+  std::vector<Presence> channels;
 };
 
 struct Forward final : BlockSink {
@@ -116,6 +130,8 @@ void SceneSource::read_even(Progress& progress) {
       if (channel.name == wanted_[k])
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
   info_.logs.push_back(std::move(even.log));
+  for (std::size_t k = 0; k < scene_->sensors.size(); ++k)
+    note_presence(info_.presence.emplace_back(), 0, even_[k]);
 }
 
 void SceneSource::scan(Progress& progress) {
@@ -126,10 +142,10 @@ void SceneSource::scan(Progress& progress) {
     for (const std::string& name : wanted_)
       if (once.insert(name).second) reading_.channels.push_back(name);
   }
-  Silent silent;
+  Attendance attendance;
   LogInfo log;
   try {
-    log = read_log(scene_->recording, reading_, silent, progress);
+    log = read_log(scene_->recording, reading_, attendance, progress);
   } catch (const Error& error) {
     // What a scene asks of a file is the scene's mistake, not one of the command line.
     if (error.problem().kind != ErrorKind::usage) throw;
@@ -152,6 +168,9 @@ void SceneSource::scan(Progress& progress) {
              near ? "did you mean " + *near + "?" : "inspect lists the channels");
     }
     columns_.push_back(column);
+    if (k < scene_->sensors.size())
+      info_.presence.push_back(column < attendance.channels.size() ? attendance.channels[column]
+                                                                   : Presence{});
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
   }

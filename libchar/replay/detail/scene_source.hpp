@@ -15,12 +15,18 @@
 
 namespace libchar {
 
+/// Where a channel has samples.
+struct Presence {
+  std::uint64_t first = 0, last = 0, samples = 0;  ///< grid points; samples 0: nowhere
+};
+
 struct SourceInfo {
   double rate_hz = 0;
   std::uint64_t samples = 0;
   std::vector<std::string> units;            ///< of the sensors, as the channels say
   std::vector<std::string> reference_units;  ///< of the reference channels in this source
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
+  std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
 };
 
 /// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that

@@ -228,7 +228,9 @@ std::string sensors_table(const ReplayView& view) {
     std::string h;
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
     row.push_back(r.scene.tilt ? "–" : h);
-    row.push_back(s.constant ? "never changed" : "");
+    row.push_back(s.constant  ? "never changed"
+                  : s.copy_of ? "the same as " + r.sensors[*s.copy_of].name
+                              : "");
     out += table_row(row);
   }
   return out + "</tbody></table></div>\n";

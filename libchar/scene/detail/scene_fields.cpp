@@ -57,6 +57,12 @@ const Fields<Scene>& scene_fields() {
                        "s",
                        {.meaning = "so long no sensor fails, from the start of the evaluation",
                         .otherwise = "up to the first fault that the scene knows"}),
+      elsewhere<Scene>(
+          "warm_up_s",
+          "s",
+          {.meaning = "so long from the start of the evaluation algorithms run, but are not "
+                      "scored",
+           .otherwise = "0"}),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
       elsewhere<Scene>("simulated",
                        "map",
@@ -86,6 +92,11 @@ const Fields<SceneSensor>& sensor_fields() {
                                  {.meaning = "the recording's samples are multiplied by it on "
                                              "reading: a unit, or −1 for an axis turned round",
                                   .otherwise = "1"}),
+      field<&SceneSensor::unit>(
+          "unit",
+          {.meaning = "of the samples after `scale`",
+           .otherwise = "the recording's, with the scale beside it where that "
+                        "is not 1 or −1"}),
       field<&SceneSensor::noise>("noise",
                                  {.range = kPositive,
                                   .meaning = "standard deviation of a sample's noise",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
@@ -77,6 +78,8 @@ class SensorsReader {
     if (sensor.h.empty()) refuse_scene("E0741", at, "h", "expected one weight a true input");
     if (at.has("model")) sensor.model = model(at);
     if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
+    if (!(std::abs(sensor.scale) >= 1e-100 && std::abs(sensor.scale) <= 1e100))
+      at.refuse("scale", "a scale beyond 1e100 or below 1e-100 leaves no room for squares");
     check_simulated(at);
     if (at.has("count")) return devices(sensor, at, place);
     add(sensor, place);
@@ -85,6 +88,7 @@ class SensorsReader {
   void check_simulated(const MapReader& at) const {
     if (!scene_.simulate) return;
     if (at.has("scale")) at.refuse("scale", "the samples of a simulation are used as they are");
+    if (at.has("unit")) at.refuse("unit", "the unit of a simulated sensor is its model's");
     if (at.has("channel")) at.refuse("channel", "a simulated sensor's channel has its name");
     if (!at.has("model")) refuse_scene("E0743", at, "model", kNeedsModel, kModelHint);
   }

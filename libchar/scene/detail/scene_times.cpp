@@ -83,6 +83,7 @@ void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& sce
   scene.evaluation = window_of(top, "evaluation");
   scene.rest = window_of(top, "rest");
   scene.fault_free_s = top.maybe_number("fault_free_s", kPositive);
+  scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
   scene.faults = faults_of(top, scene, index);
   if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
 }

@@ -1,0 +1,104 @@
+#pragma once
+// One sensor made of several whose drifts are known as models: a Kalman filter of the biases alone.
+//   y = H x + C b + e,  R = diag(white),  b: states of first order (bias_states.hpp)
+// Nothing is assumed of the input x (its variance is infinite at every instant), so only what the samples
+// tell beside any input - the differences between sensors - is filtered (Bayard & Ploen 2003; Xue et al.
+// 2012). With P the prediction covariance of b and S = C P C' + R:
+//   W = (H' S^-1 H)^-1 H' S^-1,  x = W (y - C b),  var x = (H' S^-1 H)^-1
+//   b <- A (b + P C' S^-1 (I - H W)(y - C b)),   P by the Riccati equation (riccati.hpp)
+// P does not depend on the samples. It is computed beforehand at instants 0 to 16 and eight times an
+// octave after, by doubling (as accurate as a square root form: nothing is subtracted), and stands in
+// between; a step is a product with the gain that holds. Short gaps take P as if they were none.
+//
+// White noise weighs by 1/Q^2 within an instant, drift by its own share over minutes: sensors with
+// little white noise and much drift, and others the other way round, come to what no fixed weights give.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/detail/bias_states.hpp"
+
+namespace libchar::fusion {
+
+/// Gains for one set of channels, from one prediction covariance.
+struct BiasGain {
+  std::vector<char> present;       ///< of each channel
+  Eigen::MatrixXd weights;         ///< W, r x n; zero for absent channels
+  Eigen::MatrixXd gain;            ///< of the states, s x n
+  Eigen::VectorXd input_variance;  ///< r
+  bool determined = false;         ///< these channels determine the inputs
+};
+
+/// The filter without options and names; everything is allocated when it is made.
+class BiasFilter {
+ public:
+  BiasFilter(const Array& array, double slowest_s, Eigen::Index most_states);
+  Estimate step(const Sample& y);
+  /// n x r, of the samples of the last instant.
+  Eigen::MatrixXd weights() const { return now_->weights.transpose(); }
+  /// Steady state of the prediction covariance of the states, and of the inputs' variances.
+  const Eigen::MatrixXd& steady_covariance() const { return steady_; }
+  Eigen::VectorXd steady_variance() const { return input_variance_of_steady_; }
+  const BiasStates& states() const { return states_; }
+
+ private:
+  struct Renewal {
+    double instant;
+    Eigen::MatrixXd cross;  // P C', s x n
+  };
+  void schedule();
+  void renew(const Renewal& renewal);
+  void factor(BiasGain& out);
+  void decompose();
+  void forward();
+  void backward();
+  bool invert_information();
+  const BiasGain& gain_for(const Sample& y);
+
+  Eigen::MatrixXd h_;
+  bool common_;  // one input, seen alike by all
+  BiasStates states_;
+  Eigen::VectorXd white_;
+  Eigen::MatrixXd steady_;
+  Eigen::VectorXd input_variance_of_steady_;
+  std::vector<Renewal> renewals_;
+  std::size_t next_ = 0;
+  const Eigen::MatrixXd* cross_ = nullptr;
+  // Gains of the sets of channels seen last; the first is that of all channels.
+  std::vector<BiasGain> gains_;
+  std::size_t oldest_ = 1;
+  const BiasGain* now_;
+  // Room for `factor` and `step`.
+  Eigen::MatrixXd lower_, whitened_, square_, inverse_;
+  Eigen::VectorXd residual_, column_, bias_, fitted_;
+  std::vector<Eigen::Index> used_;
+  double instant_ = 0;
+};
+
+struct VirtualSensor {
+  static constexpr Description description{
+      .name = "virtual-sensor",
+      .title = "Virtual sensor: Kalman filter of the sensors' drifts, any input",
+      .source = "Bayard & Ploen 2003; Xue et al. 2012",
+      .complexity = "O(n s), s states of drift",
+      .needs = {.min_channels = 2,
+                .more_than_inputs = 1,
+                .noise_models = true,
+                .observation_matrix = true,
+                .accepts_missing = true,
+                .rate = true}};
+  static constexpr std::array options{
+      Option{"slowest_s", "s", 1e4, 1, 1e9, "no process that makes up flicker is slower"},
+      Option{"most_states", "", 150, 1, 2000, "of all drifts; more are refused", true}};
+  VirtualSensor(const Array& array, const Settings& settings);
+  Estimate step(const Sample& y) { return filter_->step(y); }
+  Eigen::MatrixXd weights() const { return filter_->weights(); }
+  void remarks(Warnings& warnings) const;
+
+ private:
+  std::unique_ptr<BiasFilter> filter_;  // holds pointers into itself
+};
+
+}  // namespace libchar::fusion

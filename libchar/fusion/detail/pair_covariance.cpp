@@ -1,0 +1,61 @@
+#include "libchar/fusion/detail/pair_covariance.hpp"
+
+#include <algorithm>
+
+namespace libchar::fusion {
+
+PairCovariance::PairCovariance(Eigen::Index channels)
+    : mean_(Eigen::VectorXd::Zero(channels)),
+      delta_(mean_),
+      products_(Eigen::MatrixXd::Zero(channels, channels)),
+      count_(products_),
+      pair_mean_(products_),
+      pair_products_(products_) {}
+
+bool PairCovariance::enough() const {
+  constexpr double kLeast = 200, kLeastAChannel = 20;
+  return complete_ >= std::max(kLeast, kLeastAChannel * static_cast<double>(mean_.size()));
+}
+
+void PairCovariance::add(const Sample& y) {
+  if (!enough()) add_pairs(y);
+  if (complete(y)) add_complete(y);
+}
+
+void PairCovariance::add_complete(const Sample& y) {
+  const Eigen::Index n = y.size();
+  complete_ += 1;
+  const double gain = 1 / complete_;
+  for (Eigen::Index i = 0; i < n; ++i) delta_[i] = y[i] - mean_[i];
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double scaled = delta_[j] * (1 - gain);
+    for (Eigen::Index i = j; i < n; ++i) products_(i, j) += delta_[i] * scaled;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) mean_[i] += gain * delta_[i];
+}
+
+void PairCovariance::add_pairs(const Sample& y) {
+  const Eigen::Index n = y.size();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (!usable(y[j])) continue;
+    for (Eigen::Index i = j; i < n; ++i) {
+      if (!usable(y[i])) continue;
+      const double count = count_(i, j) += 1;
+      const double off = y[i] - pair_mean_(i, j);
+      pair_mean_(i, j) += off / count;
+      if (i != j) pair_mean_(j, i) += (y[j] - pair_mean_(j, i)) / count;
+      pair_products_(i, j) += off * (y[j] - pair_mean_(j, i));
+    }
+  }
+}
+
+void PairCovariance::covariance(Eigen::MatrixXd& out) const {
+  for (Eigen::Index j = 0; j < out.cols(); ++j)
+    for (Eigen::Index i = j; i < out.rows(); ++i) {
+      const double count = enough() ? complete_ : count_(i, j);
+      const double products = enough() ? products_(i, j) : pair_products_(i, j);
+      out(i, j) = count > 0 ? products / count : 0;
+    }
+}
+
+}  // namespace libchar::fusion
