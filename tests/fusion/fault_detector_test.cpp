@@ -55,7 +55,7 @@ Gyroscopes gyroscopes(Eigen::Index instants, std::uint64_t seed, const Differenc
   return g;
 }
 
-double rms(const Eigen::RowVectorXd& error) {
+double error_rms(const Eigen::RowVectorXd& error) {
   return std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
 }
 
@@ -211,7 +211,7 @@ TEST_CASE("minque: out while the fault stands, in again within two seconds after
   CHECK(events[1].sample > 38000);
   CHECK(events[1].sample < 38400);
   // As good as the other five would be.
-  CHECK(rms((out.x.row(0) - g.x).segment(9000, 28000)) < 1.01 * .04277);
+  CHECK(error_rms((out.x.row(0) - g.x).segment(9000, 28000)) < 1.01 * .04277);
 }
 
 TEST_CASE("minque: a noisy sensor is weighed, not dropped") {
@@ -228,7 +228,7 @@ TEST_CASE("minque: a noisy sensor is weighed, not dropped") {
   CHECK(events.back().sample > 20000);
   CHECK(events.back().sample < 20600);
   // Five sensors alone: .04277; with the noisy one at nine times its variance: .04120.
-  CHECK(rms((out.x.row(0) - g.x).segment(9000, 10000)) < .0420);
+  CHECK(error_rms((out.x.row(0) - g.x).segment(9000, 10000)) < .0420);
 }
 
 TEST_CASE("minque: three against three is said, and nobody is thrown out") {
@@ -303,7 +303,7 @@ TEST_CASE("minque: a sensor that drops out, comes slowly or joins late is no fau
       CHECK(minque->faults()->events().empty());
       const double without = 1 / std::sqrt(deviations.head(4).cwiseInverse().squaredNorm());
       const double best = std::sqrt(share * without * without + (1 - share) * optimum * optimum);
-      CHECK(rms((out.x.row(0) - x).tail(30000)) < 1.01 * best);
+      CHECK(error_rms((out.x.row(0) - x).tail(30000)) < 1.01 * best);
     }
 }
 

@@ -46,9 +46,9 @@ std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene
   }
 }
 
-std::optional<test::Run> run(const Entry& entry,
-                             const test::FusionScene& scene,
-                             Eigen::Index block = 1 << 30) {
+std::optional<test::Run> run_sweep(const Entry& entry,
+                                   const test::FusionScene& scene,
+                                   Eigen::Index block = 1 << 30) {
   const auto runner = ready(entry, scene);
   if (!runner) return std::nullopt;
   return test::run(*runner, scene.y, scene.array.inputs(), block);
@@ -122,11 +122,11 @@ TEST_CASE("every algorithm x every scene: blocks of any size give the same bits"
     for (const Entry& entry : algorithms()) {
       if (entry.description->name == "perceptron" && !scene.benign)
         continue;  // learns long, see below
-      const auto whole = run(entry, scene);
+      const auto whole = run_sweep(entry, scene);
       if (!whole) continue;
       for (const Eigen::Index block : {1, 7, 64}) {
         INFO(entry.description->name << " on " << scene.name << ", blocks of " << block);
-        const auto parts = run(entry, scene, block);
+        const auto parts = run_sweep(entry, scene, block);
         REQUIRE(parts);
         CHECK(same_bits(whole->x, parts->x));
         CHECK(same_bits(whole->variance, parts->variance));
@@ -151,7 +151,7 @@ TEST_CASE("benign scenes: a shift of the input shifts the estimates") {
       moved.truth.array() += shift;
       for (const Entry& entry : algorithms()) {
         if (unlike.contains(entry.description->name)) continue;
-        const auto a = run(entry, scene), b = run(entry, moved);
+        const auto a = run_sweep(entry, scene), b = run_sweep(entry, moved);
         REQUIRE(a.has_value() == b.has_value());
         if (!a) continue;
         INFO(entry.description->name << " on " << scene.name << ", shift " << shift);
@@ -176,7 +176,7 @@ TEST_CASE("benign scenes: a change of unit changes the estimates alike") {
       scaled.array.noise_levels *= factor * factor;
       for (const Entry& entry : algorithms()) {
         if (unlike.contains(entry.description->name)) continue;
-        const auto a = run(entry, scene), b = run(entry, scaled);
+        const auto a = run_sweep(entry, scene), b = run_sweep(entry, scaled);
         REQUIRE(a.has_value() == b.has_value());
         if (!a) continue;
         INFO(entry.description->name << " on " << scene.name << ", times 2^" << power);
@@ -198,7 +198,7 @@ TEST_CASE("benign scenes: the order of the channels does not matter") {
     std::reverse(turned.array.noise_models.begin(), turned.array.noise_models.end());
     for (const Entry& entry : algorithms()) {
       if (unlike.contains(entry.description->name)) continue;
-      const auto a = run(entry, scene), b = run(entry, turned);
+      const auto a = run_sweep(entry, scene), b = run_sweep(entry, turned);
       REQUIRE(a.has_value() == b.has_value());
       if (!a) continue;
       INFO(entry.description->name << " on " << scene.name);
@@ -215,7 +215,7 @@ TEST_CASE("a missing sample is not a value: what stands in its place does not ma
     for (Eigen::Index i = 0; i < other.y.size(); ++i)
       if (std::isnan(other.y.data()[i])) other.y.data()[i] = -std::nan("7");
     for (const Entry& entry : algorithms()) {
-      const auto a = run(entry, scene), b = run(entry, other);
+      const auto a = run_sweep(entry, scene), b = run_sweep(entry, other);
       REQUIRE(a.has_value() == b.has_value());
       if (!a) continue;
       INFO(entry.description->name);
