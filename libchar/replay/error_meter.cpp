@@ -165,6 +165,8 @@ ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& op
   out.samples = static_cast<std::uint64_t>(all.n);
   out.rmse = rms(all);
   out.bias = all.n > 0 ? all.sum / all.n : kNone;
+  out.deviation = std::sqrt(std::max(0.0, (out.rmse - out.bias) * (out.rmse + out.bias)));
+  if (all.n == 0) out.deviation = kNone;
   out.maximum = all.n > 0 ? all.maximum : kNone;
   out.availability = all.n + all.missing > 0 ? all.n / (all.n + all.missing) : 0;
   out.rmse_ci95 = out.bias_ci95 = {kNone, kNone};

@@ -74,6 +74,7 @@ Json error_json(const ErrorScore& e) {
           {"rmse_ci95", interval_json(e.rmse_ci95)},
           {"bias", json_number(e.bias)},
           {"bias_ci95", interval_json(e.bias_ci95)},
+          {"deviation", json_number(e.deviation)},
           {"maximum", json_number(e.maximum)},
           {"availability", json_number(e.availability)},
           {"samples", e.samples},

@@ -228,3 +228,67 @@ TEST_CASE("virtual-sensor: more states than allowed are refused") {
     CHECK(error.problem().code == "E0865");
   }
 }
+
+TEST_CASE("virtual-sensor: a model of the input, its steady state by plain iteration") {
+  const double sigma = 0.3, tau = 5, rate = 10, deviation = 2, corner = 0.4;
+  const Array array = drifting_array({{0.04, 0, 0, {{sigma, tau}}}, {0.09, 0, 0, {}}}, rate);
+  const BiasFilter filter(array, 1e4, 100, {deviation, corner});
+  // b, x, x'/w; y1 = x + b, y2 = x.
+  const double a = 2 * 3.14159265358979323846 * corner / rate, phi = std::exp(-1 / (rate * tau));
+  Eigen::Matrix3d f = Eigen::Matrix3d::Zero(), q = f, p = f;
+  f(0, 0) = phi;
+  f.block<2, 2>(1, 1) << 1 + a, a, -a, 1 - a;
+  f.block<2, 2>(1, 1) *= std::exp(-a);
+  const Eigen::Matrix3d stationary =
+      Eigen::Vector3d(sigma * sigma, deviation * deviation, deviation * deviation).asDiagonal();
+  q = stationary - f * stationary * f.transpose();
+  p = stationary;
+  Eigen::Matrix<double, 2, 3> c;
+  c << 1, 1, 0, 0, 1, 0;
+  const Eigen::Matrix2d r = Eigen::Vector2d(0.04, 0.09).asDiagonal();
+  Eigen::Matrix3d updated;
+  for (int k = 0; k < 5000; ++k) {
+    const Eigen::Matrix<double, 3, 2> gain =
+        p * c.transpose() * (c * p * c.transpose() + r).inverse();
+    const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * c;
+    updated = left * p * left.transpose() + gain * r * gain.transpose();  // Joseph
+    p = f * updated * f.transpose() + q;
+  }
+  CHECK((filter.steady_covariance() - p).cwiseAbs().maxCoeff() < 1e-9 * p.cwiseAbs().maxCoeff());
+  CHECK(filter.steady_variance()[0] == Approx(updated(1, 1)).epsilon(1e-9));
+}
+
+TEST_CASE(
+    "virtual-sensor: an input model helps slow inputs, and one that says nothing changes nothing") {
+  const double rate = 200;
+  const Array array =
+      drifting_array(std::vector<NoiseModel>(4, NoiseModel{0.01, 0.01, 0.001, {}}), rate);
+  const auto errors = [&](double corner) {
+    test::Gaussian gauss(12);
+    const double a = 2 * 3.14159265358979 * corner / rate, keep = std::exp(-a);
+    Eigen::MatrixXd y(4, 20000);
+    Eigen::VectorXd truth(20000);
+    double x = 0, u = 0;
+    // Two equal poles, one after the other.
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      u = keep * u + gauss();
+      x = keep * x + (1 - keep) * u;
+      truth[k] = x;
+      for (Eigen::Index i = 0; i < 4; ++i) y(i, k) = x + 0.1 * gauss();
+    }
+    const double size = std::sqrt(truth.squaredNorm() / 20000);
+    const auto rms = [&](const test::Values& values) {
+      auto fusion = test::make("virtual-sensor", array, values);
+      return (test::run(*fusion, y).x.row(0).transpose() - truth).norm();
+    };
+    return rms({{"input_deviation", size}, {"input_corner_hz", corner}}) / rms({});
+  };
+  CHECK(errors(0.5) < 0.8);
+  CHECK(errors(20) < 1.01);
+  // White, of a hundred thousand times the noise: as good as no model.
+  const Opposite scene = opposite(3000, 4);
+  auto plain = test::make("virtual-sensor", scene.array);
+  auto white = test::make(
+      "virtual-sensor", scene.array, {{"input_deviation", 1e3}, {"input_corner_hz", 1e5}});
+  CHECK((test::run(*plain, scene.y).x - test::run(*white, scene.y).x).cwiseAbs().maxCoeff() < 1e-6);
+}

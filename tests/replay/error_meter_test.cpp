@@ -154,3 +154,13 @@ TEST_CASE("scores: convergence is the end of the transient") {
   for (std::size_t i = 0; i < e.size(); ++i) e[i] = static_cast<double>(e.size() - i);
   CHECK(std::isnan(score(metered(e), 100).converged_s));
 }
+
+TEST_CASE("error meter: the deviation is what is left beside a constant") {
+  ErrorMeter meter;
+  const std::vector<double> errors{3, 5, 3, 5, 3, 5};
+  meter.push(errors);
+  const ErrorScore score = libchar::score(meter, 1);
+  CHECK(score.bias == 4);
+  CHECK(score.deviation == Approx(1).epsilon(1e-14));
+  CHECK(score.rmse == Approx(std::sqrt(17)).epsilon(1e-14));
+}

@@ -1,7 +1,10 @@
 #include "libchar/fusion/algorithms/virtual_sensor.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
@@ -15,42 +18,42 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kAtFirst = 16;          // instants that are each computed
-constexpr int kRenewalsAnOctave = 8;  // after them
+constexpr int kRenewalsAnOctave = 4;  // after them
 constexpr double kSteady = 1e-7;      // change of P C' between renewals, relative to S
 constexpr std::size_t kSets = 5;      // of channels whose gains are kept
 
-/// C' M C for white noise R alone.
-MatrixXd information_of(const BiasStates& states, const VectorXd& white, const MatrixXd& h) {
+/// C' M C for white noise R alone; `h`: inputs that are not known.
+MatrixXd information_of(const MatrixXd& seen, const VectorXd& white, const MatrixXd* h) {
   const VectorXd root = white.cwiseSqrt().cwiseInverse();
-  const MatrixXd basis = thin_qr(root.asDiagonal() * h).q;
-  const MatrixXd m = root.asDiagonal() * complement_projector(basis) * root.asDiagonal();
-  return m(states.channel, states.channel);
-}
-
-MatrixXd cross_of(const MatrixXd& p, const BiasStates& states, Index channels) {
-  MatrixXd cross = MatrixXd::Zero(p.rows(), channels);
-  for (Index s = 0; s < p.cols(); ++s)
-    cross.col(states.channel[static_cast<std::size_t>(s)]) += p.col(s);
-  return cross;
+  const MatrixXd scaled = root.asDiagonal() * seen;
+  const MatrixXd left =
+      h == nullptr ? scaled : without_columns_of(thin_qr(root.asDiagonal() * *h).q, scaled);
+  return left.transpose() * left;
 }
 
 }  // namespace
 
-BiasFilter::BiasFilter(const Array& array, double slowest_s, Index most_states)
+BiasFilter::BiasFilter(const Array& array,
+                       double slowest_s,
+                       Index most_states,
+                       const InputModel& input)
     : h_(array.h()),
-      common_(array.one_common_input()),
+      common_(array.one_common_input() && !(input.deviation > 0)),
+      modelled_(input.deviation > 0),
       states_(bias_states(array.noise_models, array.rate_hz, slowest_s)),
       white_(array.channels) {
-  const Index n = array.channels, r = h_.cols(), s = states_.size();
-  if (s > most_states)
+  const Index n = array.channels, r = h_.cols();
+  if (states_.size() > most_states)
     throw Error({ErrorKind::usage,
                  "E0865",
                  "",
-                 "virtual-sensor would need " + std::to_string(s) + " states of drift for " +
-                     std::to_string(n) + " channels",
+                 "virtual-sensor would need " + std::to_string(states_.size()) +
+                     " states of drift for " + std::to_string(n) + " channels",
                  std::to_string(most_states),
                  "set most_states higher, or slowest_s lower"});
   for (Index i = 0; i < n; ++i) white_[i] = array.noise_models[static_cast<std::size_t>(i)].white;
+  add_inputs(input, array.rate_hz);
+  const Index s = seen_.cols();
   lower_ = MatrixXd::Zero(n, n);
   whitened_ = MatrixXd::Zero(n, r);
   square_ = inverse_ = MatrixXd::Zero(r, r);
@@ -72,22 +75,52 @@ BiasFilter::BiasFilter(const Array& array, double slowest_s, Index most_states)
   now_ = &gains_[0];
 }
 
-void BiasFilter::schedule() {
-  const Index n = white_.size();
-  if (states_.size() == 0) {
-    renewals_.push_back({0, MatrixXd::Zero(0, n)});
-    return;
+/// All states together: the biases, then for each input that has a model x and x'/w, whose stationary
+/// covariance is the identity times its variance:
+///   exp(A dt) = e^-a [1 + a, a; -a, 1 - a], a = w dt.
+void BiasFilter::add_inputs(const InputModel& input, double rate_hz) {
+  const Index n = white_.size(), b = states_.size();
+  const Index s = b + (modelled_ ? 2 * h_.cols() : 0);
+  seen_ = MatrixXd::Zero(n, s);
+  for (Index k = 0; k < b; ++k) seen_(states_.channel[static_cast<std::size_t>(k)], k) = 1;
+  transition_ = drive_ = start_ = MatrixXd::Zero(s, s);
+  transition_.diagonal().head(b) = states_.pole;
+  drive_.diagonal().head(b) = states_.drive;
+  start_.diagonal().head(b) = states_.start;
+  if (!modelled_) return;
+  const double a = 2 * std::numbers::pi * input.corner_hz / rate_hz;
+  Eigen::Matrix2d step;
+  step << 1 + a, a, -a, 1 - a;
+  step *= std::exp(-a);
+  const double variance = input.deviation * input.deviation;
+  for (Index j = 0; j < h_.cols(); ++j) {
+    const Index k = state_of_input(j);
+    seen_.col(k) = h_.col(j);
+    transition_.block<2, 2>(k, k) = step;
+    start_.block<2, 2>(k, k) = variance * Eigen::Matrix2d::Identity();
+    drive_.block<2, 2>(k, k) = variance * (Eigen::Matrix2d::Identity() - step * step.transpose());
   }
-  RiccatiSteps steps(states_.pole, states_.drive, information_of(states_, white_, h_));
-  MatrixXd p = states_.start.asDiagonal();
+}
+
+void BiasFilter::note(double instant, const MatrixXd& p) {
+  VectorXd input = VectorXd::Zero(h_.cols());
+  for (Index j = 0; modelled_ && j < h_.cols(); ++j)
+    input[j] = p(state_of_input(j), state_of_input(j));
+  renewals_.push_back({instant, p * seen_.transpose(), std::move(input)});
+}
+
+void BiasFilter::schedule() {
+  note(0, start_);
+  if (seen_.cols() == 0) return;
+  RiccatiSteps steps(transition_, drive_, information_of(seen_, white_, modelled_ ? nullptr : &h_));
+  MatrixXd p = start_;
   double instant = 0, length = 1;
-  renewals_.push_back({0, cross_of(p, states_, n)});
   for (int left = kAtFirst, octave = 0; octave < 64;) {
     p = steps.advance(p);
     instant += length;
-    const MatrixXd cross = cross_of(p, states_, n);
-    const double change = (cross - renewals_.back().cross).cwiseAbs().maxCoeff();
-    renewals_.push_back({instant, cross});
+    note(instant, p);
+    const MatrixXd& before = renewals_[renewals_.size() - 2].cross;
+    const double change = (renewals_.back().cross - before).cwiseAbs().maxCoeff();
     if (--left > 0) continue;
     // Steady, as far as differences between channels go; what all share may grow on.
     if (change <= kSteady * white_.minCoeff()) break;
@@ -97,11 +130,11 @@ void BiasFilter::schedule() {
     ++octave;
   }
   steady_ = steps.steady();
-  renewals_.push_back({instant + length, cross_of(steady_, states_, n)});
+  note(instant + length, steady_);
 }
 
 void BiasFilter::renew(const Renewal& renewal) {
-  cross_ = &renewal.cross;
+  renewal_ = &renewal;
   // None of the others holds any more: a set without channels determines nothing.
   for (BiasGain& gain : gains_) {
     std::fill(gain.present.begin(), gain.present.end(), char{0});
@@ -115,8 +148,7 @@ void BiasFilter::renew(const Renewal& renewal) {
 void BiasFilter::decompose() {
   const auto covariance = [&](Index a, Index b) {
     double sum = a == b ? white_[a] : 0;
-    for (Index s = 0; s < states_.size(); ++s)
-      if (states_.channel[static_cast<std::size_t>(s)] == a) sum += (*cross_)(s, b);
+    for (Index s = 0; s < seen_.cols(); ++s) sum += seen_(a, s) * renewal_->cross(s, b);
     return sum;
   };
   const auto m = static_cast<Index>(used_.size());
@@ -185,35 +217,41 @@ void BiasFilter::factor(BiasGain& out) {
   for (Index i = 0; i < white_.size(); ++i)
     if (out.present[static_cast<std::size_t>(i)] != 0) used_.push_back(i);
   const auto m = static_cast<Index>(used_.size());
-  const Index r = h_.cols();
+  const auto at = [this](Index k) { return used_[static_cast<std::size_t>(k)]; };
+  const Index r = modelled_ ? 0 : h_.cols();
   out.weights.setZero();
   out.gain.setZero();
   out.determined = false;
-  if (m < r) return;
+  if (m < std::max<Index>(r, 1)) return;
   decompose();
-  out.determined = invert_information();
+  out.determined = modelled_ || invert_information();
   if (!out.determined) return;
   for (Index j = 0; j < r; ++j) {
     out.input_variance[j] = inverse_(j, j);
     column_.head(m).setZero();
     for (Index i = 0; i < r; ++i) column_.head(m) += inverse_(i, j) * whitened_.col(i).head(m);
     backward();
-    for (Index k = 0; k < m; ++k) out.weights(j, used_[static_cast<std::size_t>(k)]) = column_[k];
+    for (Index k = 0; k < m; ++k) out.weights(j, at(k)) = column_[k];
   }
-  for (Index s = 0; s < states_.size(); ++s) {
-    for (Index k = 0; k < m; ++k) column_[k] = (*cross_)(s, used_[static_cast<std::size_t>(k)]);
+  for (Index s = 0; s < seen_.cols(); ++s) {
+    for (Index k = 0; k < m; ++k) column_[k] = renewal_->cross(s, at(k));
     forward();
     backward();
     fitted_.setZero();
     for (Index k = 0; k < m; ++k)
-      for (Index j = 0; j < r; ++j)
-        fitted_[j] += column_[k] * h_(used_[static_cast<std::size_t>(k)], j);
+      for (Index j = 0; j < r; ++j) fitted_[j] += column_[k] * h_(at(k), j);
     for (Index k = 0; k < m; ++k) {
-      const Index i = used_[static_cast<std::size_t>(k)];
       double sum = column_[k];
-      for (Index j = 0; j < r; ++j) sum -= fitted_[j] * out.weights(j, i);
-      out.gain(s, i) = sum;
+      for (Index j = 0; j < r; ++j) sum -= fitted_[j] * out.weights(j, at(k));
+      out.gain(s, at(k)) = sum;
     }
+  }
+  for (Index j = 0; modelled_ && j < h_.cols(); ++j) {
+    const Index s = state_of_input(j);
+    out.weights.row(j) = out.gain.row(s);
+    out.input_variance[j] = renewal_->input[j];
+    for (Index k = 0; k < m; ++k)
+      out.input_variance[j] -= out.gain(s, at(k)) * renewal_->cross(s, at(k));
   }
 }
 
@@ -232,6 +270,16 @@ const BiasGain& BiasFilter::gain_for(const Sample& y) {
   return out;
 }
 
+void BiasFilter::propagate() {
+  bias_.head(states_.size()).array() *= states_.pole.array();
+  for (Index j = 0; modelled_ && j < h_.cols(); ++j) {
+    const Index k = state_of_input(j);
+    const double x = bias_[k], slope = bias_[k + 1];
+    bias_[k] = transition_(k, k) * x + transition_(k, k + 1) * slope;
+    bias_[k + 1] = transition_(k + 1, k) * x + transition_(k + 1, k + 1) * slope;
+  }
+}
+
 Estimate BiasFilter::step(const Sample& y) {
   if (next_ < renewals_.size() && instant_ >= renewals_[next_].instant) renew(renewals_[next_++]);
   instant_ += 1;
@@ -248,23 +296,32 @@ Estimate BiasFilter::step(const Sample& y) {
     for (Index i = 0; i < y.size(); ++i) residual_[i] = usable(y[i]) ? y[i] - base : 0;
     for (Index s = 0; s < states_.size(); ++s)
       residual_[states_.channel[static_cast<std::size_t>(s)]] -= bias_[s];
+    for (Index j = 0; modelled_ && j < h_.cols(); ++j)
+      residual_ -= bias_[state_of_input(j)] * h_.col(j);
     for (Index i = 0; i < y.size(); ++i)
       if (!usable(y[i])) residual_[i] = 0;
     for (Index j = 0; j < h_.cols(); ++j) {
-      double sum = 0;
+      double sum = modelled_ ? bias_[state_of_input(j)] : base;
       for (Index i = 0; i < y.size(); ++i) sum += gain.weights(j, i) * residual_[i];
-      estimate.x[j] = base + sum;
+      estimate.x[j] = sum;
       estimate.variance[j] = gain.input_variance[j];
     }
     bias_.noalias() += gain.gain * residual_;
   }
-  bias_.array() *= states_.pole.array();
+  propagate();
   return estimate;
+}
+
+Eigen::MatrixXd BiasFilter::weights() const {
+  return now_->weights.transpose();
 }
 
 VirtualSensor::VirtualSensor(const Array& array, const Settings& settings)
     : filter_(std::make_unique<BiasFilter>(
-          array, settings["slowest_s"], static_cast<Index>(settings["most_states"]))) {}
+          array,
+          settings["slowest_s"],
+          static_cast<Index>(settings["most_states"]),
+          InputModel{settings["input_deviation"], settings["input_corner_hz"]})) {}
 
 void VirtualSensor::remarks(Warnings& warnings) const {
   if (filter_->states().size() == 0)

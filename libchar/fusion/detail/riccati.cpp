@@ -16,10 +16,10 @@ Eigen::MatrixXd one_plus(Eigen::MatrixXd m) {
 
 }  // namespace
 
-RiccatiSteps::RiccatiSteps(const Eigen::VectorXd& pole,
-                           const Eigen::VectorXd& drive,
+RiccatiSteps::RiccatiSteps(const Eigen::MatrixXd& transition,
+                           const Eigen::MatrixXd& drive,
                            const Eigen::MatrixXd& information)
-    : a_(pole.asDiagonal()), g_(information), h_(drive.asDiagonal()) {}
+    : a_(transition.transpose()), g_(information), h_(drive) {}
 
 Eigen::MatrixXd RiccatiSteps::advance(const Eigen::MatrixXd& p) const {
   // P (I + G P)^-1 = ((I + P G)^-1 P), both symmetric.
