@@ -23,22 +23,34 @@ class RepeatWatch {
  public:
   enum class State : char { moving, stuck, saturated };
 
-  RepeatWatch(std::size_t sensors, double threshold) : threshold_(threshold), all_(sensors) {}
+  RepeatWatch(std::size_t sensors, double threshold)
+      : threshold_(threshold), last_(sensors, kNone), all_(sensors) {}
 
-  /// Sample y of sensor i, of deviation s; the others say the input is at x.
-  void take_in(std::size_t i, double y, double x, double deviation) {
+  /// Sample y of sensor i, of deviation s; the others say the input is at x. True when it is, or was
+  /// until now, anything but moving.
+  bool take_in(std::size_t i, double y, double x, double deviation) {
     Sensor& s = all_[i];
-    if (y != s.last) {
-      moved(s, y, x);
-      return;
+    const State before = s.state;
+    if (y == last_[i]) {
+      repeated(s, y, x, deviation);
+      return s.state != State::moving;
     }
-    repeated(s, y, x, deviation);
+    const double by = std::abs(y - last_[i]);
+    if (last_[i] != kNone) {
+      s.step = by < s.step ? by : s.step;
+      s.chances += 1;
+    }
+    s.came_by = by;
+    s.x_there = x;
+    last_[i] = y;
+    if (y > s.high || y < s.low || s.evidence != 0 || s.ends || before != State::moving)
+      moved(s, y);
+    return s.state != State::moving || before != State::moving;
   }
   State state(std::size_t i) const { return all_[i].state; }
   /// The end of its range that it stands at lies below (above) x by more than `margin`.
   bool others_beyond(std::size_t i, double x, double margin) const {
-    const Sensor& s = all_[i];
-    return s.last == s.high_end ? x > s.last + margin : x < s.last - margin;
+    return last_[i] == all_[i].high_end ? x > last_[i] + margin : x < last_[i] - margin;
   }
 
  private:
@@ -48,32 +60,23 @@ class RepeatWatch {
   static constexpr double kSmallestChance = 1e-6;
 
   struct Sensor {
-    double last = kNone, x_there = 0;  // the value that repeats, and the input when it came
-    double step = kNone;               // the smallest step ever seen
-    double came_by = 0;                // the step to the value that repeats
+    double x_there = 0;      // the input when the value came that repeats
+    double step = kNone;     // the smallest step ever seen
+    double came_by = kNone;  // the step to the value that repeats
     double low = kNone, high = -kNone;
     double low_end = -kNone, high_end = kNone;
     double evidence = 0, end_evidence = 0;
     double unexpected = 0.5, chances = 1;
     bool was_unexpected = false;
+    bool ends = false;  // an end of its range is known
     State state = State::moving;
   };
 
-  static void moved(Sensor& s, double y, double x) {
-    const double by = std::abs(y - s.last);
-    if (s.last != kNone) {
-      s.step = by < s.step ? by : s.step;
-      s.chances += 1;
-    }
-    s.came_by = s.last == kNone ? 0 : by;
-    s.last = y;
-    s.x_there = x;
+  static void moved(Sensor& s, double y) {
     s.low = y < s.low ? y : s.low;
     s.high = y > s.high ? y : s.high;
-    if (s.evidence != 0) {
-      s.evidence = s.end_evidence = 0;
-      s.was_unexpected = false;
-    }
+    s.evidence = s.end_evidence = 0;
+    s.was_unexpected = false;
     // Beyond its end: that was none.
     if (y > s.high_end) s.high_end = kNone;
     if (y < s.low_end) s.low_end = -kNone;
@@ -92,10 +95,12 @@ class RepeatWatch {
       s.was_unexpected = true;
     }
     s.evidence -= std::log(std::max({chance, past, kSmallestChance}));
-    const bool end = (y >= s.high || y <= s.low) && s.came_by > kManySteps * s.step;
+    const bool end =
+        (y >= s.high || y <= s.low) && s.came_by > kManySteps * s.step && s.came_by < kNone / 2;
     if (end) s.end_evidence -= std::log(std::max({s.step / s.came_by, past, kSmallestChance}));
     if (s.end_evidence > kEvidenceOfEnd) {
       (y >= s.high ? s.high_end : s.low_end) = y;
+      s.ends = true;
       s.state = State::saturated;
     } else if (s.evidence > threshold_) {
       s.state = State::stuck;
@@ -103,6 +108,7 @@ class RepeatWatch {
   }
 
   double threshold_;
+  std::vector<double> last_;
   std::vector<Sensor> all_;
 };
 
