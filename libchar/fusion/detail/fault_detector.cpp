@@ -129,8 +129,15 @@ void FaultDetector::begin() {
 
 template <class Variances>
 void FaultDetector::step_with(Variances& variances, const double* y) {
-  if (!use(y) || !residuals(variances, y)) {
+  const bool enough = use(y);
+  if (m_ <= inputs_ || !residuals(variances, y)) {
     std::fill(base_.had_f.begin(), base_.had_f.end(), 0.0);
+    return;
+  }
+  if (!enough) {
+    // Nobody can be judged, but those that are out may come in again.
+    if (count_out_ > 0) follow_out(variances, y);
+    watch_repeats(y);
     return;
   }
   base_.standardise(sample_);

@@ -1,10 +1,10 @@
 #pragma once
 // A sensor that is stuck or stands at the end of its range says the same again, exactly. How much a
-// repetition proves depends on what a healthy sensor would do: one with steps of q and noise of
-// deviation s repeats by chance with probability about q / (s sqrt(4 pi)) while its input stands
-// still, and hardly ever when the input has moved by D since:
+// repetition proves depends on what a healthy sensor would do: one with steps of q whose samples differ by a
+// in the mean (a not above what its noise of deviation s does) repeats by chance with probability about
+// q / (pi a) while its input stands still, and hardly ever when the input has moved by D since:
 //
-//   P = min(1, q / (s sqrt(4 pi))) exp(-D^2 / 4 s^2),  evidence <- evidence - ln P a repetition
+//   P = min(1, q / (pi a)) exp(-D^2 / 4 s^2),  evidence <- evidence - ln P a repetition where P < .05
 //
 // P is never taken below the rate at which the sensor has repeated unexpectedly before: one that holds
 // its samples (20 Hz in a log of 200 Hz) is not stuck. At the end of the range the others need not
@@ -40,10 +40,14 @@ class RepeatWatch {
       s.step = by < s.step ? by : s.step;
       s.chances += 1;
     }
+    if (s.chances > 1) s.change += (by - s.change) / std::min(s.chances, kChangeMemory);
+    s.far_moves += by > kManySteps * s.step ? 1 : 0;
+    s.counted = false;
     s.came_by = by;
     s.x_there = x;
     last_[i] = y;
-    if (y > s.high || y < s.low || s.evidence != 0 || s.ends || before != State::moving)
+    if (y > s.high || y < s.low || s.evidence != 0 || s.end_evidence != 0 || s.ends ||
+        before != State::moving)
       moved(s, y);
     return s.state != State::moving || before != State::moving;
   }
@@ -57,17 +61,20 @@ class RepeatWatch {
   static constexpr double kNone = 1e300;
   static constexpr double kEvidenceOfEnd = 12;
   static constexpr double kManySteps = 64;
+  static constexpr double kChangeMemory = 1000;
   static constexpr double kSmallestChance = 1e-6;
 
   struct Sensor {
     double x_there = 0;      // the input when the value came that repeats
     double step = kNone;     // the smallest step ever seen
+    double change = 0;       // mean of |y - last y|
     double came_by = kNone;  // the step to the value that repeats
     double low = kNone, high = -kNone;
     double low_end = -kNone, high_end = kNone;
     double evidence = 0, end_evidence = 0;
     double unexpected = 0.5, chances = 1;
-    bool was_unexpected = false;
+    double far_held = 0.5, far_moves = 1;  // repetitions after a step of many steps
+    bool was_unexpected = false, counted = false;
     bool ends = false;  // an end of its range is known
     State state = State::moving;
   };
@@ -86,18 +93,22 @@ class RepeatWatch {
   void repeated(Sensor& s, double y, double x, double deviation) const {
     if (s.state != State::moving) return;
     const double past = s.unexpected / s.chances;
-    const double still = std::min(1.0, s.step / (3.545 * deviation));
+    s.change -= s.change / std::min(s.chances, kChangeMemory);
+    const double still = std::min(1.0, s.step / (3.14 * std::min(s.change, 1.13 * deviation)));
     const double off = std::abs(x - s.x_there) > s.step ? std::abs(x - s.x_there) - s.step : 0;
     const double t = off / deviation;
     const double chance = still * std::exp(-std::min(t * t / 4, 30.0));
-    if (chance < 0.05 && !s.was_unexpected) {
-      s.unexpected += 1;
+    if (chance < 0.05) {
+      s.unexpected += s.was_unexpected ? 0 : 1;
       s.was_unexpected = true;
+      s.evidence -= std::log(std::max({chance, past, kSmallestChance}));
     }
-    s.evidence -= std::log(std::max({chance, past, kSmallestChance}));
-    const bool end =
-        (y >= s.high || y <= s.low) && s.came_by > kManySteps * s.step && s.came_by < kNone / 2;
-    if (end) s.end_evidence -= std::log(std::max({s.step / s.came_by, past, kSmallestChance}));
+    const bool far = s.came_by > kManySteps * s.step && s.came_by < kNone / 2;
+    const bool end = far && (y >= s.high || y <= s.low);
+    if (far && !end && !s.counted) s.far_held += 1;
+    s.counted = true;
+    const double held = s.far_held / s.far_moves;
+    if (end) s.end_evidence -= std::log(std::max({s.step / s.came_by, held, kSmallestChance}));
     if (s.end_evidence > kEvidenceOfEnd) {
       (y >= s.high ? s.high_end : s.low_end) = y;
       s.ends = true;
