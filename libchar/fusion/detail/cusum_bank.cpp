@@ -26,25 +26,27 @@ std::array<CusumRow, CusumBank::kRows> cusum_rows() {
 
 const std::array<CusumRow, CusumBank::kRows> kCusumRows = cusum_rows();
 
-/// All rows of all sensors. Written for the compiler's vectors: no branch, lanes do not meet.
+/// All rows of four sensors: what they saw and their largest sums stay in registers.
 LIBCHAR_WIDE_LANES void cusum_rows_step(double* __restrict sums,
                                         double* __restrict top,
                                         const double* const* a,
                                         const double* const* b,
                                         std::size_t padded) {
-  for (std::size_t i = 0; i < padded; ++i) top[i] = 0;
-  for (const CusumRow& row : kCusumRows) {
-    const double* __restrict const evidence = a[static_cast<int>(row.input)];
-    const double* __restrict const against = b[static_cast<int>(row.input)];
-    const double slope = row.slope, cost = row.cost;
-    for (std::size_t i = 0; i < padded; i += 4)
-      for (std::size_t k = i; k < i + 4; ++k) {
-        const double s = sums[k] + (slope * evidence[k] - cost * against[k]);
-        const double kept = s > 0 ? s : 0;
-        sums[k] = kept;
-        top[k] = kept > top[k] ? kept : top[k];
+  const Four zero = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < padded; i += 4) {
+    Four largest = zero;
+    const CusumRow* row = kCusumRows.data();
+    for (int input = 0; input < 3; ++input) {
+      const Four evidence = LIBCHAR_FOUR(a[input] + i), against = LIBCHAR_FOUR(b[input] + i);
+      for (const CusumRow* const end = row + CusumBank::rows(input); row < end; ++row) {
+        const Four s = LIBCHAR_FOUR(sums) + (evidence * row->slope - against * row->cost);
+        const Four kept = s > zero ? s : zero;
+        LIBCHAR_FOUR_TO(sums) = kept;
+        largest = kept > largest ? kept : largest;
+        sums += 4;
       }
-    sums += padded;
+    }
+    LIBCHAR_FOUR_TO(top + i) = largest;
   }
 }
 
@@ -72,7 +74,7 @@ double CusumBank::step(const CusumSample& sample) {
 CusumInput CusumBank::leading(std::size_t i) const {
   std::size_t best = 0;
   for (std::size_t r = 1; r < kRows; ++r)
-    if (sums_[r * padded_ + i] > sums_[best * padded_ + i]) best = r;
+    if (sums_[place(r, i)] > sums_[place(best, i)]) best = r;
   return input(best);
 }
 
@@ -82,7 +84,7 @@ void CusumBank::reset() {
 }
 
 void CusumBank::reset(std::size_t i) {
-  for (std::size_t r = 0; r < kRows; ++r) sums_[r * padded_ + i] = 0;
+  for (std::size_t r = 0; r < kRows; ++r) sums_[place(r, i)] = 0;
   top_[i] = 0;
 }
 

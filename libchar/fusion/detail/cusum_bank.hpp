@@ -36,6 +36,8 @@ class CusumBank {
   explicit CusumBank(std::size_t sensors);
 
   static constexpr std::size_t kRows = 20;
+  /// Rows of an input; they stand one input after the other.
+  static constexpr int rows(int input) { return input < 2 ? 8 : 4; }
   static CusumInput input(std::size_t row);
 
   /// Takes in an instant; the largest of all sums.
@@ -52,8 +54,13 @@ class CusumBank {
   static std::size_t padded(std::size_t n) { return (n + 3) / 4 * 4; }
 
  private:
+  /// Four sensors beside each other, row after row, then the next four.
+  static std::size_t place(std::size_t row, std::size_t i) {
+    return (i / 4 * kRows + row) * 4 + i % 4;
+  }
+
   std::size_t sensors_, padded_;
-  std::vector<double> sums_;  // row after row
+  std::vector<double> sums_;
   std::vector<double> top_;
 };
 

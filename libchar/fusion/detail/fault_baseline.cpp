@@ -11,6 +11,8 @@ namespace {
 /// Beyond it a residual teaches nothing, and its square proves nothing more.
 constexpr double kClip = 6, kMostDeviations = 1e6;
 constexpr double kMostRecent = 1e6;
+/// Long-run variance ratio that nothing is known of, and blocks that it is worth.
+constexpr double kUntoldRatio = 16, kUntoldBlocks = 8;
 /// An excess below this is scatter.
 constexpr double kLeastExcess = 1.35;
 /// Deviation of a gain and of a delay in samples before anything is known of them.
@@ -342,9 +344,11 @@ void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, dou
     follow(long_gain[i], sum_xx[i] > 0 ? sum_xz[i] * sum_xz[i] / sum_xx[i] : 1);
     follow(long_noise[i], off * off / (2 * m));
     const double b = std::min(blocks[i], kBlockMemory);
-    scale_bias[i] = 1 / std::sqrt(believed(long_bias[i], b, trusted));
+    const double bias_ratio = believed(long_bias[i], b, trusted);
+    scale_bias[i] = 1 / std::sqrt(bias_ratio);
     scale_gain[i] = 1 / std::sqrt(believed(long_gain[i], b, trusted));
-    scale_noise[i] = 1 / std::sqrt(believed(long_noise[i], b, trusted));
+    // A mean that wanders is no noise either.
+    scale_noise[i] = 1 / std::max(std::sqrt(believed(long_noise[i], b, trusted)), bias_ratio);
   }
   clear_block();
 }
@@ -354,11 +358,14 @@ void FaultBaseline::clear_block() {
     std::fill(v->begin(), v->end(), 0.0);
 }
 
-void FaultBaseline::forget_blocks() {
-  for (std::vector<double>* v :
-       {&long_bias, &long_gain, &long_noise, &scale_bias, &scale_gain, &scale_noise})
-    std::fill(v->begin(), v->end(), 1.0);
-  std::fill(blocks.begin(), blocks.end(), 0.0);
+void FaultBaseline::forget_blocks(bool trusted) {
+  const double ratio = trusted ? 1 : kUntoldRatio;
+  for (std::vector<double>* v : {&long_bias, &long_gain, &long_noise})
+    std::fill(v->begin(), v->end(), ratio);
+  for (std::vector<double>* v : {&scale_bias, &scale_gain})
+    std::fill(v->begin(), v->end(), 1 / std::sqrt(ratio));
+  std::fill(scale_noise.begin(), scale_noise.end(), 1 / ratio);
+  std::fill(blocks.begin(), blocks.end(), trusted ? 0.0 : kUntoldBlocks);
   clear_block();
 }
 

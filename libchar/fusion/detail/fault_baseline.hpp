@@ -71,7 +71,9 @@ struct FaultBaseline {
   void end_block(bool trusted, const std::vector<double>& tops, double frozen);
   void clear_block();
   /// What was learnt of the long run while the means were still wrong is forgotten.
-  void forget_blocks();
+  /// `trusted`: they are one until shown otherwise. Otherwise they are taken for large until shown otherwise:
+  /// only gross faults are judged at first.
+  void forget_blocks(bool trusted);
 };
 
 }  // namespace libchar::fusion

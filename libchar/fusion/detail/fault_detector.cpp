@@ -60,6 +60,7 @@ FaultDetector::FaultDetector(const Array& array, const FaultDetectorOptions& opt
       evidence_(base_.n),
       squares_(base_.n, 1) {
   changes_.reserve(2 * base_.n);
+  base_.forget_blocks(fault_free_ > 0);
   median_.reserve(base_.n);
   if (!array.one_common_input())
     general_.emplace(array.h(), ReweightingOptions{.gamma = kSlowGamma});
@@ -128,8 +129,15 @@ void FaultDetector::begin() {
 
 template <class Variances>
 void FaultDetector::step_with(Variances& variances, const double* y) {
-  if (!use(y) || !residuals(variances, y)) {
+  const bool enough = use(y);
+  if (m_ <= inputs_ || !residuals(variances, y)) {
     std::fill(base_.had_f.begin(), base_.had_f.end(), 0.0);
+    return;
+  }
+  if (!enough) {
+    // Nobody can be judged, but those that are out may come in again.
+    if (count_out_ > 0) follow_out(variances, y);
+    watch_repeats(y);
     return;
   }
   base_.standardise(sample_);
@@ -222,7 +230,7 @@ void FaultDetector::slow_work(Variances& variances) {
   }
   if (restarts_ < std::size(kMeansLearnt) && samples >= kMeansLearnt[restarts_]) {
     variances.restart(kStart / 2);
-    base_.forget_blocks();
+    base_.forget_blocks(fault_free_ > 0);
     ++restarts_;
   }
   if (now_ < armed_again_) stood_instants_ += 64;
@@ -235,9 +243,7 @@ void FaultDetector::slow_work(Variances& variances) {
 void FaultDetector::watch_repeats(const double* y) {
   for (std::size_t i = 0; i < base_.n; ++i) {
     if (!usable(y[i]) || known_[i] == 0) continue;
-    repeats_.take_in(i, y[i], base_.f[i], deviation_[i]);
-    if (repeats_.state(i) != RepeatWatch::State::moving || at_end_[i] != 0 || out_[i] == Out::stuck)
-      repeat_state(i);
+    if (repeats_.take_in(i, y[i], base_.f[i], deviation_[i])) repeat_state(i);
   }
 }
 
@@ -297,8 +303,7 @@ void FaultDetector::follow_out(Variances& variances, const double* y) {
       const bool at_once = window.first();
       let_in(i);
       if (at_once) misfit(static_cast<int>(i));
-    } else if (window.scatter() > 1.5 &&
-               window.mean_fits(base_.scale_bias[i], base_.scale_gain[i])) {
+    } else if (window.scatter() > 1.5 && window.mean_fits()) {
       // What it says is right, but scattered: that is a matter of weight.
       const double ratio = 1 + (window.scatter() - 1) * s / variances.variance(i);
       let_in(i);

@@ -99,6 +99,7 @@ class FaultDetector {
   void noise_fault(std::size_t i, int window);
   bool is_dead(std::size_t i, int window) const;
   FaultRule kind(std::size_t i, int window) const;
+  int least_sound(FaultRule rule) const;
   void act(const Isolation& found, int window);
   void doubt(const Isolation& found);
   void misfit(int sensor);

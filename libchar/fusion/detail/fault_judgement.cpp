@@ -115,7 +115,8 @@ void FaultDetector::judge_noise(int window) {
   int many = 0;
   for (int k = 0; k < m_; ++k) {
     const auto i = static_cast<std::size_t>(index_[static_cast<std::size_t>(k)]);
-    const double evidence = noise_evidence(evidence_[i].samples, squares_[i]);
+    const double evidence =
+        noise_evidence(evidence_[i].samples, squares_[i]) * base_.scale_noise[i];
     many += evidence > threshold_ / 2 ? 1 : 0;
     if (evidence > most) {
       most = evidence;
@@ -133,7 +134,12 @@ void FaultDetector::judge_noise(int window) {
 
 /// The sum has gathered for longer than the window reaches: it is believed.
 void FaultDetector::condemn(std::size_t i) {
-  take_out(i, bank_.leading(i) == CusumInput::gain ? FaultRule::gain : FaultRule::bias);
+  const FaultRule rule = bank_.leading(i) == CusumInput::gain ? FaultRule::gain : FaultRule::bias;
+  if (m_ <= least_sound(rule)) {
+    misfit(-1);
+    return;
+  }
+  take_out(i, rule);
   sets_changed();
 }
 
@@ -180,6 +186,12 @@ FaultRule FaultDetector::kind(std::size_t i, int window) const {
   return gain > bias ? FaultRule::gain : FaultRule::bias;
 }
 
+/// Sensors that must be left and one: enough to contradict each other; and where nobody said that the record
+/// begins without faults, to tell which of them is wrong then.
+int FaultDetector::least_sound(FaultRule rule) const {
+  return inputs_ + (fault_free_ == 0 && rule != FaultRule::dead ? 2 : 1);
+}
+
 void FaultDetector::act(const Isolation& found, int window) {
   int sound = m_;
   for (int k = 0; k < std::min(m_, 64); ++k) {
@@ -188,9 +200,11 @@ void FaultDetector::act(const Isolation& found, int window) {
     const FaultRule rule = kind(i, window);
     if (rule == FaultRule::noise) {
       noise_fault(i, window);
-    } else if (sound > inputs_ + 1) {
+    } else if (sound > least_sound(rule)) {
       take_out(i, rule);
       --sound;
+    } else {
+      misfit(-1);
     }
   }
   sets_changed();
@@ -219,11 +233,11 @@ void FaultDetector::doubt(const Isolation& found) {
 /// the one that was learnt.
 void FaultDetector::misfit(int sensor) {
   // A sensor that fails again and again for a moment is its own matter.
+  bank_.reset();
   if (sensor >= 0 && sensor == misfit_sensor_) return;
   misfit_sensor_ = sensor;
   if (last_misfit_ >= 0 && now_ - last_misfit_ > kMisfitMemory) misfits_ = 0;
   last_misfit_ = now_;
-  bank_.reset();
   if (++misfits_ >= (fault_free_ > 0 ? kMisfits : kMisfitsUntold)) stand_down();
 }
 

@@ -39,11 +39,9 @@ class RecoveryWindow {
     if (full_ >= 2) remember_gain();
     return full_ >= kParts || (early_ && full_ == kParts / 4);
   }
+  /// Mean and slope are no more than the scatter makes them.
+  bool mean_fits() const { return full_ >= kParts && fits(1, 1, std::max(sum_.zz / sum_.n, 1.0)); }
   /// z is worth `bias` of itself in a sum, x z `gain`, z^2 - 1 `noise` (long-run variances).
-  bool mean_fits(double bias, double gain) const {
-    const double scatter = std::max(sum_.zz / sum_.n, 1.0);
-    return fits(bias, gain, scatter);
-  }
   bool all_fit(double bias, double gain, double noise) const {
     return fits(bias, gain, 1) && excess() * noise < 3.3;
   }
