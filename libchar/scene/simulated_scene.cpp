@@ -62,6 +62,7 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.rest = original.rest;
   scene.fault_free_s = original.fault_free_s;
   scene.tilt = original.tilt;
+  scene.align = original.align;
   scene.algorithms = original.algorithms;
   scene.file = recording.scene_file;
   scene.name = std::filesystem::path(recording.file).stem().string();

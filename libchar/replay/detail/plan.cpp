@@ -280,6 +280,10 @@ ReplayPlan make_plan(const Scene& scene,
   return plan;
 }
 
+Eigen::MatrixXd observations(const Scene& scene, std::size_t inputs) {
+  return observation_matrix(scene, inputs);
+}
+
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels) {
   fusion::Array part = array;
   part.channels = static_cast<Eigen::Index>(channels.size());
