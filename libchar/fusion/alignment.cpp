@@ -60,10 +60,8 @@ DelayTaps::DelayTaps(double delay, Interpolation interpolation)
   }
 }
 
-double DelayTaps::at(const double* y,
-                     Eigen::Index stride,
-                     Eigen::Index size,
-                     Eigen::Index t) const {
+double DelayTaps::at(
+    const double* y, Eigen::Index stride, Eigen::Index size, Eigen::Index t, bool strict) const {
   const Eigen::Index place = t + floor, from = place + first;
   const auto taps = static_cast<Eigen::Index>(weights.size());
   if (from >= 0 && from + taps <= size) {
@@ -72,8 +70,7 @@ double DelayTaps::at(const double* y,
       sum += weights[static_cast<std::size_t>(k)] * y[(from + k) * stride];
     if (std::isfinite(sum)) return sum;
   }
-  if (place < 0 || place + 1 >= size) return ChannelAlignment::kUnknown;
-  if (fraction == 0) return y[place * stride];
+  if (strict || place < 0 || place + 1 >= size) return ChannelAlignment::kUnknown;
   return (1 - fraction) * y[place * stride] + fraction * y[(place + 1) * stride];
 }
 
@@ -92,6 +89,20 @@ void cross_means(const Alignment& alignment,
       }
     means(k) = 2 * count >= n ? sum / static_cast<double>(count) : ChannelAlignment::kUnknown;
   }
+}
+
+Eigen::VectorXd in_time(const Alignment& alignment,
+                        const Eigen::VectorXd& aligned,
+                        const Eigen::VectorXd& cross) {
+  Eigen::VectorXd out(aligned.size());
+  for (Eigen::Index i = 0; i < aligned.size(); ++i) {
+    const ChannelAlignment& channel = alignment.channels[static_cast<std::size_t>(i)];
+    out(i) = channel.bias + (1 + channel.gain) * aligned(i);
+    for (Eigen::Index k = 0; k < cross.size(); ++k)
+      if (const double m = channel.cross[static_cast<std::size_t>(k)]; m != 0)
+        out(i) += m * cross(k);
+  }
+  return out;
 }
 
 Aligner::Aligner(const Alignment& alignment) : alignment_(&alignment) {

@@ -10,7 +10,7 @@
 namespace libchar::fusion {
 
 /// How a sample between two instants is read. `sinc`: 24 taps, Kaiser window 8, within 1e-4 of the
-/// amplitude up to 0.38 of the rate. `cubic`: 4 taps (Lagrange), within 1e-2 up to 0.12 of the rate;
+/// amplitude up to 0.37 of the rate. `cubic`: 4 taps (Lagrange), within 1e-2 up to 0.12 of the rate;
 /// it damps what is faster, most at half a sample, and aliased vibration with it.
 enum class Interpolation { sinc, cubic };
 
@@ -66,9 +66,13 @@ Alignment learn_alignment(const AlignmentData& data, const AlignmentOptions& opt
 /// Weights of the instants floor(delay) + first … of a sample read `delay` instants later.
 struct DelayTaps {
   DelayTaps(double delay, Interpolation interpolation);
-  /// y(t + delay), of `size` values; linear between its neighbours where a tap is missing, NaN
-  /// where one of these is.
-  double at(const double* y, Eigen::Index stride, Eigen::Index size, Eigen::Index t) const;
+  /// y(t + delay), of `size` values. Where a tap is missing: linear between its neighbours, NaN
+  /// where one of these is missing; `strict`: NaN.
+  double at(const double* y,
+            Eigen::Index stride,
+            Eigen::Index size,
+            Eigen::Index t,
+            bool strict = false) const;
   std::vector<double> weights;
   Eigen::Index first = 0, floor = 0;
   double fraction = 0;
@@ -78,6 +82,11 @@ struct DelayTaps {
 void cross_means(const Alignment& alignment,
                  const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::VectorXd& means);
+
+/// Aligned samples with their biases, gains and other axes put back: what the delays alone do.
+Eigen::VectorXd in_time(const Alignment& alignment,
+                        const Eigen::VectorXd& aligned,
+                        const Eigen::VectorXd& cross);
 
 /// Column t of `samples` (as in AlignmentData) aligned: n values. Saturated samples are missing.
 class Aligner {

@@ -93,6 +93,7 @@ class Learner {
   void prepare();
   void average_cross();
   void start_delays();
+  void choose_strictness();
   void iterate();
   void realign();
   void find_rows();
@@ -122,7 +123,8 @@ class Learner {
   Eigen::MatrixXd z_, slope_, bend_;  // a column a used channel: aligned, and its derivatives
   Eigen::VectorXd x_, residual_power_;
   std::vector<Index> rows_;
-  bool gain_ = false;  // terms that the stretch tells
+  bool strict_ = true;  // samples whose interpolation misses a tap are left out
+  bool gain_ = false;   // terms that the stretch tells
   std::vector<Index> axes_;
   double x0_ = 0;
   Eigen::VectorXd c0_;
@@ -259,14 +261,14 @@ void Learner::realign() {
     const bool moves = can_delay_[static_cast<std::size_t>(k)];
     for (Index t = 0; t < m_; ++t) {
       if (!interior_[static_cast<std::size_t>(t)]) continue;
-      const double now = at.at(y, 1, m_, t);
+      const double now = at.at(y, 1, m_, t, strict_);
       double value = now - channel.bias;
       for (Index a = 0; a < further_; ++a)
         if (const double c = channel.cross[static_cast<std::size_t>(a)]; c != 0)
           value -= c * cross_(t, a);
       z_(t, k) = value / (1 + channel.gain);
       if (!moves) continue;
-      const double up = later.at(y, 1, m_, t), down = earlier.at(y, 1, m_, t);
+      const double up = later.at(y, 1, m_, t, strict_), down = earlier.at(y, 1, m_, t, strict_);
       slope_(t, k) = (up - down) / (2 * kDelayStep) / (1 + channel.gain);
       bend_(t, k) = (up - 2 * now + down) / (kDelayStep * kDelayStep) / (1 + channel.gain);
       if (!std::isfinite(bend_(t, k))) z_(t, k) = kUnknownValue;
@@ -431,6 +433,16 @@ double Learner::step() {
   return largest;
 }
 
+// Interpolation beside a gap or a saturated stretch bends the result; with gaps everywhere there is
+// nothing else.
+void Learner::choose_strictness() {
+  realign();
+  Index complete = 0;
+  for (Index t = 0; t < m_; ++t)
+    if (interior_[static_cast<std::size_t>(t)] && z_.row(t).allFinite()) ++complete;
+  strict_ = complete > std::max(kFewestInstants, m_ / 10);
+}
+
 void Learner::iterate() {
   for (int k = 0; k < kIterations; ++k)
     if (step() < kSettled) break;
@@ -507,6 +519,7 @@ Alignment Learner::learn() {
   prepare();
   average_cross();
   if (options_.delay) start_delays();
+  choose_strictness();
   iterate();
   if (doubt_delays()) iterate();
   tell();

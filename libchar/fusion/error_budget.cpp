@@ -1,7 +1,7 @@
-// With u = y - x (x the reference, or the mean of the aligned channels) the mean square of u is split
-// by projecting in turn on 1, x, the other axes c_k and dx/dt (QR of the regressors): offset, gain,
-// cross-axis, delay. Fast motion is beyond the first order in a delay: what the alignment takes out
-// more than that is the delay's too. Of what alignment leaves, r, the part that follows (dx/dt)^2,
+// With x the reference, or the mean of the aligned channels, u = y - x, and u' the same without the
+// delay that was learnt: the mean square of u' is split by projecting in turn on 1, x, the other axes
+// c_k and dx/dt (QR of the regressors): offset, gain, cross-axis, and a delay that is left; what u has
+// more than u' is the delay's too. Of what alignment leaves, r, the part that follows (dx/dt)^2,
 //   r^2 = noise + jitter^2 (dx/dt)^2,
 // is a delay that jitters: its sign changes, its size is that of the slope. The rest is noise.
 #include "libchar/fusion/error_budget.hpp"
@@ -27,10 +27,11 @@ BudgetMeter::BudgetMeter(Index channels, Index axes, std::int64_t instants, bool
       c0_(Eigen::VectorXd::Zero(axes)) {}
 
 void BudgetMeter::push(const Eigen::VectorXd& recorded,
+                       const Eigen::VectorXd& undelayed,
                        const Eigen::VectorXd& aligned,
                        const Eigen::VectorXd& cross,
                        double truth) {
-  Instant now{recorded, aligned, cross, taught_ ? truth : aligned.mean(), false};
+  Instant now{recorded, undelayed, aligned, cross, taught_ ? truth : aligned.mean(), false};
   now.complete =
       recorded.allFinite() && aligned.allFinite() && cross.allFinite() && std::isfinite(now.x);
   if (std::isnan(x0_) && now.complete) {
@@ -52,18 +53,22 @@ void BudgetMeter::add(const Instant& before, const Instant& now, const Instant& 
                         Eigen::MatrixXd::Zero(p, n_ + 1),
                         Eigen::VectorXd::Zero(n_ + 1),
                         Eigen::VectorXd::Zero(n_ + 1),
+                        Eigen::VectorXd::Zero(n_ + 1),
                         Eigen::VectorXd::Zero(n_ + 1)});
   Sums& s = batches_[b];
   const double slope = 0.5 * (after.x - before.x), slope2 = slope * slope;
-  Eigen::VectorXd row(p), u(n_ + 1), r(n_ + 1);
+  Eigen::VectorXd row(p), u(n_ + 1), d(n_ + 1), r(n_ + 1);
   row << 1, now.x - x0_, now.cross - c0_, slope;
   u.head(n_) = now.recorded.array() - now.x;
   r.head(n_) = now.aligned.array() - now.x;
+  d.head(n_) = now.undelayed.array() - now.x;
   u(n_) = u.head(n_).mean();
+  d(n_) = d.head(n_).mean();
   r(n_) = r.head(n_).mean();
   s.regressors += row * row.transpose();
-  s.errors += row * u.transpose();
+  s.errors += row * d.transpose();
   s.squares += u.cwiseAbs2();
+  s.undelayed += d.cwiseAbs2();
   s.rest += r.cwiseAbs2();
   s.rest_slope += slope2 * r.cwiseAbs2();
   s.slope2 += slope2;
@@ -89,6 +94,7 @@ BudgetMeter::Sums BudgetMeter::total(std::size_t without) const {
     out.regressors += s.regressors;
     out.errors += s.errors;
     out.squares += s.squares;
+    out.undelayed += s.undelayed;
     out.rest += s.rest;
     out.rest_slope += s.rest_slope;
     out.slope2 += s.slope2;
@@ -127,7 +133,8 @@ Eigen::MatrixXd BudgetMeter::powers(const Sums& s, Eigen::MatrixXd* loadings) co
     out(1, i) = q(1, i) * q(1, i);
     out(2, i) = q.col(i).segment(2, axes_).squaredNorm();
     const double behind = std::max(0.0, all - out.col(i).head(3).sum());
-    out(3, i) = std::min(behind, std::max(q(p - 1, i) * q(p - 1, i), behind - s.rest(i) / s.count));
+    const double removed = (s.squares(i) - s.undelayed(i)) / s.count;
+    out(3, i) = std::clamp(q(p - 1, i) * q(p - 1, i) + removed, 0.0, behind);
     const double left = behind - out(3, i);
     const double follows =
         spread > 0 ? (s.rest_slope(i) / s.count - mean * s.rest(i) / s.count) / spread : 0;

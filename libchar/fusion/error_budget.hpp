@@ -39,9 +39,11 @@ class BudgetMeter {
  public:
   /// `instants`: how many will come, for the length of the batches. `taught`: columns have a truth.
   BudgetMeter(Eigen::Index channels, Eigen::Index axes, std::int64_t instants, bool taught);
-  /// One instant: samples as recorded, aligned, the mean of each further axis, the truth (NaN when
-  /// blind). An instant at which anything is missing is left out.
+  /// One instant: samples as recorded, with their delays alone taken out (`in_time`), aligned, the
+  /// mean of each further axis, the truth (NaN when blind). An instant at which anything is missing
+  /// is left out.
   void push(const Eigen::VectorXd& recorded,
+            const Eigen::VectorXd& undelayed,
             const Eigen::VectorXd& aligned,
             const Eigen::VectorXd& cross,
             double truth);
@@ -49,15 +51,15 @@ class BudgetMeter {
 
  private:
   struct Instant {
-    Eigen::VectorXd recorded, aligned, cross;
+    Eigen::VectorXd recorded, undelayed, aligned, cross;
     double x = 0;
     bool complete = false;
   };
-  struct Sums {                        // of one batch
-    Eigen::MatrixXd regressors;        // Gram matrix of 1, x, c_k, dx
-    Eigen::MatrixXd errors;            // regressors' errors, a column a channel and the mean
-    Eigen::VectorXd squares;           // of the errors
-    Eigen::VectorXd rest, rest_slope;  // r^2, r^2 dx^2 of what is aligned
+  struct Sums {                          // of one batch
+    Eigen::MatrixXd regressors;          // Gram matrix of 1, x, c_k, dx
+    Eigen::MatrixXd errors;              // regressors' errors, a column a channel and the mean
+    Eigen::VectorXd squares, undelayed;  // of the errors
+    Eigen::VectorXd rest, rest_slope;    // r^2, r^2 dx^2 of what is aligned
     double slope2 = 0, slope4 = 0, count = 0;
     double before = 0, after = 0;
   };

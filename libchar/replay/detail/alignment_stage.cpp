@@ -187,7 +187,12 @@ AlignmentResult measure_alignment(const Scene& scene,
           const Eigen::VectorXd& aligned,
           const Eigen::VectorXd& truth) {
         fusion::cross_means(out.learnt, recorded, cross);
-        meter.push(recorded(used), aligned(used), cross, truth.size() > 0 ? truth(0) : kNone);
+        const Eigen::VectorXd undelayed = fusion::in_time(out.learnt, aligned, cross);
+        meter.push(recorded(used),
+                   undelayed(used),
+                   aligned(used),
+                   cross,
+                   truth.size() > 0 ? truth(0) : kNone);
       },
       progress);
   out.budget = meter.result();

@@ -152,7 +152,7 @@ const Fields<SceneAlign>& align_fields() {
       field<&SceneAlign::interpolation>(
           "interpolation",
           {.words = kInterpolations,
-           .meaning = "sinc is within 1e-4 up to 0.38 of the rate; cubic damps what is faster "
+           .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is faster "
                       "than 0.12 of it, aliased vibration too",
            .otherwise = "sinc"}),
       field<&SceneAlign::apply>("apply",
