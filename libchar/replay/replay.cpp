@@ -12,6 +12,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
+#include "libchar/replay/detail/alignment_stage.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
@@ -67,6 +68,7 @@ class Replay {
   }
 
   ReplayResult run() {
+    if (scene_.align) align();
     prepare();
     if (plan_.learning_pass) learn_before_run();
     if (plan_.run_learning_pass) learn_on_run();
@@ -88,6 +90,15 @@ class Replay {
                       passing);
     instants_.set_lag(lag_s_, progress_);
     ++passes_;
+  }
+
+  // Before anything is learnt or fused.
+  void align() {
+    PassProgress passing(progress_, "aligning");
+    alignment_ = learn_scene_alignment(scene_, plan_, instants_, passing);
+    aligned_ = measure_alignment(scene_, plan_, instants_, *alignment_, plan_.warnings, passing);
+    passes_ += 2;
+    if (scene_.align->apply) instants_.set_alignment(&*alignment_);
   }
 
   void prepare() {
@@ -302,6 +313,8 @@ class Replay {
   Instants instants_;
   SensorKnowledge knowledge_;
   ReplayPlan plan_;
+  std::optional<SceneAlignment> alignment_;
+  std::optional<AlignmentResult> aligned_;
   RunFrame frame_, optimum_frame_;
   fusion::Array array_on_run_;
   std::vector<AlgorithmRun> runs_, optimum_;
@@ -357,6 +370,7 @@ void Replay::add_facts(ReplayResult& out) const {
   out.warnings = scene_.warnings;
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
+  out.alignment = aligned_;
 }
 
 void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {

@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/interval.hpp"
+#include "libchar/fusion/error_budget.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/error_meter.hpp"
@@ -114,6 +115,17 @@ struct SensorResult {
   std::vector<double> h;
 };
 
+/// What was learnt of the sensors before fusion, and what their errors are made of on the run.
+struct AlignmentResult {
+  fusion::Alignment learnt;
+  TimeWindow window;    ///< it was learnt on
+  bool taught = false;  ///< by the reference; else by the sensors' mean
+  bool applied = false;
+  bool overlaps = false;  ///< learnt on a part of what is judged
+  fusion::ErrorBudget budget;
+  std::vector<std::size_t> budgeted;  ///< sensors in the budget
+};
+
 struct InputResult {
   std::string name, unit;
   double optimum_rmse = 0;  ///< of the best linear unbiased weights of the run; NaN: no reference
@@ -145,6 +157,7 @@ struct ReplayResult {
   std::string reference_use;  ///< "each instant", "mean over its intervals of 3600 s"…
   std::vector<SensorResult> sensors;
   std::vector<InputResult> inputs;
+  std::optional<AlignmentResult> alignment;
   std::vector<SensorFault> faults;          ///< that the scene knows, injected or simulated
   std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
   std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`

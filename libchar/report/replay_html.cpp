@@ -11,6 +11,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
+#include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_page.hpp"
@@ -308,7 +309,7 @@ std::string replay_html(const ReplayView& view) {
                     std::string(replay_page_js()),
                     std::string(page_css()) + std::string(replay_page_css())},
                    overview(view) + cost_plots(view) + time_plots(view) + faults(view) +
-                       sensors(view) + skipped(view) + provenance(view),
+                       alignment_html(view) + sensors(view) + skipped(view) + provenance(view),
                    json_in_script(document));
 }
 

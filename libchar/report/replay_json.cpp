@@ -9,6 +9,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/allan_json.hpp"
+#include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
@@ -307,6 +308,7 @@ Json replay_json(const ReplayView& view) {
   out["plan"] = texts(result.plan);
   add_run(out, result);
   out["sensors"] = sensors_json(result);
+  if (result.alignment) out["alignment"] = alignment_json(result);
   out["faults"] = known_faults_json(result);
   out["best"] =
       result.best ? Json(json_text(result.algorithms[*result.best].label)) : Json(nullptr);

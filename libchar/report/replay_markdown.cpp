@@ -7,6 +7,7 @@
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
@@ -202,8 +203,8 @@ std::string replay_markdown(const ReplayView& view) {
   out +=
       "\n\\* the best method, and those whose difference from it is not resolved; bounds look at "
       "the reference of the run itself.\n";
-  return out + skipped_section(view) + several_inputs(view) + sensors_section(view) +
-         faults_section(view) + remarks_section(view);
+  return out + skipped_section(view) + several_inputs(view) + alignment_markdown(view) +
+         sensors_section(view) + faults_section(view) + remarks_section(view);
 }
 
 std::string replay_markdown(const ReplayResult& result) {

@@ -9,6 +9,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/algorithm_words.hpp"
+#include "libchar/report/detail/alignment_pieces.hpp"
 
 namespace libchar {
 namespace {
@@ -64,6 +65,7 @@ std::string replay_text(const ReplayView& view) {
     text += fmt::format("skipped {}: {}\n",
                         printable(fmt::format("{}", fmt::join(s.labels, ", "))),
                         printable(s.reason));
+  text += alignment_text(view);
   text += "\n" + printable(fmt::format("{}", fmt::join(view.verdict, " "))) + "\n";
   return text;
 }

@@ -24,6 +24,7 @@ struct SceneSensor {
   std::string unit = {};
   /// Standard deviation of a sample's noise, in the unit after `scale`.
   std::optional<double> noise = std::nullopt;
+  std::vector<std::string> cross = {};  ///< channels of the same device's other axes
 };
 
 /// Which sensors (by index) a tilt filter reads: tilt = atan2(accelerometer_x, accelerometer_z).
@@ -46,6 +47,17 @@ struct SceneReference {
   double lag_s = 0;                      ///< the sensors lag the reference by this
   bool estimate_lag = false;
 };
+
+/// What is taken out of the sensors before they are fused.
+struct SceneAlign {
+  std::string learn;                 ///< rest, learning, run; empty: `window`
+  std::optional<TimeWindow> window;  ///< learnt there
+  std::vector<std::string> terms;    ///< of kAlignTerms; empty: all (bias only without `rest`)
+  std::string by;                    ///< reference, sensors; empty: the reference if there is one
+  std::string interpolation = "sinc";
+  bool apply = true;  ///< false: the error budget alone, algorithms see the samples as recorded
+};
+inline constexpr std::string_view kAlignTerms[] = {"delay", "bias", "gain", "misalignment"};
 
 struct SceneAlgorithm {
   std::string name;
@@ -79,6 +91,7 @@ struct Scene {
   std::optional<double> warm_up_s;
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
+  std::optional<SceneAlign> align;
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets
   std::vector<std::string> files;          ///< every file that was named and found, resolved
   Warnings warnings;

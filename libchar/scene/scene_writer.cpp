@@ -155,6 +155,16 @@ Entry window_entry(const char* key, const TimeWindow& w) {
   return word_entry(key, "[" + shortest_yaml(w.from_s) + ", end]");
 }
 
+Entry align_entry(const SceneAlign& align) {
+  Entries below;
+  if (align.window)
+    below.push_back(window_entry("learn", *align.window));
+  else
+    below.push_back(word_entry("learn", align.learn));
+  append(below, entries_of(align_fields(), align));
+  return part_entry("align", std::move(below));
+}
+
 Entry faults_entry(const std::vector<SensorFault>& faults, const Scene& scene) {
   Entries below;
   for (const SensorFault& fault : faults) {
@@ -204,6 +214,7 @@ Entries scene_entries(const Scene& scene) {
   if (scene.evaluation) out.push_back(window_entry("evaluation", *scene.evaluation));
   if (scene.rest) out.push_back(window_entry("rest", *scene.rest));
   if (scene.warm_up_s) out.push_back({"warm_up_s", *scene.warm_up_s});
+  if (scene.align) out.push_back(align_entry(*scene.align));
   if (scene.fault_free_s) out.push_back({"fault_free_s", *scene.fault_free_s});
   if (!scene.faults.empty()) out.push_back(faults_entry(scene.faults, scene));
   if (scene.simulated) out.push_back(simulated_entry(scene));

@@ -63,6 +63,7 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.fault_free_s = original.fault_free_s;
   scene.warm_up_s = original.warm_up_s;
   scene.tilt = original.tilt;
+  scene.align = original.align;
   scene.algorithms = original.algorithms;
   scene.file = recording.scene_file;
   scene.name = std::filesystem::path(recording.file).stem().string();

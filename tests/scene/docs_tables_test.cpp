@@ -29,6 +29,7 @@ TEST_CASE("the tables of keys in docs are those of the readers") {
   check_table("scenes.md", "sensor", sensor_fields());
   check_table("scenes.md", "reference", reference_fields());
   test::check_docs_table("scenes.md", "keys", "signal kinds", signal_kinds_table());
+  check_table("scenes.md", "align", align_fields());
   check_table("scenes.md", "tilt", tilt_fields());
   check_table("scenes.md", "fault", fault_fields());
   check_table("scenes.md", "simulation", simulation_fields());

@@ -230,6 +230,12 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("simulate: {rate_hz: 1, samples: 2}\n", "5:11: error E0735: simulate: a scene has");
   recorded("learning: [3, 3]\n", "5:11: error E0740: learning: expected 0 <= from < to");
   recorded("learning: [-1, 3]\n", "5:11: error E0740");
+  recorded("align: {learn: rest}\n",
+           "5:16: error E0748: align.learn: the scene has no such window");
+  recorded("align: {learn: [3, 1]}\n", "5:16: error E0740");
+  recorded("align: {terms: [phase]}\n", "5:16: error E0748: align.terms: phase is no term");
+  recorded("align: {by: reference}\n", "5:13: error E0748: align.by: the scene has no reference");
+  recorded("align: {interpolation: linear}\n", "5:24: error");
   recorded("learning: 3\n", "5:11: error E0541");
   recorded("evaluation: [1, 2, 3]\n", "5:13: error E0740");
   recorded("evaluation: [end, 2]\n", "5:14: error E0740");

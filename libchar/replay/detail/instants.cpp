@@ -47,11 +47,11 @@ class Instants::Columns {
         from_(from),
         to_(to),
         out_(out),
-        samples_(instants.sensors_, size),
+        samples_(instants.rows_, size),
         truth_(instants.info_.has_reference ? instants.inputs_ : 0, size) {
     if (instants.info_.averaged > 1) {
-      sums_.assign(instants.sensors_, 0);
-      counts_.assign(instants.sensors_, 0);
+      sums_.assign(instants.rows_, 0);
+      counts_.assign(instants.rows_, 0);
     }
   }
 
@@ -71,13 +71,22 @@ class Instants::Columns {
   }
 
  private:
-  double value(std::size_t sensor, double y) const {
+  // The reference's columns stand between the sensors and their further axes.
+  std::size_t column(std::size_t row) const {
+    const std::size_t n = instants_.sensors_;
+    return row < n ? row : row + instants_.source_.info().reference_units.size();
+  }
+
+  double value(std::size_t row, double y) const {
+    const std::size_t n = instants_.sensors_;
+    if (row >= n) return y * instants_.scene_->sensors[row % n].scale;
+    const std::size_t sensor = row;
     return (y * instants_.factors_[sensor]) - instants_.offsets_[sensor];
   }
 
   void put(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
-    for (std::size_t i = 0; i < instants_.sensors_; ++i)
-      samples_(static_cast<Eigen::Index>(i), filled_) = value(i, columns[i][k]);
+    for (std::size_t i = 0; i < instants_.rows_; ++i)
+      samples_(static_cast<Eigen::Index>(i), filled_) = value(i, columns[column(i)][k]);
     if (truth_.rows() > 0) {
       if (instants_.track_)
         truth_from_track(static_cast<double>(sample) / instants_.source_.info().rate_hz);
@@ -99,8 +108,8 @@ class Instants::Columns {
       interval_ = instant;
     }
     ++seen_;
-    for (std::size_t i = 0; i < instants_.sensors_; ++i)
-      if (const double y = columns[i][k]; std::isfinite(y)) {
+    for (std::size_t i = 0; i < instants_.rows_; ++i)
+      if (const double y = columns[column(i)][k]; std::isfinite(y)) {
         sums_[i] += value(i, y);
         ++counts_[i];
       }
@@ -108,7 +117,7 @@ class Instants::Columns {
 
   void close_interval() {
     if (seen_ > 0 && interval_ >= from_ && interval_ < to_) {
-      for (std::size_t i = 0; i < instants_.sensors_; ++i)
+      for (std::size_t i = 0; i < instants_.rows_; ++i)
         samples_(static_cast<Eigen::Index>(i), filled_) =
             2 * counts_[i] >= instants_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i])
                                                        : kMissing;
@@ -179,6 +188,7 @@ Instants::Instants(const Scene& scene, Progress& progress)
       factors_(scene.sensors.size(), 1.0),
       sensors_(scene.sensors.size()) {
   const SourceInfo& source = source_.info();
+  rows_ = sensors_ * (1 + source.further_axes);
   info_.rate_hz = source.rate_hz;
   info_.count = static_cast<std::int64_t>(source.samples);
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
@@ -265,6 +275,24 @@ void Instants::pass(std::int64_t from,
                     std::size_t size,
                     const InstantsBlock& block,
                     Progress& progress) const {
+  if (alignment_ != nullptr)
+    return pass_aligned(*this, *alignment_, from, to, size, block, progress);
+  if (rows_ == sensors_) return pass_recorded(from, to, size, block, progress);
+  pass_recorded(
+      from,
+      to,
+      size,
+      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        block(first, samples.topRows(static_cast<Eigen::Index>(sensors_)), truth);
+      },
+      progress);
+}
+
+void Instants::pass_recorded(std::int64_t from,
+                             std::int64_t to,
+                             std::size_t size,
+                             const InstantsBlock& block,
+                             Progress& progress) const {
   Columns columns(*this, from, to, std::max<std::size_t>(size, 1), block);
   const double end_s = info_.start_s + static_cast<double>(to) / info_.rate_hz;
   const auto until = std::min<std::uint64_t>(

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libchar/core/progress.hpp"
+#include "libchar/replay/detail/aligned_pass.hpp"
 #include "libchar/replay/detail/reference_track.hpp"
 #include "libchar/replay/detail/scene_source.hpp"
 
@@ -30,10 +31,6 @@ struct InstantsInfo {
       1;  ///< estimates and truth times this are in `input_units` (tilt: rad inside)
 };
 
-/// `first` instant of the block, n x m samples, r x m truth (no rows without a reference).
-using InstantsBlock = std::function<void(
-    std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth)>;
-
 class Instants {
  public:
   /// Throws Error(input) when the scene does not fit its files.
@@ -41,16 +38,25 @@ class Instants {
   const InstantsInfo& info() const { return info_; }
   const SceneSource& source() const { return source_; }
 
-  /// Instants [from, to) in blocks of `size` columns, the last one shorter.
+  /// Instants [from, to) in blocks of `size` columns, the last one shorter; aligned when there is an
+  /// alignment.
   void pass(std::int64_t from,
             std::int64_t to,
             std::size_t size,
             const InstantsBlock& block,
             Progress& progress) const;
+  /// The same as recorded; below the sensors the rows of their further axes, axis by axis.
+  void pass_recorded(std::int64_t from,
+                     std::int64_t to,
+                     std::size_t size,
+                     const InstantsBlock& block,
+                     Progress& progress) const;
   /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
   double factor(std::size_t sensor) const { return factors_[sensor]; }
   /// Subtracted from every sample of a sensor from now on.
   void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
+  /// What is taken out of the sensors from now on; it must live as long.
+  void set_alignment(const SceneAlignment* alignment) { alignment_ = alignment; }
   /// The truth of an instant is the reference so much earlier, from now on. Reads the reference
   /// into memory when it is not there yet.
   void set_lag(double lag_s, Progress& progress);
@@ -68,7 +74,8 @@ class Instants {
   InstantsInfo info_;
   std::vector<double> offsets_, factors_;  // a sensor each
   double truth_factor_ = 1, lag_s_ = 0;
-  std::size_t sensors_, inputs_;
+  std::size_t sensors_, inputs_, rows_ = 0;  // rows: with the further axes
+  const SceneAlignment* alignment_ = nullptr;
 };
 
 }  // namespace libchar

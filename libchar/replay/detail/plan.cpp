@@ -342,6 +342,10 @@ ReplayPlan make_plan(const Scene& scene,
   return plan;
 }
 
+Eigen::MatrixXd observations(const Scene& scene, std::size_t inputs) {
+  return observation_matrix(scene, inputs);
+}
+
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels) {
   fusion::Array part = array;
   if (channels.empty()) return part;

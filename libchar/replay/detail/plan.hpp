@@ -46,6 +46,9 @@ ReplayPlan make_plan(const Scene& scene,
                      const Instants& instants,
                      const SensorKnowledge& knowledge);
 
+/// H of a scene, a row a sensor; empty: one input, seen alike by all.
+Eigen::MatrixXd observations(const Scene& scene, std::size_t inputs);
+
 /// The same array with some of its channels only; `channels` empty: all of them.
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels);
 

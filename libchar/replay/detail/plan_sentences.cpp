@@ -78,6 +78,21 @@ std::string optimum(const ReplayPlan& plan) {
                            plan.array.section_starts.empty() ? "" : ", failed sensors left out");
 }
 
+std::string align(const SceneAlign& align) {
+  const std::string where =
+      align.window            ? fmt::format("from {} to {}",
+                                 seconds(align.window->from_s),
+                                 std::isfinite(align.window->to_s) ? seconds(align.window->to_s)
+                                                                              : std::string("the end"))
+      : align.learn == "run" ? "on the evaluation itself"
+      : align.learn == "rest" ? "at rest"
+                              : "in the learning window";
+  return fmt::format("alignment: learnt {}{}",
+                     where,
+                     align.apply ? ", taken out of the sensors before they are fused"
+                                 : "; reported only, the sensors are fused as recorded");
+}
+
 }  // namespace
 
 std::vector<std::string> sentences(const ReplayPlan& plan,
@@ -90,6 +105,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
                               seconds(scene.rest->from_s),
                               seconds(scene.rest->to_s)));
+  if (scene.align) out.push_back(align(*scene.align));
   if (scene.reference) out.push_back(learning(plan));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
                             plan.run_to - plan.run_from,

@@ -85,25 +85,10 @@ class SensorPath {
 }  // namespace
 
 SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene) {
-  for (const SceneSensor& sensor : scene.sensors) wanted_.push_back(sensor.channel);
-  if (scene.reference && !scene.reference->recording)
-    for (const std::string& channel : scene.reference->channels) wanted_.push_back(channel);
+  want_channels();
   known_faults_ = scene.faults;
   if (scene.simulate) {
-    simulation_ = *scene.simulate;
-    info_.rate_hz = simulation_.rate_hz;
-    info_.samples = simulation_.samples;
-    std::vector<std::string> names;
-    for (const SimulatedSensor& sensor : simulation_.sensors) {
-      names.push_back(sensor.name);
-      const SensorModel& m = sensor.model;
-      info_.units.push_back(m.sensitivity.unit.empty() ? m.unit : m.sensitivity.unit);
-    }
-    for (const std::string& truth : simulation_.truth_names) names.push_back(truth);
-    for (const std::string& name : wanted_) columns_.push_back(position(names, name));
-    for (std::size_t k = scene.sensors.size(); k < wanted_.size(); ++k)
-      info_.reference_units.push_back(
-          simulation_.truth.size() == 1 ? simulation_.sensors[0].model.unit : "");
+    describe_simulation();
   } else {
     if (scene.simulated)
       known_faults_.insert(
@@ -113,6 +98,42 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
     else
       scan(progress);
   }
+}
+
+void SceneSource::want_channels() {
+  for (const SceneSensor& sensor : scene_->sensors) wanted_.push_back(sensor.channel);
+  if (scene_->reference && !scene_->reference->recording)
+    for (const std::string& channel : scene_->reference->channels) wanted_.push_back(channel);
+  own_ = wanted_.size();
+  // Nobody but the alignment looks at them.
+  info_.further_axes = scene_->align ? scene_->sensors[0].cross.size() : 0;
+  for (std::size_t axis = 0; axis < info_.further_axes; ++axis)
+    for (const SceneSensor& sensor : scene_->sensors) wanted_.push_back(sensor.cross[axis]);
+}
+
+void SceneSource::describe_simulation() {
+  simulation_ = *scene_->simulate;
+  info_.rate_hz = simulation_.rate_hz;
+  info_.samples = simulation_.samples;
+  std::vector<std::string> names;
+  for (const SimulatedSensor& sensor : simulation_.sensors) {
+    names.push_back(sensor.name);
+    const SensorModel& m = sensor.model;
+    info_.units.push_back(m.sensitivity.unit.empty() ? m.unit : m.sensitivity.unit);
+  }
+  for (const std::string& truth : simulation_.truth_names) names.push_back(truth);
+  for (const std::string& name : wanted_) {
+    columns_.push_back(position(names, name));
+    if (columns_.back() == names.size())
+      refuse(*scene_,
+             "E0900",
+             "the simulation has no sensor and no truth signal of this name",
+             name,
+             "cross: names of sensors or truth signals");
+  }
+  for (std::size_t k = scene_->sensors.size(); k < own_; ++k)
+    info_.reference_units.push_back(
+        simulation_.truth.size() == 1 ? simulation_.sensors[0].model.unit : "");
 }
 
 void SceneSource::read_even(Progress& progress) {
@@ -125,7 +146,7 @@ void SceneSource::read_even(Progress& progress) {
   even_ = std::move(even.samples);
   info_.rate_hz = *scene_->resample_hz;
   info_.samples = even.log.samples;
-  for (std::size_t k = 0; k < wanted_.size(); ++k)
+  for (std::size_t k = 0; k < own_; ++k)
     for (const Channel& channel : even.log.channels)
       if (channel.name == wanted_[k])
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
@@ -168,6 +189,7 @@ void SceneSource::scan(Progress& progress) {
              near ? "did you mean " + *near + "?" : "inspect lists the channels");
     }
     columns_.push_back(column);
+    if (k >= own_) continue;
     if (k < scene_->sensors.size())
       info_.presence.push_back(column < attendance.channels.size() ? attendance.channels[column]
                                                                    : Presence{});

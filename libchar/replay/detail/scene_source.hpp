@@ -25,12 +25,14 @@ struct SourceInfo {
   std::uint64_t samples = 0;
   std::vector<std::string> units;            ///< of the sensors, as the channels say
   std::vector<std::string> reference_units;  ///< of the reference channels in this source
+  std::size_t further_axes = 0;              ///< that each sensor names beside its own
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
 };
 
 /// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
-/// stand in the same recording. Valid during the call.
+/// stand in the same recording, then axis by axis the further axes of all sensors (as recorded).
+/// Valid during the call.
 using SourceBlock =
     std::function<void(std::uint64_t first, std::span<const std::span<const double>>)>;
 
@@ -48,6 +50,8 @@ class SceneSource {
   const std::vector<SensorFault>& known_faults() const { return known_faults_; }
 
  private:
+  void want_channels();
+  void describe_simulation();
   void scan(Progress& progress);
   void read_even(Progress& progress);
   void stream_even(std::uint64_t until, const SourceBlock& block) const;
@@ -58,6 +62,7 @@ class SceneSource {
   ArraySimulation simulation_;
   ReadOptions reading_;
   std::vector<std::string> wanted_;        // channels of the recording, sensors first
+  std::size_t own_ = 0;                    // of `wanted_`: without the further axes
   std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
   std::vector<std::vector<double>> even_;  // a resampled recording, for each of `wanted_`
   SourceInfo info_;

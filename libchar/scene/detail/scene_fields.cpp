@@ -7,6 +7,8 @@
 namespace libchar {
 namespace {
 
+constexpr Word kInterpolations[] = {{"sinc", 0}, {"cubic", 1}};
+constexpr Word kTeachers[] = {{"reference", 0}, {"sensors", 1}};
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
 
 // Beside the value of a member: read and written by whoever knows the rest of the scene.
@@ -53,6 +55,11 @@ const Fields<Scene>& scene_fields() {
                        "[from, to]",
                        {.meaning = "the true inputs are zero there: each sensor's mean is "
                                    "subtracted, and its noise measured"}),
+      elsewhere<Scene>("align",
+                       "map",
+                       {.meaning = "delays, biases, gains and misalignments are learnt and taken "
+                                   "out before fusion (below)",
+                        .otherwise = "the sensors are fused as recorded"}),
       elsewhere<Scene>("fault_free_s",
                        "s",
                        {.meaning = "so long no sensor fails, from the start of the evaluation",
@@ -106,6 +113,11 @@ const Fields<SceneSensor>& sensor_fields() {
           "path, or the keys of a model",
           {.meaning = "a model file (`docs/models.md`), the keys of one, or `none`. A simulated "
                       "sensor needs it; `none` is a perfect one"}),
+      field<&SceneSensor::cross>(
+          "cross",
+          {.meaning =
+               "channels of the same device's other axes, for the alignment; the sensors name them "
+               "in one order"}),
       elsewhere<SceneSensor>("count",
                              "whole number",
                              {.meaning = "of a simulation: so many devices of one model, called "
@@ -130,6 +142,34 @@ const Fields<SceneReference>& reference_fields() {
           "lag_s",
           "s, or estimate",
           {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
+  };
+  return rows;
+}
+
+const Fields<SceneAlign>& align_fields() {
+  static const Fields<SceneAlign> rows = {
+      elsewhere<SceneAlign>("learn",
+                            "rest, learning, run, or [from, to]",
+                            {.meaning = "the stretch it is learnt on: a window of the scene, the "
+                                        "whole evaluation, or seconds from the first sample",
+                             .otherwise = "learning where the scene has one, else run"}),
+      field<&SceneAlign::terms>("terms",
+                                {.meaning = "of delay, bias, gain, misalignment",
+                                 .otherwise = "all; bias only without rest"}),
+      field<&SceneAlign::by>("by",
+                             {.words = kTeachers,
+                              .meaning = "who knows the truth: sensors takes their mean for it",
+                              .otherwise = "the reference, if there is one"}),
+      field<&SceneAlign::interpolation>(
+          "interpolation",
+          {.words = kInterpolations,
+           .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is faster "
+                      "than 0.12 of it, aliased vibration too",
+           .otherwise = "sinc"}),
+      field<&SceneAlign::apply>("apply",
+                                {.meaning = "false: the error budget is reported, and the sensors "
+                                            "are fused as recorded",
+                                 .otherwise = "true"}),
   };
   return rows;
 }

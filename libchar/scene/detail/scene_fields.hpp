@@ -19,6 +19,9 @@ const Fields<SceneSensor>& sensor_fields();
 /// The block `reference`, when it is a map.
 const Fields<SceneReference>& reference_fields();
 
+/// The block `align`.
+const Fields<SceneAlign>& align_fields();
+
 /// A fault as a file has it: the sensor by name, the end open.
 struct FaultText {
   std::string sensor;

@@ -3,7 +3,12 @@
 #include "libchar/scene/detail/scene_times.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
@@ -28,6 +33,56 @@ std::optional<TimeWindow> window_of(const MapReader& top, const char* key) {
   if (window.from_s < 0 || !(window.from_s < window.to_s))
     refuse_scene("E0740", top, key, "expected 0 <= from < to");
   return window;
+}
+
+void check_align_terms(const MapReader& at, const SceneAlign& align) {
+  for (const std::string& term : align.terms)
+    if (std::find(std::begin(kAlignTerms), std::end(kAlignTerms), term) == std::end(kAlignTerms))
+      refuse_scene("E0748",
+                   at,
+                   "terms",
+                   fmt::format("{} is no term of an alignment", printable(term, 40)),
+                   fmt::format("there are {}", fmt::join(kAlignTerms, ", ")));
+}
+
+SceneAlign align_of(const MapReader& top, const Scene& scene) {
+  const MapReader at = top.map("align", keys_of(align_fields()));
+  SceneAlign align;
+  read_fields(align_fields(), at, align);
+  check_align_terms(at, align);
+  if (!at.has("learn")) {
+    align.learn = scene.learning ? "learning" : "run";
+  } else if (at.require("learn").kind == Document::Kind::list) {
+    align.window = window_of(at, "learn");
+  } else {
+    align.learn = at.word("learn", {"rest", "learning", "run"});
+    if ((align.learn == "rest" && !scene.rest) || (align.learn == "learning" && !scene.learning))
+      refuse_scene("E0748",
+                   at,
+                   "learn",
+                   "the scene has no such window",
+                   "learn: [from, to], or the window's own key");
+  }
+  if (align.by == "reference" && !scene.reference)
+    refuse_scene("E0748", at, "by", "the scene has no reference", "by: sensors");
+  if (scene.tilt)
+    refuse_scene("E0748", top, "align", "the sensors of a tilt measure different quantities");
+  return align;
+}
+
+// Either every sensor names as many other axes, or none does.
+void check_cross(const MapReader& top, const SensorIndex& index, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    if (scene.sensors[i].cross.size() != scene.sensors[0].cross.size())
+      refuse_scene_value("E0748",
+                         top,
+                         *index.places[i].node,
+                         index.places[i].path,
+                         fmt::format("sensor {} names {} other axes, and the first one {}",
+                                     printable(scene.sensors[i].name, 40),
+                                     scene.sensors[i].cross.size(),
+                                     scene.sensors[0].cross.size()),
+                         "cross: the same axes of each device, in one order");
 }
 
 SensorFault fault_of(const MapReader& at, const Scene& scene, const SensorIndex& index) {
@@ -85,6 +140,8 @@ void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& sce
   scene.fault_free_s = top.maybe_number("fault_free_s", kPositive);
   scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
   scene.faults = faults_of(top, scene, index);
+  check_cross(top, index, scene);
+  if (top.has("align")) scene.align = align_of(top, scene);
   if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
 }
 
