@@ -145,6 +145,25 @@ TEST_CASE("repetitions: stuck, held, still and at the end of the range") {
             2000) == State::saturated);
 }
 
+TEST_CASE("repetitions: a sensor that follows in coarse steps, some time behind, is not stuck") {
+  test::Gaussian gauss(4);
+  RepeatWatch watch(1, 20);
+  double held = 0;
+  int early = 0, late = 0, instants = 0;
+  for (int k = 0; k < 60000; ++k) {
+    const double x = 5 * std::sin(.003 * k);
+    if (std::abs(x - held) > .4 + .6 * gauss.uniform()) held = std::round(10 * x) / 10;
+    watch.take_in(0, held, x, .1);
+    const bool stuck = watch.state(0) == RepeatWatch::State::stuck;
+    (k < 6000 ? early : late) += stuck;
+  }
+  CAPTURE(early);
+  CHECK(late == 0);
+  for (; watch.state(0) == RepeatWatch::State::moving && instants < 3000; ++instants)
+    watch.take_in(0, held, 5 * std::sin(.003 * instants), .1);
+  CHECK(instants < 3000);  // and one that stays where it is, is
+}
+
 TEST_CASE("minque: sound sensors that differ by gain, delay and drift are no faults") {
   for (const Differences& d : {Differences{}, Differences{.01, .5, 0}, Differences{.01, .5, 3e-4}})
     for (const std::uint64_t seed : {11U, 12U}) {

@@ -10,6 +10,9 @@
 // its samples (20 Hz in a log of 200 Hz) is not stuck. At the end of the range the others need not
 // move (they may stand there too): the sensor came there by a step of m and repeats its extreme, P = q / m.
 //
+// Nor is one stuck before it has repeated three times as often in a row as it ever did and went on: what a healthy sensor of coarse steps
+// and slow response does, it has done before.
+//
 // A range once known is known: the sensor is saturated whenever it says that value.
 
 #include <algorithm>
@@ -32,9 +35,14 @@ class RepeatWatch {
     Sensor& s = all_[i];
     const State before = s.state;
     if (y == last_[i]) {
+      s.run += 1;
       repeated(s, y, x, deviation);
       return s.state != State::moving;
     }
+    // A run that was taken for a fault says less: it may have been one.
+    const double most = std::max(2 * s.longest, kFirstRun);
+    s.longest = std::max(s.longest, s.state == State::stuck ? std::min(s.run, most) : s.run);
+    s.run = 0;
     const double by = std::abs(y - last_[i]);
     if (last_[i] != kNone) {
       s.step = by < s.step ? by : s.step;
@@ -63,6 +71,7 @@ class RepeatWatch {
   static constexpr double kManySteps = 64;
   static constexpr double kChangeMemory = 1000;
   static constexpr double kSmallestChance = 1e-6;
+  static constexpr double kTimesLongest = 3, kFirstRun = 4;
 
   struct Sensor {
     double x_there = 0;      // the input when the value came that repeats
@@ -74,6 +83,7 @@ class RepeatWatch {
     double evidence = 0, end_evidence = 0;
     double unexpected = 0.5, chances = 1;
     double far_held = 0.5, far_moves = 1;  // repetitions after a step of many steps
+    double run = 0, longest = 0;           // repetitions in a row: now, and at most so far
     bool was_unexpected = false, counted = false;
     bool ends = false;  // an end of its range is known
     State state = State::moving;
@@ -113,7 +123,7 @@ class RepeatWatch {
       (y >= s.high ? s.high_end : s.low_end) = y;
       s.ends = true;
       s.state = State::saturated;
-    } else if (s.evidence > threshold_) {
+    } else if (s.evidence > threshold_ && s.run > kTimesLongest * s.longest) {
       s.state = State::stuck;
     }
   }
