@@ -107,22 +107,22 @@ TEST_CASE("isolation: the largest consistent set, or none") {
 }
 
 TEST_CASE("repetitions: stuck, held, still and at the end of the range") {
-  using State = RepeatWatch::State;
+  using Doing = RepeatWatch::State;
   test::Gaussian gauss(3);
   const auto state = [&](const std::function<double(int, double)>& how, int instants) {
     RepeatWatch watch(1, 20);
-    State last = State::moving;
+    Doing last = Doing::moving;
     double held = 0;
     for (int k = 0; k < instants; ++k) {
       const double x = 5 * std::sin(.03 * k);
       held = how(k, x);
       watch.take_in(0, held, x, .1);
       last = watch.state(0);
-      if (last != State::moving) break;
+      if (last != Doing::moving) break;
     }
     return last;
   };
-  CHECK(state([&](int, double x) { return x + .1 * gauss(); }, 20000) == State::moving);
+  CHECK(state([&](int, double x) { return x + .1 * gauss(); }, 20000) == Doing::moving);
   double last = 0;
   const auto hold_from = [&](int from) {
     return [&, from](int k, double x) {
@@ -130,19 +130,19 @@ TEST_CASE("repetitions: stuck, held, still and at the end of the range") {
       return last;
     };
   };
-  CHECK(state(hold_from(1000), 1010) == State::stuck);
+  CHECK(state(hold_from(1000), 1010) == Doing::stuck);
   // Every tenth sample of its own, held.
   CHECK(state([&](int k, double x) { return k % 10 == 0 ? last = x + .1 * gauss() : last; },
-              5000) == State::moving);
+              5000) == Doing::moving);
   // Steps of 2: much the same value again and again, and rightly so.
   CHECK(state([&](int, double x) { return 2 * std::round((x + .1 * gauss()) / 2); }, 20000) ==
-        State::moving);
+        Doing::moving);
   CHECK(state(
             [&](int k, double x) {
               const double y = x + .1 * gauss();
               return k < 1000 ? y / 2 : std::min(y, 4.5);
             },
-            2000) == State::saturated);
+            2000) == Doing::saturated);
 }
 
 TEST_CASE("repetitions: a sensor that follows in coarse steps, some time behind, is not stuck") {
