@@ -5,6 +5,7 @@
 #include "libchar/replay/error_meter.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
 
@@ -89,6 +90,8 @@ void centre(const ErrorMeter& meter, const ScoreOptions& options, std::vector<do
 
 /// Beyond this slope the slow part grows with time; flicker is at 0 +- 0.25 in 95 % of records.
 constexpr double kWalks = 0.25;
+/// Between the slopes of an error whose correlation ends (-1) and of flicker (0).
+constexpr double kNeverEnds = -0.5;
 
 void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorScore& out) {
   const std::vector<ErrorCell> cells = meter.cells();
@@ -101,8 +104,9 @@ void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorSc
   out.stationary = !(spread.long_memory && slope > kWalks);
   if (!out.stationary) return;
   // The square of the record's own mean is one draw, with one degree of freedom, of what others have: no batch of it shows that.
-  const double offset =
-      bias.long_memory ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse) : 0;
+  const double offset = bias.long_memory && slope > kNeverEnds
+                            ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse)
+                            : 0;
   const double reach = std::hypot(spread.reach95, offset);
   out.rmse_ci95 = {out.rmse * std::exp(-reach), out.rmse * std::exp(reach)};
   if (!(bias.long_memory && slope > kWalks))
@@ -184,6 +188,30 @@ GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options) {
   centre(*meters[0], options, z);
   const double reach = mean_uncertainty(z).reach95;
   return {rms_of_all, {rms_of_all * std::exp(-reach), rms_of_all * std::exp(reach)}};
+}
+
+double larger_throughout(const Meters& a, const Meters& b) {
+  constexpr std::size_t kStretches = 16;
+  if (a.empty() || b.empty()) return 1;
+  const auto of_stretch = [](const Meters& meters, std::size_t k) {
+    double sum = 0;
+    for (const ErrorMeter* meter : meters) {
+      const std::vector<ErrorCell> cells = meter->cells();
+      const auto from = static_cast<std::ptrdiff_t>(k * cells.size() / kStretches),
+                 to = static_cast<std::ptrdiff_t>((k + 1) * cells.size() / kStretches);
+      sum += std::log(rms(total({cells.begin() + from, cells.begin() + to})));
+    }
+    return sum / static_cast<double>(meters.size());
+  };
+  int larger = 0, unlike = 0;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const double difference = of_stretch(a, k) - of_stretch(b, k);
+    larger += difference > 0;
+    unlike += difference > 0 || difference < 0;
+  }
+  if (larger == 0) return 1;
+  const boost::math::binomial chance(unlike, 0.5);
+  return boost::math::cdf(boost::math::complement(chance, larger - 1));
 }
 
 Interval rms_ratio_interval(const Meters& a,

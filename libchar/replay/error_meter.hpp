@@ -78,4 +78,8 @@ Interval rms_ratio_interval(const Meters& a,
                             const ScoreOptions& options = {},
                             double level = 0.05);
 
+/// Sign test: how probable it is by chance that a's errors are the larger ones in so many of sixteen equal stretches of the record. It
+/// says something where a few huge errors hide every difference from the ratio of root mean squares. 1: nothing to compare.
+double larger_throughout(const Meters& a, const Meters& b);
+
 }  // namespace libchar

@@ -448,7 +448,8 @@ void Replay::refuse_sizes() const {
 
 ReplayResult Replay::collect() {
   ScoreOptions scoring;
-  scoring.sections = plan_.array.section_starts;
+  for (const std::int64_t start : plan_.array.section_starts)
+    scoring.sections.push_back(start - plan_.warm_up);  // scores begin behind it
   if (instants_.info().has_reference && truths_ == 0)
     throw Error({ErrorKind::input,
                  "E0902",

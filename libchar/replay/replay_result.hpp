@@ -48,6 +48,9 @@ struct InputScore {
   Timeline window_rms;       ///< one series: RMS of the error in a window centred on each bin [RV]
 };
 
+/// A difference between errors that is not worth a choice.
+inline constexpr double kPracticalTolerance = 0.01;
+
 /// Scores that need no reference, named as such: errors that all sensors share are not seen.
 struct BlindScore {
   double leave_one_out_rms = 0;  ///< RMS over all sensors of (fused from the others) - (the sensor)

@@ -127,10 +127,9 @@ std::string bounds_sentence(const ReplayResult& r) {
                    ".";
 }
 
-// Whether the array is worth more than its best sensor. Below one per cent nothing is worth a sentence.
+// Whether the array is worth more than its best sensor.
 std::string sensor_sentence(const ReplayResult& r) {
   if (!r.best_sensor || !r.best_over_sensor) return "";
-  constexpr double kTolerance = 0.01;
   const SensorResult& sensor = r.sensors[*r.best_sensor];
   const AlgorithmResult& best = r.algorithms[*r.best];
   const double ratio = best.rmse / sensor.error.rmse;
@@ -139,14 +138,14 @@ std::string sensor_sentence(const ReplayResult& r) {
                                         sensor.name,
                                         error_text(sensor.error.rmse, r.inputs[0].unit));
   const auto percent = [](double x) { return significant(100 * std::abs(x), 2); };
-  if (ratio > 1 + kTolerance && interval.low > 1)
+  if (ratio > 1 + kPracticalTolerance && interval.low > 1)
     return fmt::format(
         "Fusion does not pay here: the error of {} is {} % larger than that of {}: use that sensor "
         "alone.",
         best.label,
         percent(ratio - 1),
         alone);
-  if (ratio < 1 - kTolerance && interval.high < 1)
+  if (ratio < 1 - kPracticalTolerance && interval.high < 1)
     return fmt::format("Fusion pays: its error is {} % (95 %: {} to {} %) below that of {}.",
                        percent(1 - ratio),
                        percent(1 - interval.high),
@@ -166,10 +165,8 @@ std::string offsets_sentence(const ReplayResult& r) {
     if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
   return fmt::format(
       "No method is recommended: {} % of the differences between the sensors (mean squares) are in "
-      "their "
-      "means, and offsets would decide. Give the scene a stretch at rest, a reference, or sensors "
-      "without "
-      "offsets.",
+      "their means, and offsets would decide. Give the scene a stretch at rest, a reference, or "
+      "sensors without offsets.",
       significant(100 * share, 3));
 }
 

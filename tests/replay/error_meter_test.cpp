@@ -145,6 +145,28 @@ TEST_CASE("scores: a difference is resolved when there is one") {
   CHECK(apart.high > 1);
 }
 
+TEST_CASE("scores: a spike hides the ratio of errors, and not that one is larger throughout") {
+  auto e = errors(20000, 0.5, 1);
+  std::vector<double> worse = e;
+  for (double& v : worse) v *= 1.3;
+  e[700] = 1e9;
+  worse[700] = 1.001e9;
+  const ErrorMeter bad = metered(worse), good = metered(e), same = metered(errors(20000, 0.5, 2));
+  CHECK(rms_ratio_interval({&bad}, {&good}).low < 1.01);
+  CHECK(larger_throughout({&bad}, {&good}) < 1e-4);
+  CHECK(larger_throughout({&good}, {&bad}) == 1);
+  CHECK(larger_throughout({&good}, {&good}) == 1);
+  // Equal by nature: no more often than it says.
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const ErrorMeter a = metered(errors(4000, 0.5, seed)),
+                     b = metered(errors(4000, 0.5, 1000 + seed));
+    alarms += larger_throughout({&a}, {&b}) < 0.01;
+  }
+  CHECK(alarms <= 6);
+  CHECK(larger_throughout({}, {&same}) == 1);
+}
+
 TEST_CASE("scores: convergence is the end of the transient") {
   auto e = errors(40000, 0, 1);
   for (std::size_t i = 0; i < 8000; ++i) e[i] *= 5;

@@ -155,6 +155,17 @@ TEST_CASE("replay: faults that the scene knows are answered") {
   CHECK(named(result, "mean").weight_track.empty());
 }
 
+TEST_CASE("replay: intervals know when sensors fail, behind a warm-up too") {
+  const test::SceneBench bench;
+  const std::string fault =
+      "faults:\n  - {sensor: g1, kind: scale, value: 0, from_s: 50}\nalgorithms: [mean]\n";
+  for (const char* warm_up : {"", "warm_up_s: 20\n"}) {
+    const ReplayResult result = replay(bench.read(array_scene(10000, fault + warm_up)));
+    const AlgorithmResult& mean = named(result, "mean");
+    CHECK(mean.rmse_ci95.high / mean.rmse_ci95.low < 1.2);
+  }
+}
+
 TEST_CASE("replay: no reference, leave-one-out and split arrays of equal sensors") {
   const test::SceneBench bench;
   std::string log = "t[s],a,b,c,d,e,f\n";

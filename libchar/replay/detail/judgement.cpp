@@ -116,8 +116,6 @@ void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result) {
 
 namespace {
 
-/// A difference that is not worth a choice.
-constexpr double kTolerance = 0.01;
 /// Of a mean square difference from the others, in the means: beyond it nothing else is compared.
 constexpr double kMostOffsets = 0.9;
 
@@ -151,15 +149,17 @@ void judge_best(ReplayResult& result,
   // As many chances to look worse as there are others (Bonferroni).
   double others = 0;
   for (std::size_t k = 0; k < meters.size(); ++k) others += k != best && !meters[k].empty();
+  const double level = 0.05 / others;
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     AlgorithmResult& a = result.algorithms[k];
     if (k == best || meters[k].empty() || !std::isfinite(a.rmse)) continue;
     a.ratio_to_best = rms_ratio_interval(meters[k], meters[best], scoring);
-    const Interval corrected = rms_ratio_interval(meters[k], meters[best], scoring, 0.05 / others);
+    const Interval corrected = rms_ratio_interval(meters[k], meters[best], scoring, level);
     const double smallest = result.algorithms[best].rmse;
     // Equal errors, zero among them, have no ratio to speak of.
-    a.as_good_as_best =
-        a.rmse <= (1 + kTolerance) * smallest || (corrected.low <= 1 && corrected.high >= 1);
+    const bool resolved =
+        !(corrected.low <= 1) || larger_throughout(meters[k], meters[best]) < level;
+    a.as_good_as_best = a.rmse <= (1 + kPracticalTolerance) * smallest || !resolved;
   }
 }
 
