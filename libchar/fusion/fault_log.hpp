@@ -26,7 +26,7 @@ constexpr std::string_view name(FaultRule rule) {
 }
 
 /// A stretch in which the faults could not be told: two sets of channels contradict each other and
-/// either may be the sound one, or most channels are off at once.
+/// either may be the healthy one, or most channels are off at once.
 struct FaultDoubt {
   std::int64_t sample = 0;  ///< where it was seen
   bool ambiguous = false;   ///< two sets explain it alike; false: no set is consistent
@@ -38,7 +38,7 @@ struct FaultEvent {
   std::int64_t sample = 0;  ///< instant of the run, 0 = first
   int channel = 0;
   bool faulty =
-      false;  ///< true: faulty from here on (taken out, noise: re-weighted); false: sound again
+      false;  ///< true: faulty from here on (taken out, noise: re-weighted); false: healthy again
   FaultRule rule = FaultRule::variance;
 };
 

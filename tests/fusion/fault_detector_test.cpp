@@ -164,7 +164,7 @@ TEST_CASE("repetitions: a sensor that follows in coarse steps, some time behind,
   CHECK(instants < 3000);  // and one that stays where it is, is
 }
 
-TEST_CASE("minque: sound sensors that differ by gain, delay and drift are no faults") {
+TEST_CASE("minque: healthy sensors that differ by gain, delay and drift are no faults") {
   for (const Differences& d : {Differences{}, Differences{.01, .5, 0}, Differences{.01, .5, 3e-4}})
     for (const std::uint64_t seed : {11U, 12U}) {
       const Gyroscopes g = gyroscopes(150000, seed, d);

@@ -113,7 +113,7 @@ TEST_CASE("shrunk least squares: independent errors are shrunk, correlated ones 
   CHECK(estimated_shrinkage(together, 300) < 0.01);
 }
 
-TEST_CASE("shy least squares: a short window makes no extreme weights") {
+TEST_CASE("regularized least squares: a short window makes no extreme weights") {
   // Errors share a drift; 12 instants to learn 6 weights from. Averaged over windows, free weights do
   // worse on a new record than shrunk or non-negative ones.
   test::Gaussian gauss(10);

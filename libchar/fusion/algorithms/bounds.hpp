@@ -31,7 +31,7 @@ struct BestSensor {
   std::vector<int> order_;  // best first
 };
 
-struct OptimalWeights {
+struct OptimalWeights : ReferenceWeightedMean {
   static constexpr Description description{
       .name = "optimal-weights",
       .title = "Optimal fixed weights (bound)",
@@ -42,17 +42,8 @@ struct OptimalWeights {
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
   OptimalWeights(const Array& array, const Settings& settings)
-      : form_{settings["calibrate"] != 0, true, false}, learner_(array.channels) {}
-  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
-  void finish_learning() { mean_.take(learner_.weights(form_)); }
-  Estimate step(const Sample& y) const { return mean_.step(y); }
-  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
-
- private:
-  LeastSquaresForm form_;
-  WeightLearner learner_;
-  LearntMean mean_;
+      : ReferenceWeightedMean(
+            {settings["calibrate"] != 0, true, false}, array.channels, description.name) {}
 };
 
 /// Learns on instants 0, 1, … of the run and runs on the same: the k-th instant learnt or skipped

@@ -145,11 +145,11 @@ void WeightLearner::solve(const LeastSquaresForm& form,
 }
 
 /// Sum one, from the errors alone: shrunk towards independent errors, or without negative weights.
-void WeightLearner::solve_shy(const LeastSquaresForm& form,
-                              const Eigen::MatrixXd& error,
-                              const std::vector<Eigen::Index>& used,
-                              const Eigen::VectorXd& lengths,
-                              LearntWeights& learnt) const {
+void WeightLearner::solve_regularized(const LeastSquaresForm& form,
+                                      const Eigen::MatrixXd& error,
+                                      const std::vector<Eigen::Index>& used,
+                                      const Eigen::VectorXd& lengths,
+                                      LearntWeights& learnt) const {
   if (form.non_negative) {
     learnt.weights(used) = non_negative_weights(error);
   } else {
@@ -181,7 +181,7 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
   const Eigen::MatrixXd own = error(Eigen::all, used);
   const Eigen::VectorXd lengths = column_lengths(upper, learnt)(used);
   if (form.non_negative || form.shrinkage != 0)
-    solve_shy(form, own, used, lengths, learnt);
+    solve_regularized(form, own, used, lengths, learnt);
   else
     solve(form, {own, upper.col(0), truth}, used, lengths, learnt);
   // One channel twice: the shortest weights are equal ones.

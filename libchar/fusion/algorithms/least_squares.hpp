@@ -69,11 +69,11 @@ class WeightLearner {
              const std::vector<Eigen::Index>& used,
              const Eigen::VectorXd& lengths,
              LearntWeights& learnt) const;
-  void solve_shy(const LeastSquaresForm& form,
-                 const Eigen::MatrixXd& error,
-                 const std::vector<Eigen::Index>& used,
-                 const Eigen::VectorXd& lengths,
-                 LearntWeights& learnt) const;
+  void solve_regularized(const LeastSquaresForm& form,
+                         const Eigen::MatrixXd& error,
+                         const std::vector<Eigen::Index>& used,
+                         const Eigen::VectorXd& lengths,
+                         LearntWeights& learnt) const;
   Eigen::Index n_;
   double origin_ = 0;  // of the reference: its first value
   Triangle triangle_;
@@ -94,8 +94,27 @@ class LearntMean {
   double total_ = 0, constant_ = 0;
 };
 
+/// Weights of one form, learnt in the learning window and used as they are: what the algorithms below have in common.
+class ReferenceWeightedMean {
+ public:
+  /// name: of the algorithm, in its remarks.
+  ReferenceWeightedMean(const LeastSquaresForm& form, Eigen::Index channels, std::string_view name)
+      : form_(form), learner_(channels), name_(name) {}
+  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
+  void finish_learning() { mean_.take(learner_.weights(form_)); }
+  Estimate step(const Sample& y) const { return mean_.step(y); }
+  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
+  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), name_, warnings); }
+
+ private:
+  LeastSquaresForm form_;
+  WeightLearner learner_;
+  LearntMean mean_;
+  std::string_view name_;
+};
+
 template <bool kPublished>
-struct LeastSquaresOf {
+struct LeastSquaresOf : ReferenceWeightedMean {
   static constexpr Needs kNeeds{
       .min_channels = 1, .learning_samples = 2, .reference = true, .accepts_missing = true};
   static constexpr Description description =
@@ -122,18 +141,9 @@ struct LeastSquaresOf {
              true}};
 
   LeastSquaresOf(const Array& array, const Settings& settings)
-      : form_{settings["calibrate"] != 0, !kPublished, settings["constant"] != 0},
-        learner_(array.channels) {}
-  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
-  void finish_learning() { mean_.take(learner_.weights(form_)); }
-  Estimate step(const Sample& y) const { return mean_.step(y); }
-  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
-
- private:
-  LeastSquaresForm form_;
-  WeightLearner learner_;
-  LearntMean mean_;
+      : ReferenceWeightedMean({settings["calibrate"] != 0, !kPublished, settings["constant"] != 0},
+                              array.channels,
+                              description.name) {}
 };
 
 using LeastSquares = LeastSquaresOf<false>;
@@ -141,7 +151,7 @@ using LeastSquaresPublished = LeastSquaresOf<true>;
 
 /// Weights that a short or drifting learning window cannot drive to extremes.
 template <bool kNonNegative>
-struct ShyLeastSquares {
+struct RegularizedLeastSquares : ReferenceWeightedMean {
   static constexpr Needs kNeeds{
       .min_channels = 2, .learning_samples = 2, .reference = true, .accepts_missing = true};
   static constexpr Description description =
@@ -173,24 +183,18 @@ struct ShyLeastSquares {
       return std::array{kCalibrate, kShrinkage};
   }();
 
-  ShyLeastSquares(const Array& array, const Settings& settings)
-      : form_{.calibrate = settings["calibrate"] != 0, .non_negative = kNonNegative},
-        learner_(array.channels) {
-    if constexpr (!kNonNegative) form_.shrinkage = settings["shrinkage"];
-  }
-  void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
-  void finish_learning() { mean_.take(learner_.weights(form_)); }
-  Estimate step(const Sample& y) const { return mean_.step(y); }
-  Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), description.name, warnings); }
+  RegularizedLeastSquares(const Array& array, const Settings& settings)
+      : ReferenceWeightedMean(form(settings), array.channels, description.name) {}
 
  private:
-  LeastSquaresForm form_;
-  WeightLearner learner_;
-  LearntMean mean_;
+  static LeastSquaresForm form(const Settings& settings) {
+    LeastSquaresForm out{.calibrate = settings["calibrate"] != 0, .non_negative = kNonNegative};
+    if constexpr (!kNonNegative) out.shrinkage = settings["shrinkage"];
+    return out;
+  }
 };
 
-using ShrunkLeastSquares = ShyLeastSquares<false>;
-using NonNegativeLeastSquares = ShyLeastSquares<true>;
+using ShrunkLeastSquares = RegularizedLeastSquares<false>;
+using NonNegativeLeastSquares = RegularizedLeastSquares<true>;
 
 }  // namespace libchar::fusion

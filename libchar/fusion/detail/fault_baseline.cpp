@@ -8,7 +8,7 @@
 namespace libchar::fusion {
 namespace {
 
-/// Beyond it a residual teaches nothing, and its square proves nothing more.
+/// Beyond it a residual is not learnt from, and its square proves nothing more.
 constexpr double kClip = 6, kMostDeviations = 1e6;
 constexpr double kMostRecent = 1e6;
 /// Long-run variance ratio that nothing is known of, and blocks that it is worth.
@@ -72,9 +72,10 @@ struct Standardised {
   double *out_z, *out_present, *out_uz, *out_uu, *out_zz;
 };
 struct Expected {
-  const double *e, *s, *young, *bias_var, *gain_var, *delay_var, *x, *dx, *here, *armed, *unit_x;
+  const double *e, *s, *start_margin, *bias_var, *gain_var, *delay_var, *x, *dx, *here, *armed,
+      *unit_x;
   const double *scale_bias, *scale_gain, *scale_noise;
-  double calm;  // 1 / excess
+  double inverse_excess;
 };
 
 LIBCHAR_WIDE_LANES void standardise_all(const Expected& in,
@@ -85,7 +86,7 @@ LIBCHAR_WIDE_LANES void standardise_all(const Expected& in,
   double* __restrict const root = out.root;
   const double* __restrict const e = in.e;
   const double* __restrict const s = in.s;
-  const double* __restrict const young = in.young;
+  const double* __restrict const start_margin = in.start_margin;
   const double* __restrict const b = in.bias_var;
   const double* __restrict const g = in.gain_var;
   const double* __restrict const d = in.delay_var;
@@ -93,7 +94,8 @@ LIBCHAR_WIDE_LANES void standardise_all(const Expected& in,
   const double* __restrict const dx = in.dx;
   const double* __restrict const here = in.here;
   for (std::size_t i = 0; i < n; ++i) {
-    const double variance = s[i] * young[i] + b[i] + g[i] * (x[i] * x[i]) + d[i] * (dx[i] * dx[i]);
+    const double variance =
+        s[i] * start_margin[i] + b[i] + g[i] * (x[i] * x[i]) + d[i] * (dx[i] * dx[i]);
     const double one_over = std::sqrt(1 / variance);
     const double standard = here[i] * e[i] * one_over;
     const double low = standard < -kMostDeviations ? -kMostDeviations : standard;
@@ -119,14 +121,14 @@ LIBCHAR_WIDE_LANES void evidence_all(const Expected& in,
   double* __restrict const uz = out.out_uz;
   double* __restrict const uu = out.out_uu;
   double* __restrict const zz = out.out_zz;
-  const double calm = in.calm, root = std::sqrt(calm);
+  const double inverse_excess = in.inverse_excess, root = std::sqrt(inverse_excess);
   for (std::size_t i = 0; i < n; ++i) {
     const double now = here[i] * armed[i], u = x[i] * unit_x[i] * now;
     out_z[i] = now * z[i] * scale_bias[i] * root;
     present[i] = now;
     uz[i] = u * z[i] * scale_gain[i] * root;
     uu[i] = u * u;
-    zz[i] = now * ((z[i] * z[i] * calm - 1) * scale_noise[i] + 1);
+    zz[i] = now * ((z[i] * z[i] * inverse_excess - 1) * scale_noise[i] + 1);
   }
 }
 
@@ -216,7 +218,7 @@ FaultBaseline::FaultBaseline(std::size_t sensors) : n(sensors), padded(CusumBank
   for (std::vector<double>* v : {&bias_var,
                                  &s,
                                  &root,
-                                 &young,
+                                 &start_margin,
                                  &recent,
                                  &long_bias,
                                  &long_gain,
@@ -255,7 +257,7 @@ void FaultBaseline::predict() {
 void FaultBaseline::standardise(CusumSample& sample) {
   const Expected in{e.data(),
                     s.data(),
-                    young.data(),
+                    start_margin.data(),
                     bias_var.data(),
                     gain_var.data(),
                     delay_var.data(),
@@ -326,7 +328,7 @@ void FaultBaseline::renew(double count_memory) {
     delay_floor[i] = least(square_dx[i], kPriorDelay);
     // Where the input stands still there is nothing that a gain could show.
     unit_x[i] = 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
-    young[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
+    start_margin[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
   }
 }
 

@@ -44,7 +44,7 @@ struct FaultBaseline {
   std::vector<double> e, s, root, z;  ///< residual and its variance, 1 / sqrt(S), e / sqrt(S)
   std::vector<double> count;          ///< of own samples
   std::vector<double> unit_x;         ///< 1 / deviation of x
-  std::vector<double> young;          ///< variances are taken for so many times larger
+  std::vector<double> start_margin;   ///< variances are taken for so many times larger
   std::vector<double> long_bias, long_gain, long_noise;      ///< long-run variance ratios
   std::vector<double> scale_bias, scale_gain, scale_noise;   ///< 1 / sqrt of those believed
   std::vector<double> sum_z, sum_xz, sum_xx, sum_zz, sum_n;  ///< of the block
@@ -65,7 +65,7 @@ struct FaultBaseline {
   void learn();
   /// `excess` from the m sensors in use; scratch has room for them.
   void find_excess(const int* index, int m, std::vector<double>& scratch);
-  /// What changes slowly: floors, units, how young the variances are.
+  /// What changes slowly: floors, units, by how much variances at the start are widened.
   void renew(double count_memory);
   /// The end of a block: long-run variances. `trusted`: the record begins without faults.
   void end_block(bool trusted, const std::vector<double>& tops, double frozen);

@@ -294,9 +294,9 @@ void FaultDetector::follow_out(Variances& variances, const double* y) {
     const double sample =
         y[i] - (base_.bias[i] + base_.gain[i] * x + base_.delay[i] * out_step_[i]);
     const double e = variances.innovation(i, sample);
-    const double s =
-        std::max(variances.innovation_variance(i) * base_.young[i] + base_.gain_var[i] * x * x,
-                 kRoundingErrors * variances.rounding());
+    const double s = std::max(
+        variances.innovation_variance(i) * base_.start_margin[i] + base_.gain_var[i] * x * x,
+        kRoundingErrors * variances.rounding());
     if (!recovery_[i].add(e, s, x)) continue;
     const RecoveryWindow& window = recovery_[i];
     if (window.all_fit(base_.scale_bias[i], base_.scale_gain[i], base_.scale_noise[i])) {

@@ -95,11 +95,11 @@ class FaultDetector {
   int change_point(std::size_t i) const;
   void gather_evidence(int window);
   void judge_noise(int window);
-  void condemn(std::size_t i);
+  void declare_faulty(std::size_t i);
   void noise_fault(std::size_t i, int window);
   bool is_dead(std::size_t i, int window) const;
   FaultRule kind(std::size_t i, int window) const;
-  int least_sound(FaultRule rule) const;
+  int least_healthy(FaultRule rule) const;
   void act(const Isolation& found, int window);
   void doubt(const Isolation& found);
   void misfit(int sensor);

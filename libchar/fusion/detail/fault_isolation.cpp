@@ -131,7 +131,7 @@ Isolation FaultIsolation::isolate(const std::vector<WindowEvidence>& evidence,
   result.certain = result.best;
   const int size = std::popcount(result.best);
   for (const auto& [cost, misfit, set] : tried_) {
-    // The other half, when it agrees with itself, may be the sound one whatever its chi square.
+    // The other half, when it agrees with itself, may be the healthy one whatever its chi square.
     const bool other_half = 2 * size == m && (set & result.best) == 0 &&
                             std::popcount(set) == size && agrees(misfit, result.freedom);
     if (cost < result.cost + kDoubt || other_half) result.certain &= set;

@@ -29,7 +29,7 @@ struct Isolation {
   std::uint64_t other = 0;    ///< the cheapest set without a sensor in common with `best`
   double other_cost = 0;      ///< infinite: none
   double cost = 0, cost_of_none = 0;
-  double misfit = 0, freedom = 0;  ///< chi square of the sound ones, and its degrees of freedom
+  double misfit = 0, freedom = 0;  ///< chi square of the healthy ones, and its degrees of freedom
   bool consistent() const;
 };
 

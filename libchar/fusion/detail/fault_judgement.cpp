@@ -25,6 +25,25 @@ double noise_evidence(double samples, double square) {
   return square > 1 ? samples / 2 * (square - 1 - std::log(square)) : 0;
 }
 
+/// Residuals e of instants beside the estimate x: what they say for a bias and for a gain, over noise of variance s.
+struct ResidualSums {
+  double n = 0, sum = 0, x_sum = 0, xe = 0, xx = 0, squares = 0;
+
+  /// False: a missing sample.
+  bool take(double e, double x) {
+    if (std::isnan(e)) return false;
+    n += 1;
+    sum += e;
+    x_sum += x;
+    xe += x * e;
+    xx += x * x;
+    squares += e * e;
+    return true;
+  }
+  double bias(double s) const { return sum * sum / (2 * n * s); }
+  double gain(double s) const { return xx > 0 ? xe * xe / (2 * xx * s) : 0; }
+};
+
 }  // namespace
 
 void FaultDetector::judge() {
@@ -43,7 +62,7 @@ void FaultDetector::judge() {
     if (bank_.leading(winner) == CusumInput::noise)
       judge_noise(window);
     else if (looks_ > 16)
-      condemn(winner);
+      declare_faulty(winner);
   } else if (!found.consistent()) {
     if (window >= kFewInstants) misfit(-1);
   } else if (found.certain == 0) {
@@ -57,20 +76,15 @@ void FaultDetector::judge() {
 /// Instants since the change, by the largest likelihood of a bias, a gain or a noise in the winner.
 int FaultDetector::change_point(std::size_t i) const {
   const int most = static_cast<int>(std::min<std::int64_t>(since_change_, kWindow));
-  double n = 0, sum = 0, xe = 0, xx = 0, squares = 0, best = -1;
+  const double s = base_.s[i];
+  ResidualSums sums;
+  double best = -1;
   int where = 1;
   for (int back = 0; back < most; ++back) {
-    const double e = ring_e_[at(back, i)], x = ring_x_[at(back, i)];
-    if (std::isnan(e)) continue;
-    n += 1;
-    sum += e;
-    xe += x * e;
-    xx += x * x;
-    squares += e * e;
-    const double s = base_.s[i];
-    double evidence = sum * sum / (2 * n * s);
-    if (xx > 0) evidence = std::max(evidence, xe * xe / (2 * xx * s));
-    if (n >= kFewInstants) evidence = std::max(evidence, noise_evidence(n, squares / (n * s)));
+    if (!sums.take(ring_e_[at(back, i)], ring_x_[at(back, i)])) continue;
+    double evidence = std::max(sums.bias(s), sums.gain(s));
+    if (sums.n >= kFewInstants)
+      evidence = std::max(evidence, noise_evidence(sums.n, sums.squares / (sums.n * s)));
     if (evidence > best) {
       best = evidence;
       where = back + 1;
@@ -82,22 +96,14 @@ int FaultDetector::change_point(std::size_t i) const {
 void FaultDetector::gather_evidence(int window) {
   for (int k = 0; k < m_; ++k) {
     const auto i = static_cast<std::size_t>(index_[static_cast<std::size_t>(k)]);
-    double n = 0, sum = 0, x_sum = 0, xe = 0, xx = 0, squares = 0;
-    for (int back = 0; back < window; ++back) {
-      const double e = ring_e_[at(back, i)], x = ring_x_[at(back, i)];
-      if (std::isnan(e)) continue;
-      n += 1;
-      sum += e;
-      x_sum += x;
-      xe += x * e;
-      xx += x * x;
-      squares += e * e;
-    }
+    ResidualSums sums;
+    for (int back = 0; back < window; ++back) sums.take(ring_e_[at(back, i)], ring_x_[at(back, i)]);
+    const auto& [n, sum, x_sum, xe, xx, squares] = sums;
     WindowEvidence& w = evidence_[i];
     w = {};
     squares_[i] = n > 0 ? squares / (n * base_.s[i] * base_.excess) : 1;
     if (!(n > 0)) continue;
-    const double v = variance(i) * base_.young[i] * base_.excess;
+    const double v = variance(i) * base_.start_margin[i] * base_.excess;
     const double centred = std::max(xx - x_sum * x_sum / n, 0.0);
     const double b = base_.scale_bias[i], g = base_.scale_gain[i];
     w.samples = n;
@@ -133,9 +139,9 @@ void FaultDetector::judge_noise(int window) {
 }
 
 /// The sum has gathered for longer than the window reaches: it is believed.
-void FaultDetector::condemn(std::size_t i) {
+void FaultDetector::declare_faulty(std::size_t i) {
   const FaultRule rule = bank_.leading(i) == CusumInput::gain ? FaultRule::gain : FaultRule::bias;
-  if (m_ <= least_sound(rule)) {
+  if (m_ <= least_healthy(rule)) {
     misfit(-1);
     return;
   }
@@ -170,39 +176,31 @@ bool FaultDetector::is_dead(std::size_t i, int window) const {
 /// Bias, gain, noise or dead; `noise` when the scatter alone explains the window best.
 FaultRule FaultDetector::kind(std::size_t i, int window) const {
   if (is_dead(i, window)) return FaultRule::dead;
-  double n = 0, sum = 0, xe = 0, xx = 0;
-  for (int back = 0; back < window; ++back) {
-    const double e = ring_e_[at(back, i)], x = ring_x_[at(back, i)];
-    if (std::isnan(e)) continue;
-    n += 1;
-    sum += e;
-    xe += x * e;
-    xx += x * x;
-  }
-  const double s = base_.s[i];
-  const double bias = sum * sum / (2 * n * s), gain = xx > 0 ? xe * xe / (2 * xx * s) : 0;
-  if (n >= kFewInstants && noise_evidence(n, squares_[i]) > std::max(bias, gain) + 3)
+  ResidualSums sums;
+  for (int back = 0; back < window; ++back) sums.take(ring_e_[at(back, i)], ring_x_[at(back, i)]);
+  const double bias = sums.bias(base_.s[i]), gain = sums.gain(base_.s[i]);
+  if (sums.n >= kFewInstants && noise_evidence(sums.n, squares_[i]) > std::max(bias, gain) + 3)
     return FaultRule::noise;
   return gain > bias ? FaultRule::gain : FaultRule::bias;
 }
 
 /// Sensors that must be left and one: enough to contradict each other; and where nobody said that the record
 /// begins without faults, to tell which of them is wrong then.
-int FaultDetector::least_sound(FaultRule rule) const {
+int FaultDetector::least_healthy(FaultRule rule) const {
   return inputs_ + (fault_free_ == 0 && rule != FaultRule::dead ? 2 : 1);
 }
 
 void FaultDetector::act(const Isolation& found, int window) {
-  int sound = m_;
+  int healthy = m_;
   for (int k = 0; k < std::min(m_, 64); ++k) {
     if ((found.certain >> static_cast<unsigned>(k) & 1U) == 0) continue;
     const auto i = static_cast<std::size_t>(index_[static_cast<std::size_t>(k)]);
     const FaultRule rule = kind(i, window);
     if (rule == FaultRule::noise) {
       noise_fault(i, window);
-    } else if (sound > least_sound(rule)) {
+    } else if (healthy > least_healthy(rule)) {
       take_out(i, rule);
-      --sound;
+      --healthy;
     } else {
       misfit(-1);
     }
@@ -216,7 +214,7 @@ void FaultDetector::act(const Isolation& found, int window) {
   if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4))) stand_down();
 }
 
-/// Two sets contradict each other, and either may be the sound one.
+/// Two sets contradict each other, and either may be the healthy one.
 void FaultDetector::doubt(const Isolation& found) {
   const auto channels = [&](std::uint64_t set) {
     std::uint64_t bits = 0;
