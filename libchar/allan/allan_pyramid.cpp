@@ -329,8 +329,14 @@ void AllanPyramid::State::holed_base(const double* x, std::size_t n) {
 void AllanPyramid::State::close() {
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const std::size_t held = std::exchange(levels[l].held, 0);
-    const std::vector<double> rest = levels[l].block, absent = levels[l].absent;
-    if (held > 0) finish_block(l, rest.data(), absent.empty() ? nullptr : absent.data(), held);
+    if (held == 0) continue;
+    const Level& level = levels[l];
+    const auto taken = [held](const std::vector<double>& v) {
+      return std::vector<double>(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(held));
+    };
+    const std::vector<double> rest = taken(level.block);
+    const std::vector<double> absent = level.absent.empty() ? level.absent : taken(level.absent);
+    finish_block(l, rest.data(), absent.empty() ? nullptr : absent.data(), held);
   }
 }
 
@@ -383,19 +389,25 @@ void AllanPyramid::push(std::span<const double> samples) {
   state_->push(samples.data(), samples.size());
 }
 
-AllanCurve AllanPyramid::finish(double dt_s) const {
-  State state = *state_;  // the open blocks are closed in a copy: more samples may still come
-  state.close();
+AllanCurve AllanPyramid::finish(double dt_s) const& {
+  AllanPyramid closed;  // the open blocks are closed in a copy: more samples may still come
+  *closed.state_ = *state_;
+  return std::move(closed).finish(dt_s);
+}
+
+AllanCurve AllanPyramid::finish(double dt_s) && {
+  state_->close();
   AllanCurve curve;
   curve.dt_s = dt_s;
-  curve.samples = state.samples;
-  curve.missing = state.missing;
+  curve.samples = state_->samples;
+  curve.missing = state_->missing;
   curve.stride_divisor = 4;
   std::vector<std::uint64_t> without;
   MissingSamples missing;
-  for (std::size_t l = 0; l < state.levels.size(); ++l)
+  const auto& levels = state_->levels;
+  for (std::size_t l = 0; l < levels.size(); ++l)
     for (std::size_t k = l == 0 ? 0 : 2; k < 3; ++k)
-      add_point(std::uint64_t{1} << (l + k), state.levels[l].tally[k], missing, without, curve);
+      add_point(std::uint64_t{1} << (l + k), levels[l].tally[k], missing, without, curve);
   note_missing(without, curve);
   if (curve.points.empty())
     throw Error(
@@ -403,7 +415,7 @@ AllanCurve AllanPyramid::finish(double dt_s) const {
          "",
          "",
          "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
-             std::to_string(state.samples) + " of this record",
+             std::to_string(curve.samples) + " of this record",
          "",
          ""});
   return curve;
@@ -412,7 +424,7 @@ AllanCurve AllanPyramid::finish(double dt_s) const {
 AllanCurve pyramid_deviation(std::span<const double> record, double dt_s) {
   AllanPyramid pyramid;
   pyramid.push(record);
-  return pyramid.finish(dt_s);
+  return std::move(pyramid).finish(dt_s);
 }
 
 }  // namespace libchar

@@ -18,7 +18,8 @@ class AllanPyramid {
   AllanPyramid(AllanPyramid&&) noexcept;
   AllanPyramid& operator=(AllanPyramid&&) noexcept;
   void push(std::span<const double> samples);
-  AllanCurve finish(double dt_s) const;
+  AllanCurve finish(double dt_s) const&;
+  AllanCurve finish(double dt_s) &&;  ///< the same, where no more samples come
 
  private:
   struct State;

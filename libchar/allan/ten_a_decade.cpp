@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "libchar/allan/allan_covariance.hpp"
@@ -43,19 +44,34 @@ std::map<std::uint64_t, std::vector<std::uint64_t>> wanted_factors(const AllanOp
   return out;
 }
 
-std::vector<double> means_of_two(std::span<const double> values) {
-  std::vector<double> out(values.size() / 2);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = 0.5 * (values[2 * i] + values[2 * i + 1]);
+// Not of a vector: the pages of a long record's means would be written twice.
+struct Means {
+  std::unique_ptr<double[]> value;
+  std::size_t count = 0;
+  std::span<const double> all() const { return {value.get(), count}; }
+};
+
+/// Means of two, four or eight neighbours: 1/length of the sums of sums of two.
+template <std::size_t length>
+Means means_of(std::span<const double> values) {
+  Means out;
+  out.count = values.size() / length;
+  out.value = std::make_unique_for_overwrite<double[]>(out.count);
+  const double* v = values.data();
+  for (std::size_t i = 0; i < out.count; ++i, v += length) {
+    double sum = v[0] + v[1];
+    if constexpr (length >= 4) sum += v[2] + v[3];
+    if constexpr (length == 8) sum += (v[4] + v[5]) + (v[6] + v[7]);
+    out.value[i] = sum / static_cast<double>(length);
+  }
   return out;
 }
 
-/// The same as three times two, in one pass.
-std::vector<double> means_of_eight(std::span<const double> values) {
-  std::vector<double> out(values.size() / 8);
-  const double* v = values.data();
-  for (std::size_t i = 0; i < out.size(); ++i, v += 8)
-    out[i] = 0.125 * (((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])));
-  return out;
+/// The same as two times and two again, in as few passes as there may be.
+Means means_of(std::size_t length, std::span<const double> values) {
+  return length >= 8   ? means_of<8>(values)
+         : length == 4 ? means_of<4>(values)
+                       : means_of<2>(values);
 }
 
 void add_points(std::span<const double> means,
@@ -88,7 +104,7 @@ void add_ten_a_decade(std::span<const double> record,
                       AllanCurve& octaves) {
   if (octaves.points.empty() || octaves.type != DeviationType::oadev) return;
   const auto factors = wanted_factors(options, octaves);
-  std::vector<double> halves;  // means of r samples, half as many as are wanted
+  Means halves;  // of r samples, half as many as are wanted
   std::uint64_t r = 1;
   for (const auto& [length, in_means] : factors) {
     if (length < kOfLong && record.size() > exact_samples) continue;
@@ -97,13 +113,12 @@ void add_ten_a_decade(std::span<const double> record,
       continue;
     }
     while (2 * r < length) {
-      const auto before = r == 1 ? record : std::span<const double>(halves);
-      const bool eight = length / r >= 16;
-      halves = eight ? means_of_eight(before) : means_of_two(before);
-      r *= eight ? 8 : 2;
+      const std::size_t step = std::min<std::size_t>(8, length / (2 * r));
+      halves = means_of(step, r == 1 ? record : halves.all());
+      r *= step;
     }
-    const auto from = r == 1 ? record : std::span<const double>(halves);
-    add_points(means_of_two(from.subspan(1)), length, in_means, options, octaves);
+    const auto from = r == 1 ? record : halves.all();
+    add_points(means_of<2>(from.subspan(1)).all(), length, in_means, options, octaves);
   }
   std::sort(octaves.points.begin(),
             octaves.points.end(),

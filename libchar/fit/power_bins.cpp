@@ -37,6 +37,7 @@ PooledPower transform(std::span<const double> points,
   PooledPower power{points.size(), spacing, first, 1, {}};
   Dct plan(points.size());
   const std::span<const double> c = plan.transform(points);
+  power.mean.reserve(end > first ? end - first : 0);
   for (std::uint64_t k = first; k < end; ++k) power.mean.push_back(c[k] * c[k]);
   return power;
 }
