@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   // Blocks of a few megabytes come and go all the time: kept instead of given back to the system, they need no new pages.
   mallopt(M_MMAP_THRESHOLD, 256 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  take_closed_streams();
   install_signal_handlers();
   Session session;
   session.command.assign(argv, argv + argc);

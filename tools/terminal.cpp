@@ -1,5 +1,6 @@
 #include "terminal.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,6 +37,15 @@ int write_all(int descriptor, std::string_view text) {
 }
 
 }  // namespace
+
+void take_closed_streams() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is this one: those below are open.
+    [[maybe_unused]] const int taken =
+        ::open("/dev/null", number == STDOUT_FILENO ? O_RDONLY : O_RDWR);
+  }
+}
 
 void install_signal_handlers() {
   struct sigaction action {};

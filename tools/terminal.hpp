@@ -16,6 +16,10 @@ namespace sensorchar {
 /// talk to.
 struct StdoutClosed {};
 
+/// Descriptors 0 to 2 that whoever started the program has closed (cron and daemons do) are taken, so that no output file gets one of
+/// them and messages into it. What is printed to such a stdout is an error as before: it goes nowhere.
+void take_closed_streams();
+
 /// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled;
 /// SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers();

@@ -9,6 +9,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/schema.hpp"
 
 namespace libchar {
@@ -131,6 +132,7 @@ std::string report_file(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::path folder(path);
   if (!std::filesystem::is_directory(folder, ignored)) return path;
+  refuse_interrupted(folder);
   const bool pooled = !std::filesystem::exists(folder / "report.json", ignored) &&
                       std::filesystem::exists(folder / "runs.json", ignored);
   return (folder / (pooled ? "runs.json" : "report.json")).string();

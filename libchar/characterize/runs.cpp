@@ -56,6 +56,7 @@ RunBins simulated(const RunBins& runs, const Mixture& theta, DeviateStream& rand
 struct RunsTest {
   RunRatios ratios;
   double p = 1;
+  int simulations = 0;
   std::vector<double> run_p;
 };
 
@@ -75,6 +76,7 @@ RunsTest tested(const RunBins& runs,
     for (std::size_t r = 0; r < runs.size(); ++r)
       exceeded[r] += largest >= out.ratios.run[r] ? 1 : 0;
   }
+  out.simulations = made;
   // With ten as large the last one made is one of them: without the observed one in the count.
   out.p = larger == kEnough ? static_cast<double>(larger) / made : (1.0 + larger) / (1.0 + made);
   for (const int count : exceeded) out.run_p.push_back((1.0 + count) / (1.0 + made));
@@ -107,6 +109,7 @@ void test_consistency(const PooledFit& pooled, const PoolOptions& options, Poole
   const RunsTest all = tested(pooled.runs, pooled.terms, options, random);
   out.ratio = all.ratios.total;
   out.p = all.p;
+  out.simulations = all.simulations;
   out.consistent = !(all.p < options.probability);
   for (std::size_t r = 0; r < out.runs.size(); ++r) {
     out.runs[r].ratio = all.ratios.run[r];
@@ -171,7 +174,7 @@ std::string files_of(const PooledChannel& channel, std::span<const Characterizat
 std::string consistency_sentence(const PooledChannel& c, std::span<const Characterization> runs) {
   const std::string figures = fmt::format("2 ln L rises by {} with coefficients of their own, {}",
                                           number_text(c.ratio, 3),
-                                          probability_text(c.p));
+                                          probability_text(c.p, c.simulations));
   if (c.consistent)
     return fmt::format(
         "One set of coefficients describes all {} runs ({}).", c.runs.size(), figures);

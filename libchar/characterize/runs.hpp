@@ -40,6 +40,7 @@ struct PooledChannel {
   std::vector<ChannelRun> runs;  ///< those that were fitted
   double ratio = 0;              ///< sum of the ratios of the runs
   double p = 1;                  ///< of as large a sum, by chance
+  int simulations = 0;           ///< that the probabilities are counted in
   bool consistent = true;
   std::optional<RandomEffects>
       bias;  ///< turn-on bias: mean and spread; none: fewer than two runs, or of a phase

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/json.hpp"
+
 namespace libchar {
 
 struct OutputFile {
@@ -19,13 +21,21 @@ void check_outputs(const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs,
                    bool force);
 
-/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of
-/// them. Throws Error(output) when one exists and `force` is false, or is one of `inputs`.
-/// `before_names` runs when everything is on disk.
-void write_outputs(const std::vector<OutputFile>& outputs,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::string>& inputs,
-                   bool force,
-                   const std::function<void()>& before_names = {});
+/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
+/// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked: sets
+/// of two runs never mix. With `force`, what the folder's documents name as files of an earlier run ("files", themselves among them)
+/// and is not of this set is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run is writing there.
+/// `before_names` runs when everything is on disk. Returns the names that were removed.
+std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
+                                       const std::filesystem::path& folder,
+                                       const std::vector<std::string>& inputs,
+                                       bool force,
+                                       const std::function<void()>& before_names = {});
+
+/// Names of the files in their folder, for "files" of a document among them: what a later run may remove.
+Json file_names(const std::vector<OutputFile>& outputs);
+
+/// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others.
+void refuse_interrupted(const std::filesystem::path& folder);
 
 }  // namespace libchar

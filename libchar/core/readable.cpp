@@ -86,7 +86,8 @@ std::string count_text(std::uint64_t count) {
   return digits;
 }
 
-std::string probability_text(double p) {
+std::string probability_text(double p, int simulations) {
+  if (simulations > 0 && p * (simulations + 1) < 1.5) return "p ≤ " + number_text(p, 1);
   return p < 1e-4 ? "p < 0.0001" : "p = " + number_text(p, 2);
 }
 

@@ -35,8 +35,8 @@ std::string place_text(double seconds);
 /// "12 345": thin spaces between groups of three digits.
 std::string count_text(std::uint64_t count);
 
-/// "p = 0.42", "p < 0.0001".
-std::string probability_text(double p);
+/// "p = 0.42", "p < 0.0001". Of `simulations` that none was as extreme in: "p ≤ 0.005", which is all that they can say.
+std::string probability_text(double p, int simulations = 0);
 
 /// "82 ns", "3.4 µs"; "17.1 MB"; "–" where nothing was measured.
 std::string nanoseconds_text(double ns);

@@ -27,6 +27,10 @@ class WholeFile {
   /// fsync, rename, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
   void commit();
   const std::string& path() const { return path_; }
+  /// After prepare(): the name under which the file waits for its own; empty for a device or pipe.
+  const std::string& temporary() const { return temporary_; }
+  /// After prepare(): somebody else gives the file its name; the destructor leaves it where it is.
+  void hand_over() { temporary_.clear(); }
 
  private:
   void flush();

@@ -24,6 +24,7 @@
 #include "libchar/fit/detail/flicker_phase_means.hpp"
 #include "libchar/fit/detail/gauss_markov_fit.hpp"
 #include "libchar/fit/detail/goodness.hpp"
+#include "libchar/fit/detail/heavy_tails.hpp"
 #include "libchar/fit/detail/record_means.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/power_bins.hpp"
@@ -382,7 +383,10 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace) {
-  return fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, {});
+  NoiseFit fit = fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, {});
+  if (options.difference_kurtosis && !options.clock)
+    widen_for_tails(*options.difference_kurtosis, samples, fit);
+  return fit;
 }
 
 NoiseFit fit_record(std::span<const double> record,
@@ -416,6 +420,12 @@ NoiseFit fit_record(std::span<const double> record,
                                  options,
                                  workspace,
                                  means.temperature);
+  if (!options.clock) {
+    const bool known = options.difference_kurtosis && data.data() == record.data();
+    widen_for_tails(known ? *options.difference_kurtosis : kurtosis_of_differences(data),
+                    record.size() - count_missing(record),
+                    fit);
+  }
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {

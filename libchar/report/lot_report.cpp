@@ -226,8 +226,12 @@ std::string lot_text(const LotReport& report) {
 }
 
 std::vector<OutputFile> lot_files(const LotReport& report, const std::filesystem::path& folder) {
-  return {{(folder / "lot.html").string(), lot_html(report)},
-          {(folder / "lot.json").string(), dump_json(lot_json(report))}};
+  std::vector<OutputFile> out = {{(folder / "lot.html").string(), lot_html(report)},
+                                 {(folder / "lot.json").string(), ""}};
+  Json document = lot_json(report);
+  document["files"] = file_names(out);
+  out[1].text = dump_json(document);
+  return out;
 }
 
 }  // namespace libchar

@@ -19,7 +19,7 @@ std::vector<OutputFile> report_files(const CharacterizationView& view,
   std::vector<OutputFile> outputs = {
       {(folder / "report.html").string(), html_report(view, document)}};
   add_times(document, result);
-  outputs.push_back({(folder / "report.json").string(), dump_json(document)});
+  outputs.push_back({(folder / "report.json").string(), ""});
   outputs.push_back({(folder / "curves.csv").string(), csv_curves(view)});
   std::set<std::string> taken;
   for (const ChannelResult& c : result.channels) {
@@ -29,6 +29,8 @@ std::vector<OutputFile> report_files(const CharacterizationView& view,
         {(folder / (name + ".sensor.yaml")).string(),
          model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
   }
+  document["files"] = file_names(outputs);
+  outputs[1].text = dump_json(document);
   return outputs;
 }
 

@@ -52,7 +52,8 @@ Json consistency_json(const PooledChannel& c) {
               {"unit", json_text(c.channel.unit)},
               {"consistent", c.consistent},
               {"likelihood_ratio", json_number(c.ratio)},
-              {"p", json_number(c.p)}};
+              {"p", json_number(c.p)},
+              {"simulations", c.simulations}};
   out["turn_on_bias"] = c.bias ? effects_json(*c.bias) : Json(nullptr);
   out["runs"] = Json::array();
   for (const ChannelRun& run : c.runs)
@@ -122,7 +123,7 @@ std::string runs_rows(const RunsReport& report, const PooledChannel& c) {
         html_text(number_text(run.mean)),
         html_text(number_text(run.mean_sd, 2)),
         html_text(number_text(run.ratio, 3)),
-        html_text(probability_text(run.p)),
+        html_text(probability_text(run.p, c.simulations)),
         run.differs ? " class=\"out\">differs" : ">");
   return out + "</tbody></table></div>\n</details>\n";
 }
@@ -204,12 +205,15 @@ std::string runs_text(const RunsReport& report) {
 
 std::vector<OutputFile> runs_files(const RunsReport& report, const std::filesystem::path& folder) {
   std::vector<OutputFile> out = {{(folder / "runs.html").string(), runs_html(report)},
-                                 {(folder / "runs.json").string(), dump_json(runs_json(report))}};
+                                 {(folder / "runs.json").string(), ""}};
   std::set<std::string> taken;
   for (const PooledChannel& c : report.pooled->channels)
     out.push_back(
         {(folder / (unused_file_name_for(c.channel.name, taken) + ".sensor.yaml")).string(),
          model_yaml(model_of(report, c))});
+  Json document = runs_json(report);
+  document["files"] = file_names(out);
+  out[1].text = dump_json(document);
   return out;
 }
 

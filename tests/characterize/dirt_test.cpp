@@ -19,7 +19,7 @@ Recording recording_of(std::vector<std::vector<double>> columns, double rate_hz)
   return recording;
 }
 
-std::vector<double> white(std::size_t n, unsigned seed) {
+std::vector<double> white_record(std::size_t n, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   std::vector<double> y(n);
@@ -36,7 +36,7 @@ const Remedy* spikes_of(const ChannelResult& channel) {
 }  // namespace
 
 TEST_CASE("spikes of a streamed record are those of the same record kept") {
-  std::vector<double> y = white(300000, 2);
+  std::vector<double> y = white_record(300000, 2);
   for (double& value : y) value += 100;
   for (std::size_t t = 77; t < y.size(); t += 501) y[t] += t % 2 == 0 ? 30 : -30;
   for (std::size_t t = 0; t < 8; ++t) y[t] = 0;
@@ -55,7 +55,7 @@ TEST_CASE("spikes of a streamed record are those of the same record kept") {
 }
 
 TEST_CASE("heavy tails of a streamed record are left as they are") {
-  std::vector<double> y = white(300000, 3);
+  std::vector<double> y = white_record(300000, 3);
   std::mt19937_64 generator(4);
   std::chi_squared_distribution<double> square(5);
   for (double& value : y) value /= std::sqrt(square(generator) / 5);
@@ -73,7 +73,7 @@ TEST_CASE("heavy tails of a streamed record are left as they are") {
 }
 
 TEST_CASE("a wild reading of a phase is taken out before the phase is differenced") {
-  const std::vector<double> frequency = white(100000, 5);
+  const std::vector<double> frequency = white_record(100000, 5);
   std::vector<double> phase(1, 3);
   for (const double f : frequency) phase.push_back(phase.back() + f);
   for (const std::size_t wild : {std::size_t{0}, std::size_t{40000}, phase.size() - 1}) {
@@ -97,7 +97,7 @@ TEST_CASE("a counter gets curves and no fit, and the reason is said") {
     modulo[t] = static_cast<double>(t % 256);
   }
   const Characterization result =
-      characterize(recording_of({index, modulo, white(5000, 1)}, 100), {});
+      characterize(recording_of({index, modulo, white_record(5000, 1)}, 100), {});
   for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
     CHECK_FALSE(result.channels[c].fit);
     REQUIRE(result.channels[c].problems.size() == 1);

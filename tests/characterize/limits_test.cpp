@@ -18,7 +18,7 @@ Coefficient known(double low, double value, double high, Status status = Status:
   return c;
 }
 
-Coefficient limit(double upper, Status status = Status::not_detected) {
+Coefficient upper_limit(double upper, Status status = Status::not_detected) {
   Coefficient c;
   c.status = status;
   c.upper95 = upper;
@@ -35,12 +35,12 @@ TEST_CASE("a limit is decided by the whole interval, and not by what cannot be r
   CHECK(judge_limit(known(1, 2, 3), 1.5) == not_decided);
   CHECK(judge_limit(known(1, 2, 3), 1) == not_decided);
   CHECK(judge_limit(known(1, 2, 3), 0.5) == fail);
-  CHECK(judge_limit(limit(1), 2) == pass);
-  CHECK(judge_limit(limit(3), 2) == not_decided);
+  CHECK(judge_limit(upper_limit(1), 2) == pass);
+  CHECK(judge_limit(upper_limit(3), 2) == not_decided);
   for (const Status status : {Status::undetermined, Status::misfit}) {
     CHECK(judge_limit(known(1, 2, 3, status), 10) == not_decided);
     CHECK(judge_limit(known(1, 2, 3, status), 0.1) == not_decided);
-    CHECK(judge_limit(limit(1, status), 2) == not_decided);
+    CHECK(judge_limit(upper_limit(1, status), 2) == not_decided);
   }
   CHECK(judge_limit({}, 1) == not_decided);
 }

@@ -15,20 +15,20 @@ using namespace libchar;
 
 namespace {
 
-constexpr double kRate = 50;
+constexpr double kStillRate = 50;
 
 Recording two_channels(std::size_t n, std::uint64_t seed) {
-  test::NoiseSource source(n, kRate, seed);
+  test::NoiseSource source(n, kStillRate, seed);
   Recording recording;
-  recording.info.time.rate_hz = kRate;
+  recording.info.time.rate_hz = kStillRate;
   recording.info.channels = {{"gyr_x", "deg/s", false}, {"gyr_y", "deg/s", false}};
   recording.samples = {source.record(5e-3, 0, 0), source.record(5e-3, 0, 0)};
   return recording;
 }
 
 void move(std::vector<double>& y, double from_s, double to_s) {
-  const auto end = static_cast<std::size_t>(to_s * kRate);
-  for (auto t = static_cast<std::size_t>(from_s * kRate); t < end; ++t)
+  const auto end = static_cast<std::size_t>(to_s * kStillRate);
+  for (auto t = static_cast<std::size_t>(from_s * kStillRate); t < end; ++t)
     y[t] += 3 * std::sin(0.9 * static_cast<double>(t)) + std::sin(0.31 * static_cast<double>(t));
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
   std::string text = "a\n";
   for (std::size_t t = 0; t < 20'000; ++t) text += std::to_string(recording.samples[0][t]) + "\n";
   const test::MemoryLog log(text);
-  options.reading.rate_hz = kRate;
+  options.reading.rate_hz = kStillRate;
   options.still = {false, Interval{100, 200}};
   CHECK(characterize(log.path(), options).log.samples == 5'000);
   options.still = {false, Interval{100, 500}};
@@ -106,7 +106,7 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
 
 TEST_CASE("digital faults stand in the result, and their coefficients are not believed") {
   Recording recording = two_channels(40'000, 4);
-  const double sigma = 5e-3 * std::sqrt(kRate);
+  const double sigma = 5e-3 * std::sqrt(kStillRate);
   for (double& value : recording.samples[0]) value = std::clamp(value, -sigma, sigma);
   for (double& value : recording.samples[1]) value = std::round(value / (5 * sigma)) * 5 * sigma;
   const auto find = [](const ChannelResult& channel, const std::string& words) {

@@ -1,6 +1,7 @@
 // The program as a whole: exit codes, streams, help, slips.
 
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "tests/support/places.hpp"
 #include "tests/support/run.hpp"
@@ -23,6 +24,24 @@ TEST_CASE("help and version go to stdout with exit code 0") {
   CHECK_THAT(test::run({"--help"}).out, Contains("inspect") && Contains("convert"));
   CHECK_THAT(test::run({"inspect", "--help"}).out,
              Contains("--time-unit") && Contains("auto|s|ms|us|ns") && Contains("default: auto"));
+}
+
+TEST_CASE("closed streams: no message gets into a file that is written") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "log.csv") << "t,x\n0,1\n1,\n2,3\n2,4\n3,5\n4,6\n";
+  const std::string at = folder.path().string();
+  const auto convert = [&](const std::string& out, const std::string& closed) {
+    return test::run_words(
+        {"/bin/sh",
+         "-c",
+         test::program() + " convert " + at + "/log.csv -o " + at + "/" + out + closed});
+  };
+  REQUIRE(convert("open.csv", "").err.find("warning") != std::string::npos);
+  for (const char* closed : {" >&- 2>&-", " 2>&-", " <&- >&- 2>&-", " <&-"}) {
+    convert("closed.csv", closed);
+    CHECK(test::slurp(folder / "closed.csv") == test::slurp(folder / "open.csv"));
+    std::filesystem::remove(folder / "closed.csv");
+  }
 }
 
 TEST_CASE(

@@ -72,7 +72,7 @@ Room read(const std::string& text, const std::string& file = "f.yaml") {
   return room;
 }
 
-std::string refusal(const std::string& text, const std::string& file = "f.yaml") {
+std::string field_refusal(const std::string& text, const std::string& file = "f.yaml") {
   try {
     read(text, file);
   } catch (const Error& error) {
@@ -116,14 +116,14 @@ TEST_CASE("fields: what is as usual is not written, and absent keys leave what i
 }
 
 TEST_CASE("fields: refusals name line, column and the nearest key or word") {
-  CHECK(refusal("doors: 2\n") == "f.yaml:1:1: error E0542: name is missing");
+  CHECK(field_refusal("doors: 2\n") == "f.yaml:1:1: error E0542: name is missing");
   CHECK(
-      refusal("name: a\nlamp: {powr_w: 1}\n") ==
+      field_refusal("name: a\nlamp: {powr_w: 1}\n") ==
       "f.yaml:2:8: error E0540: unknown key in lamp; got \"powr_w\"; hint: did you mean power_w?");
-  CHECK(refusal("{\"name\": \"a\",\n \"light\": \"gren\"}", "f.json")
+  CHECK(field_refusal("{\"name\": \"a\",\n \"light\": \"gren\"}", "f.json")
             .starts_with("f.json:2:11: error E0544: light: expected one of red, green"));
-  CHECK(refusal("name: a\nheight_m: 0\n").starts_with("f.yaml:2:11: error E0543"));
-  CHECK(refusal("name: a\nopen: 1\n").starts_with("f.yaml:2:7: error E0541"));
+  CHECK(field_refusal("name: a\nheight_m: 0\n").starts_with("f.yaml:2:11: error E0543"));
+  CHECK(field_refusal("name: a\nopen: 1\n").starts_with("f.yaml:2:7: error E0541"));
 }
 
 TEST_CASE("fields: the words of an enum with a table need no second list") {
@@ -131,7 +131,7 @@ TEST_CASE("fields: the words of an enum with a table need no second list") {
   CHECK(room.socket == Socket::e14);
   CHECK(yaml_of(entries_of(selected(room_fields(), {"socket"}, Written::always), room)) ==
         "socket: E14\n");
-  CHECK(refusal("name: a\nsocket: E17\n")
+  CHECK(field_refusal("name: a\nsocket: E17\n")
             .starts_with("f.yaml:2:9: error E0544: socket: expected one of E27, E14"));
   CHECK(markdown_table(selected(room_fields(), {"socket"}, Written::always))
             .ends_with("| `socket` | E27, E14 |  |\n"));

@@ -13,7 +13,7 @@ using namespace libchar;
 
 namespace {
 
-std::string refusal(const std::string& text) {
+std::string json_refusal(const std::string& text) {
   try {
     parse_json(text, "f.json");
   } catch (const Error& error) {
@@ -42,37 +42,37 @@ TEST_CASE("JSON that is right is read, in order, with and without a byte order m
 }
 
 TEST_CASE("JSON that readers usually let through is refused with its place") {
-  CHECK(starts(refusal("{\"a\":1,\"a\":2}"), "f.json:1:8"));
-  CHECK(starts(refusal("{\"a\":{\"b\":1},\n \"a\":2}"), "f.json:2:"));
-  CHECK(refusal("{\"a\":{\"b\":1},\"c\":{\"b\":1}}") ==
+  CHECK(starts(json_refusal("{\"a\":1,\"a\":2}"), "f.json:1:8"));
+  CHECK(starts(json_refusal("{\"a\":{\"b\":1},\n \"a\":2}"), "f.json:2:"));
+  CHECK(json_refusal("{\"a\":{\"b\":1},\"c\":{\"b\":1}}") ==
         "accepted");  // the same key in two objects is fine
-  CHECK(starts(refusal("{\"N\":1e400}"), "f.json:1:6"));
-  CHECK(starts(refusal("[-1e400]"), "f.json:1:2"));
-  CHECK(refusal("{\"n\":18446744073709551616}") !=
+  CHECK(starts(json_refusal("{\"N\":1e400}"), "f.json:1:6"));
+  CHECK(starts(json_refusal("[-1e400]"), "f.json:1:2"));
+  CHECK(json_refusal("{\"n\":18446744073709551616}") !=
         "accepted");  // no integer type holds it: it would become a double
-  CHECK(refusal("[-9223372036854775809]") != "accepted");
-  CHECK(starts(refusal("[NaN]"), "f.json:1:2"));
-  CHECK(starts(refusal("[Infinity]"), "f.json:1:2"));
-  CHECK(starts(refusal("{\"version\":1} x"), "f.json:1:15"));
-  CHECK(starts(refusal("{\"version\":1} // c"), "f.json:1:15"));
-  CHECK(starts(refusal("[1,]"), "f.json:1:4"));
-  CHECK(starts(refusal("{\"version\":"), "f.json:1:"));
-  CHECK(starts(refusal("{\n\"a\": \"\xff\"}"), "f.json:2:7 (byte 8)"));
-  CHECK(starts(refusal("\xEF\xBB\xBF[1,]"),
+  CHECK(json_refusal("[-9223372036854775809]") != "accepted");
+  CHECK(starts(json_refusal("[NaN]"), "f.json:1:2"));
+  CHECK(starts(json_refusal("[Infinity]"), "f.json:1:2"));
+  CHECK(starts(json_refusal("{\"version\":1} x"), "f.json:1:15"));
+  CHECK(starts(json_refusal("{\"version\":1} // c"), "f.json:1:15"));
+  CHECK(starts(json_refusal("[1,]"), "f.json:1:4"));
+  CHECK(starts(json_refusal("{\"version\":"), "f.json:1:"));
+  CHECK(starts(json_refusal("{\n\"a\": \"\xff\"}"), "f.json:2:7 (byte 8)"));
+  CHECK(starts(json_refusal("\xEF\xBB\xBF[1,]"),
                "f.json:1:4 (byte 6)"));  // columns as an editor counts them, bytes of the file
-  CHECK(refusal("[\"\\ud800\"]") != "accepted");
-  CHECK(refusal("") != "accepted");
-  CHECK(refusal(" \n\t") != "accepted");
-  CHECK(refusal("\xEF\xBB\xBF") != "accepted");
-  CHECK(refusal("{\"a\":01}") != "accepted");
-  CHECK(refusal("{'a':1}") != "accepted");
+  CHECK(json_refusal("[\"\\ud800\"]") != "accepted");
+  CHECK(json_refusal("") != "accepted");
+  CHECK(json_refusal(" \n\t") != "accepted");
+  CHECK(json_refusal("\xEF\xBB\xBF") != "accepted");
+  CHECK(json_refusal("{\"a\":01}") != "accepted");
+  CHECK(json_refusal("{'a':1}") != "accepted");
 }
 
 TEST_CASE("depth and size have limits") {
-  CHECK(refusal(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") !=
+  CHECK(json_refusal(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") !=
         std::string::npos);
-  CHECK(refusal(std::string(100'000, '[')).find("deeper than 64") != std::string::npos);
-  CHECK(refusal("\"" + std::string(std::size_t{17} << 20U, 'a') + "\"").find("limit") !=
+  CHECK(json_refusal(std::string(100'000, '[')).find("deeper than 64") != std::string::npos);
+  CHECK(json_refusal("\"" + std::string(std::size_t{17} << 20U, 'a') + "\"").find("limit") !=
         std::string::npos);
 }
 
@@ -87,11 +87,11 @@ TEST_CASE("the bad JSON files end as their table says") {
                            "009_comment",
                            "010_trunc"}) {
     CAPTURE(name);
-    CHECK(refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) !=
+    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) !=
           "accepted");
   }
   for (const char* name : {"000_control", "011_bom"})
-    CHECK(refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) ==
+    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) ==
           "accepted");
 }
 

@@ -55,4 +55,6 @@ TEST_CASE("counts and probabilities") {
   CHECK(count_text(1234567) == "1\u202F234\u202F567");
   CHECK(probability_text(0.42) == "p = 0.42");
   CHECK(probability_text(3e-33) == "p < 0.0001");
+  CHECK(probability_text(0.005, 199) == "p ≤ 0.005");
+  CHECK(probability_text(0.01, 199) == "p = 0.010");
 }

@@ -9,18 +9,18 @@ using namespace libchar;
 
 namespace {
 
-constexpr std::uint64_t kSamples = 100'000;
+constexpr std::uint64_t kContradictedSamples = 100'000;
 
 // The exact curve of a mixture, as if a record had been average.
 AllanCurve curve_of(const Mixture& theta) {
   AllanCurve curve;
   curve.dt_s = 0.01;
-  curve.samples = kSamples;
-  for (std::uint64_t m = 1; 2 * m <= kSamples / 4; m *= 2)
+  curve.samples = kContradictedSamples;
+  for (std::uint64_t m = 1; 2 * m <= kContradictedSamples / 4; m *= 2)
     curve.points.push_back({m,
                             static_cast<double>(m) * 0.01,
                             std::sqrt(allan_variance(theta, static_cast<double>(m), 0.01)),
-                            kSamples - 2 * m + 1,
+                            kContradictedSamples - 2 * m + 1,
                             0,
                             {},
                             {},

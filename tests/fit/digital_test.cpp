@@ -14,11 +14,11 @@ using namespace libchar;
 
 namespace {
 
-constexpr double kRate = 100, kSigma = 0.05;
-constexpr std::size_t kSamples = 50'000;
+constexpr double kDigitalRate = 100, kSigma = 0.05;
+constexpr std::size_t kDigitalSamples = 50'000;
 
 std::vector<double> noise(std::uint64_t seed) {
-  return test::NoiseSource(kSamples, kRate, seed).record(5e-3, 5e-3, 1.5e-3);
+  return test::NoiseSource(kDigitalSamples, kDigitalRate, seed).record(5e-3, 5e-3, 1.5e-3);
 }
 
 std::vector<double> rounded(std::vector<double> y, double step) {
@@ -32,40 +32,43 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     std::vector<double> y = noise(seed);
     y[77] = std::numeric_limits<double>::quiet_NaN();
-    CHECK(find_digital_faults(y, kRate).sentences.empty());
+    CHECK(find_digital_faults(y, kDigitalRate).sentences.empty());
     for (const double step : {0.01, 0.1, 0.3, 0.7}) {
       INFO("seed " << seed << ", step " << step);
-      CHECK(find_digital_faults(rounded(y, step * kSigma), kRate, step * kSigma).sentences.empty());
+      CHECK(find_digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma)
+                .sentences.empty());
     }
   }
 }
 
 TEST_CASE("digital: two levels, a counter and a lone spike have no rails") {
-  std::vector<double> square(kSamples), counter(kSamples), spike(kSamples, 1.0);
-  for (std::size_t t = 0; t < kSamples; ++t) {
+  std::vector<double> square(kDigitalSamples), counter(kDigitalSamples),
+      spike(kDigitalSamples, 1.0);
+  for (std::size_t t = 0; t < kDigitalSamples; ++t) {
     square[t] = t / 500 % 2 == 0 ? 1 : -1;
     counter[t] = static_cast<double>(t % 256);
   }
   spike[777] = 5;
-  CHECK(find_digital_faults(square, kRate).rails.empty());
-  CHECK(find_digital_faults(counter, kRate).rails.empty());
-  CHECK(find_digital_faults(spike, kRate).rails.empty());
+  CHECK(find_digital_faults(square, kDigitalRate).rails.empty());
+  CHECK(find_digital_faults(counter, kDigitalRate).rails.empty());
+  CHECK(find_digital_faults(spike, kDigitalRate).rails.empty());
 }
 
 TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   std::vector<double> y = noise(40);
   for (double& value : y) value = std::clamp(value, -1.9 * kSigma, 2.2 * kSigma);
   const auto clipped = static_cast<double>(std::count(y.begin(), y.end(), 2.2 * kSigma));
-  const DigitalFaults faults = find_digital_faults(y, kRate, {}, "deg/s");
+  const DigitalFaults faults = find_digital_faults(y, kDigitalRate, {}, "deg/s");
   REQUIRE(faults.rails.size() == 2);
   CHECK_FALSE(faults.rails[0].high);
   CHECK(faults.rails[1].value == 2.2 * kSigma);
-  CHECK(faults.rails[1].share == Approx(clipped / kSamples));
+  CHECK(faults.rails[1].share == Approx(clipped / kDigitalSamples));
   CHECK(faults.sentences[1].find("stand at the largest value, 0.110 deg/s") != std::string::npos);
 
   std::vector<double> one = noise(41);
   for (double& value : one) value = std::min(value, 2 * kSigma);
-  const DigitalFaults coarse = find_digital_faults(rounded(one, 0.1 * kSigma), kRate, 0.1 * kSigma);
+  const DigitalFaults coarse =
+      find_digital_faults(rounded(one, 0.1 * kSigma), kDigitalRate, 0.1 * kSigma);
   REQUIRE(coarse.rails.size() == 1);
   CHECK(coarse.rails[0].high);
 }
@@ -74,33 +77,35 @@ TEST_CASE("digital: values that are recorded several times") {
   const std::vector<double> sensor = noise(42);
   for (const double times : {2.0, 3.0, 2.4, 1.5, 1.2}) {
     for (const double step : {0.0, 0.2}) {
-      std::vector<double> y(kSamples);
+      std::vector<double> y(kDigitalSamples);
       for (std::size_t t = 0; t < y.size(); ++t)
         y[t] = sensor[static_cast<std::size_t>(static_cast<double>(t) / times)];
       if (step > 0) y = rounded(y, step * kSigma);
       INFO("times " << times << ", step " << step);
-      const DigitalFaults faults = find_digital_faults(y, kRate);
+      const DigitalFaults faults = find_digital_faults(y, kDigitalRate);
       // Rounding makes neighbours equal by chance: what is held less than twice is then not told from it.
       if (step > 0 && times < 2) continue;
       REQUIRE(faults.held.has_value());
       CHECK(faults.held->times == Approx(times).epsilon(step > 0 ? 0.1 : 1e-3));
-      CHECK(faults.held->sensor_rate_hz == Approx(kRate / faults.held->times));
+      CHECK(faults.held->sensor_rate_hz == Approx(kDigitalRate / faults.held->times));
     }
   }
 }
 
 TEST_CASE("digital: a converter's step above the noise") {
-  const std::vector<double> y = test::NoiseSource(kSamples, kRate, 43).record(5e-3, 0, 1e-2);
+  const std::vector<double> y =
+      test::NoiseSource(kDigitalSamples, kDigitalRate, 43).record(5e-3, 0, 1e-2);
   for (const double ratio : {1.5, 2.5}) {
     const double step = ratio * kSigma;
-    const DigitalFaults faults = find_digital_faults(rounded(y, step), kRate, step);
+    const DigitalFaults faults = find_digital_faults(rounded(y, step), kDigitalRate, step);
     INFO("step " << ratio << " sigma");
     REQUIRE(faults.staircase.has_value());
     CHECK_FALSE(faults.staircase->bounded);
     CHECK(faults.staircase->noise == Approx(kSigma).epsilon(0.1));
     CHECK(faults.rails.empty());
   }
-  const DigitalFaults coarse = find_digital_faults(rounded(y, 10 * kSigma), kRate, 10 * kSigma);
+  const DigitalFaults coarse =
+      find_digital_faults(rounded(y, 10 * kSigma), kDigitalRate, 10 * kSigma);
   REQUIRE(coarse.staircase.has_value());
   CHECK(coarse.staircase->bounded);
 }

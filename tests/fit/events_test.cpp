@@ -20,9 +20,9 @@ using namespace libchar;
 
 namespace {
 
-constexpr double kRate = 100;
-constexpr std::size_t kSamples = 100'000;
-constexpr double kQ = 5e-3, kB = 5e-3, kK = 1.5e-3, kSigma = 0.05;
+constexpr double kEventRate = 100;
+constexpr std::size_t kEventSamples = 100'000;
+constexpr double kQ = 5e-3, kB = 5e-3, kK = 1.5e-3, kEventSigma = 0.05;
 
 std::vector<double> coefficients_of(const std::vector<double>& y) {
   Dct dct(y.size());
@@ -31,11 +31,11 @@ std::vector<double> coefficients_of(const std::vector<double>& y) {
 }
 
 EventSearch search(const std::vector<double>& y) {
-  return find_events(event_series(y, kRate), fitted_powers(), {}, "deg/s");
+  return find_events(event_series(y, kEventRate), fitted_powers(), {}, "deg/s");
 }
 
 void add_step(std::vector<double>& y, double at_s, double size) {
-  for (auto t = static_cast<std::size_t>(std::lround(at_s * kRate)); t < y.size(); ++t)
+  for (auto t = static_cast<std::size_t>(std::lround(at_s * kEventRate)); t < y.size(); ++t)
     y[t] += size;
 }
 
@@ -75,11 +75,11 @@ TEST_CASE("events: the closed forms are the transforms of the shapes") {
 
 TEST_CASE("events: expected powers of means are those of the exact covariance") {
   constexpr std::uint64_t n = 3000, m = 20;
-  const BlockMeanDct exact(n, m, 1 / kRate);
+  const BlockMeanDct exact(n, m, 1 / kEventRate);
   for (std::size_t term = 0; term < 3; ++term) {
     Mixture theta{};
     theta[term] = 1;
-    const std::vector<double> power = mixture_powers(theta, n, m, kRate);
+    const std::vector<double> power = mixture_powers(theta, n, m, kEventRate);
     for (const std::uint64_t k : {1U, 2U, 3U, 17U, 64U, 65U, 500U, 1500U, 2998U}) {
       INFO("term " << term << ", k " << k);
       CHECK(power[k - 1] * static_cast<double>(m) == Approx(exact.mean(k)[term]).epsilon(0.005));
@@ -129,10 +129,11 @@ TEST_CASE("events: scores on a smooth curve pass their threshold as often as sta
 
 TEST_CASE("events: the scan's scores are those of one regression a place") {
   constexpr std::size_t n = 630;
-  test::NoiseSource source(n, kRate, 3);
+  test::NoiseSource source(n, kEventRate, 3);
   const std::vector<double> y = source.record(kQ, kB, 10 * kK);
   const std::vector<double> c = coefficients_of(y);
-  std::vector<double> weight = mixture_powers({kQ * kQ, kB * kB, 1e2 * kK * kK, 0, 0}, n, 1, kRate);
+  std::vector<double> weight =
+      mixture_powers({kQ * kQ, kB * kB, 1e2 * kK * kK, 0, 0}, n, 1, kEventRate);
   for (double& w : weight) w = 1 / w;
   for (const bool beside_ramp : {false, true}) {
     std::vector<EventShape> shapes;
@@ -156,7 +157,7 @@ TEST_CASE("events: clean records have none") {
       {{kQ, 0, 0}, {kQ, kB, 0}, {kQ, kB, kK}, {kQ, 0, 20 * kK}, {0, 0, kK}}};
   int alarms = 0;
   for (std::size_t s = 0; s < scenes.size(); ++s) {
-    test::NoiseSource source(kSamples, kRate, 100 + s);
+    test::NoiseSource source(kEventSamples, kEventRate, 100 + s);
     for (int r = 0; r < 30; ++r)
       alarms +=
           search(source.record(scenes[s][0], scenes[s][1], scenes[s][2])).events.empty() ? 0 : 1;
@@ -165,12 +166,12 @@ TEST_CASE("events: clean records have none") {
 }
 
 TEST_CASE("events: a step is found, placed and sized, and K is what it was without") {
-  test::NoiseSource source(kSamples, kRate, 21);
+  test::NoiseSource source(kEventSamples, kEventRate, 21);
   for (const double sigmas : {1.0, -2.0, 5.0, 10.0}) {
     const std::vector<double> clean = source.record(kQ, kB, kK);
     std::vector<double> y = clean;
     const double at_s = 370 + 10 * sigmas;
-    add_step(y, at_s, sigmas * kSigma);
+    add_step(y, at_s, sigmas * kEventSigma);
     const EventSearch found = search(y);
     INFO("step of " << sigmas);
     REQUIRE(found.events.size() == 1);
@@ -179,12 +180,12 @@ TEST_CASE("events: a step is found, placed and sized, and K is what it was witho
     CHECK(event.at_s == Approx(at_s).margin(1.0));
     CHECK(event.at_ci95.low <= at_s);
     CHECK(event.at_ci95.high >= at_s);
-    CHECK(event.size == Approx(sigmas * kSigma).margin(3.5 * event.sd));
+    CHECK(event.size == Approx(sigmas * kEventSigma).margin(3.5 * event.sd));
     CHECK(event.score > event.threshold);
     CHECK(found.sentences[0].find("A step of") == 0);
-    subtract_events(found.events, kRate, y);
-    const NoiseFit before = fit_record(clean, kRate, nullptr, all_terms());
-    const NoiseFit after = fit_record(y, kRate, nullptr, all_terms());
+    subtract_events(found.events, kEventRate, y);
+    const NoiseFit before = fit_record(clean, kEventRate, nullptr, all_terms());
+    const NoiseFit after = fit_record(y, kEventRate, nullptr, all_terms());
     const double walk = before[Term::walk].value.value_or(0);
     CHECK(std::abs(after[Term::walk].value.value_or(0) - walk) <
           1.3 * std::max(before[Term::walk].relative_sd, 0.15) * kK);
@@ -192,10 +193,10 @@ TEST_CASE("events: a step is found, placed and sized, and K is what it was witho
 }
 
 TEST_CASE("events: two steps, up and down") {
-  test::NoiseSource source(kSamples, kRate, 22);
+  test::NoiseSource source(kEventSamples, kEventRate, 22);
   std::vector<double> y = source.record(kQ, kB, kK);
-  add_step(y, 300, 2 * kSigma);
-  add_step(y, 600, -2 * kSigma);
+  add_step(y, 300, 2 * kEventSigma);
+  add_step(y, 600, -2 * kEventSigma);
   const EventSearch found = search(y);
   REQUIRE(found.events.size() == 2);
   std::vector<Event> events = found.events;
@@ -203,39 +204,39 @@ TEST_CASE("events: two steps, up and down") {
   CHECK(events[0].at_s == Approx(300).margin(1.0));
   CHECK(events[1].at_s == Approx(600).margin(1.0));
   for (const Event& event : events) CHECK(event.at_ci95.high - event.at_ci95.low < 2);
-  CHECK(events[0].size == Approx(2 * kSigma).margin(4 * events[0].sd));
-  CHECK(events[1].size == Approx(-2 * kSigma).margin(4 * events[1].sd));
+  CHECK(events[0].size == Approx(2 * kEventSigma).margin(4 * events[0].sd));
+  CHECK(events[1].size == Approx(-2 * kEventSigma).margin(4 * events[1].sd));
 }
 
 TEST_CASE("events: a warm-up has its size and time constant") {
-  test::NoiseSource source(kSamples, kRate, 23);
+  test::NoiseSource source(kEventSamples, kEventRate, 23);
   std::vector<double> y = source.record(kQ, kB, kK);
   for (std::size_t t = 0; t < y.size(); ++t)
-    y[t] -= 8 * kSigma * std::exp(-static_cast<double>(t) / kRate / 60);
+    y[t] -= 8 * kEventSigma * std::exp(-static_cast<double>(t) / kEventRate / 60);
   const EventSearch found = search(y);
   REQUIRE(found.events.size() == 1);
   const Event& event = found.events[0];
   CHECK(event.kind == EventKind::warm_up);
-  CHECK(event.size == Approx(-8 * kSigma).margin(4 * event.sd));
+  CHECK(event.size == Approx(-8 * kEventSigma).margin(4 * event.sd));
   CHECK(event.tau_ci95.low < 60);
   CHECK(event.tau_ci95.high > 60);
   CHECK(event.tau_s == Approx(60).epsilon(0.5));
 }
 
 TEST_CASE("events: a warm-up that outlasts the record leaves no drift and no walk behind") {
-  test::NoiseSource source(kSamples, kRate, 29);
-  constexpr double kLasts = kSamples / kRate;
+  test::NoiseSource source(kEventSamples, kEventRate, 29);
+  constexpr double kLasts = kEventSamples / kEventRate;
   int one = 0, walks = 0;
   for (const double tau : {0.45 * kLasts, 0.75 * kLasts}) {
     for (int r = 0; r < 5; ++r) {
       std::vector<double> y = source.record(kQ, 0, 0);
       for (std::size_t t = 0; t < y.size(); ++t)
-        y[t] += 10 * kSigma * std::exp(-static_cast<double>(t) / kRate / tau);
+        y[t] += 10 * kEventSigma * std::exp(-static_cast<double>(t) / kEventRate / tau);
       const EventSearch found = search(y);
       one += found.events.size() == 1 && found.events[0].kind == EventKind::warm_up ? 1 : 0;
       FitOptions options;
       options.second_opinion = false;
-      walks += fit_record(y, kRate, nullptr, options)[Term::walk].status == Status::detected;
+      walks += fit_record(y, kEventRate, nullptr, options)[Term::walk].status == Status::detected;
     }
   }
   CHECK(one >= 9);
@@ -243,19 +244,20 @@ TEST_CASE("events: a warm-up that outlasts the record leaves no drift and no wal
 }
 
 TEST_CASE("events: a ramp has a sign and an honest interval") {
-  test::NoiseSource source(kSamples, kRate, 24);
+  test::NoiseSource source(kEventSamples, kEventRate, 24);
   int covered = 0, told = 0;
   constexpr int kRecords = 20;
   for (int r = 0; r < kRecords; ++r) {
     std::vector<double> y = source.record(kQ, kB, kK);
-    const double slope = -60 * kSigma / (kSamples / kRate);
-    for (std::size_t t = 0; t < y.size(); ++t) y[t] += slope * static_cast<double>(t) / kRate;
+    const double slope = -60 * kEventSigma / (kEventSamples / kEventRate);
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += slope * static_cast<double>(t) / kEventRate;
     const EventSearch found = search(y);
     REQUIRE_FALSE(found.events.empty());
     for (const Event& event : found.events) {
       if (event.kind != EventKind::ramp) continue;
       ++told;
-      covered += std::abs(event.slope - slope) < 2.5 * event.sd / (kSamples / kRate) ? 1 : 0;
+      covered +=
+          std::abs(event.slope - slope) < 2.5 * event.sd / (kEventSamples / kEventRate) ? 1 : 0;
     }
   }
   CHECK(told >= kRecords - 1);
@@ -263,20 +265,20 @@ TEST_CASE("events: a ramp has a sign and an honest interval") {
 }
 
 TEST_CASE("events: a step while nothing was recorded is somewhere in the gap") {
-  test::NoiseSource source(kSamples, kRate, 25);
+  test::NoiseSource source(kEventSamples, kEventRate, 25);
   std::vector<double> y = source.record(kQ, kB, kK);
-  add_step(y, 430, 4 * kSigma);
+  add_step(y, 430, 4 * kEventSigma);
   for (std::size_t t = 42000; t < 44000; ++t) y[t] = std::numeric_limits<double>::quiet_NaN();
   const EventSearch found = search(y);
   REQUIRE(found.events.size() == 1);
   CHECK(found.events[0].in_gap);
-  CHECK(found.events[0].size == Approx(4 * kSigma).margin(4 * found.events[0].sd));
+  CHECK(found.events[0].size == Approx(4 * kEventSigma).margin(4 * found.events[0].sd));
   CHECK(found.events[0].at_ci95.low <= 420.1);
   CHECK(found.events[0].at_ci95.high >= 439.9);
 }
 
 TEST_CASE("events: missing samples are no events, at the ends and in the middle") {
-  test::NoiseSource source(kSamples, kRate, 28);
+  test::NoiseSource source(kEventSamples, kEventRate, 28);
   constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   int alarms = 0;
   for (int r = 0; r < 10; ++r) {
@@ -292,35 +294,35 @@ TEST_CASE("events: missing samples are no events, at the ends and in the middle"
 }
 
 TEST_CASE("events: times are those of the record, also when it begins with missing samples") {
-  test::NoiseSource source(kSamples, kRate, 29);
+  test::NoiseSource source(kEventSamples, kEventRate, 29);
   std::vector<double> y = source.record(kQ, kB, kK);
   const std::vector<double> clean = y;
-  add_step(y, 600, 5 * kSigma);
+  add_step(y, 600, 5 * kEventSigma);
   for (std::size_t t = 20'000; t < y.size(); ++t)
-    y[t] += 10 * kSigma * std::exp(-(static_cast<double>(t) / kRate - 200) / 50);
+    y[t] += 10 * kEventSigma * std::exp(-(static_cast<double>(t) / kEventRate - 200) / 50);
   std::fill(y.begin(), y.begin() + 20'000, std::numeric_limits<double>::quiet_NaN());
   const EventSearch found = search(y);
   REQUIRE(found.events.size() == 2);
   const bool step_first = found.events[0].kind == EventKind::step;
   CHECK(found.events[step_first ? 0 : 1].at_s == Approx(600).margin(0.5));
   CHECK(found.events[step_first ? 1 : 0].from_s == Approx(200));
-  subtract_events(found.events, kRate, y);
+  subtract_events(found.events, kEventRate, y);
   double sum = 0;
   for (std::size_t t = 20'000; t < 25'000; ++t) sum += y[t] - clean[t];
   double later = 0;
   for (std::size_t t = 65'000; t < 70'000; ++t) later += y[t] - clean[t];
-  CHECK(sum / 5000 == Approx(later / 5000).margin(1.5 * kSigma));
+  CHECK(sum / 5000 == Approx(later / 5000).margin(1.5 * kEventSigma));
 }
 
 TEST_CASE("events: a filter's slope is no event, and a step behind a filter is one") {
   // A fit of white noise, flicker and walk to the whole of such a spectrum alarmed in one record of eight.
   constexpr std::size_t kLong = 200'000, kBefore = 1000;
-  test::NoiseSource source(kLong + kBefore, kRate, 30);
+  test::NoiseSource source(kLong + kBefore, kEventRate, 30);
   int alarms = 0, found = 0;
   constexpr int kRecords = 20;
   for (int r = 0; r < kRecords; ++r) {
     const std::vector<double> raw = source.record(kQ, kB, kK);
-    for (const double size : {0.0, 3 * kSigma}) {
+    for (const double size : {0.0, 3 * kEventSigma}) {
       std::vector<double> y(kLong);
       double state = raw[0];
       for (std::size_t t = 0; t < raw.size(); ++t) {
@@ -342,14 +344,15 @@ TEST_CASE("events: a filter's slope is no event, and a step behind a filter is o
 }
 
 TEST_CASE("events: humps that the noise does not describe are no events") {
-  test::NoiseSource source(kSamples, kRate, 26);
+  test::NoiseSource source(kEventSamples, kEventRate, 26);
   int alarms = 0;
   for (int r = 0; r < 20; ++r) {
     std::vector<double> y = source.record(kQ, kB, kK);
     double x = 0, v = 0;  // a floor that sways at .56 Hz
     for (double& value : y) {
-      v += -0.0352 * x - 0.02 * v / kRate * 100 * 0.05 + source.gauss()() * 0.3 * kSigma / 100;
-      x += v / kRate * 3.5;
+      v += -0.0352 * x - 0.02 * v / kEventRate * 100 * 0.05 +
+           source.gauss()() * 0.3 * kEventSigma / 100;
+      x += v / kEventRate * 3.5;
       value += x;
     }
     alarms += search(y).events.empty() ? 0 : 1;
@@ -358,22 +361,22 @@ TEST_CASE("events: humps that the noise does not describe are no events") {
 }
 
 TEST_CASE("events: jumps between two levels are telegraph noise, steps of unlike sizes are not") {
-  test::NoiseSource source(kSamples, kRate, 27);
+  test::NoiseSource source(kEventSamples, kEventRate, 27);
   std::vector<double> y = source.record(kQ, kB, kK), unlike = source.record(kQ, kB, kK);
   int jumps = 0;
   for (std::size_t t = 1; t < y.size(); ++t) {
-    jumps += source.gauss().uniform() < 1 / (30 * kRate) ? 1 : 0;
-    y[t] += jumps % 2 * 2 * kSigma;
+    jumps += source.gauss().uniform() < 1 / (30 * kEventRate) ? 1 : 0;
+    y[t] += jumps % 2 * 2 * kEventSigma;
   }
   const EventSearch found = search(y);
   REQUIRE(found.telegraph.has_value());
-  CHECK(found.telegraph->size == Approx(2 * kSigma).epsilon(0.15));
+  CHECK(found.telegraph->size == Approx(2 * kEventSigma).epsilon(0.15));
   CHECK(found.telegraph->jumps >= 6);
   CHECK(found.telegraph->jumps <= jumps);
   CHECK(found.telegraph->dwell_s > 20);
   CHECK(found.sentences.back().find("random telegraph noise") != std::string::npos);
   for (int i = 1; i <= 7; ++i)
-    add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kSigma);
+    add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kEventSigma);
   const EventSearch steps = search(unlike);
   CHECK(steps.events.size() >= 6);
   CHECK_FALSE(steps.telegraph.has_value());
@@ -381,5 +384,5 @@ TEST_CASE("events: jumps between two levels are telegraph noise, steps of unlike
 
 TEST_CASE("events: too short a record is refused in a sentence") {
   const std::vector<double> y(40, 1.0);
-  CHECK_THROWS_AS(event_series(y, kRate), Error);
+  CHECK_THROWS_AS(event_series(y, kEventRate), Error);
 }

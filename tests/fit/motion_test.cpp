@@ -14,12 +14,12 @@ using namespace libchar;
 
 namespace {
 
-constexpr double kRate = 100;
-constexpr std::size_t kSamples = 100'000;
-constexpr double kQ = 5e-3, kB = 5e-3, kK = 1.5e-3, kSigma = 0.05;
+constexpr double kMotionRate = 100;
+constexpr std::size_t kMotionSamples = 100'000;
+constexpr double kMotionQ = 5e-3, kMotionB = 5e-3, kMotionK = 1.5e-3, kMotionSigma = 0.05;
 
 Motion motion_of(const std::vector<double>& y) {
-  return find_motion(event_series(y, kRate));
+  return find_motion(event_series(y, kMotionRate));
 }
 
 /// Student's t with five degrees of freedom, unit variance.
@@ -35,11 +35,13 @@ double student(test::Gaussian& gauss) {
 }  // namespace
 
 TEST_CASE("motion: records of noise have none, and none of their strength changes") {
-  const std::array<std::array<double, 3>, 4> scenes = {
-      {{kQ, 0, 0}, {kQ, kB, kK}, {kQ, 0, 20 * kK}, {0, 0, kK}}};
+  const std::array<std::array<double, 3>, 4> scenes = {{{kMotionQ, 0, 0},
+                                                        {kMotionQ, kMotionB, kMotionK},
+                                                        {kMotionQ, 0, 20 * kMotionK},
+                                                        {0, 0, kMotionK}}};
   int alarms = 0;
   for (std::size_t s = 0; s < scenes.size(); ++s) {
-    test::NoiseSource source(kSamples, kRate, 200 + s);
+    test::NoiseSource source(kMotionSamples, kMotionRate, 200 + s);
     for (int r = 0; r < 30; ++r) {
       const Motion motion = motion_of(source.record(scenes[s][0], scenes[s][1], scenes[s][2]));
       REQUIRE(motion.tested);
@@ -52,13 +54,13 @@ TEST_CASE("motion: records of noise have none, and none of their strength change
 }
 
 TEST_CASE("motion: heavy tails, steps and spikes are neither motion nor a change") {
-  test::NoiseSource source(kSamples, kRate, 31);
+  test::NoiseSource source(kMotionSamples, kMotionRate, 31);
   int changes = 0;
   for (int r = 0; r < 20; ++r) {
-    std::vector<double> y = source.record(0, kB, kK);
+    std::vector<double> y = source.record(0, kMotionB, kMotionK);
     for (std::size_t t = 0; t < y.size(); ++t) {
-      y[t] += kSigma * student(source.gauss()) + (t > 61'803 ? 10 * kSigma : 0);
-      if (source.gauss().uniform() < 1e-3) y[t] += 15 * kSigma;
+      y[t] += kMotionSigma * student(source.gauss()) + (t > 61'803 ? 10 * kMotionSigma : 0);
+      if (source.gauss().uniform() < 1e-3) y[t] += 15 * kMotionSigma;
     }
     const Motion motion = motion_of(y);
     CHECK_FALSE(motion.whole);
@@ -69,11 +71,11 @@ TEST_CASE("motion: heavy tails, steps and spikes are neither motion nor a change
 }
 
 TEST_CASE("motion: a change of strength has its instant and its factor") {
-  test::NoiseSource source(kSamples, kRate, 32);
+  test::NoiseSource source(kMotionSamples, kMotionRate, 32);
   for (const double factor : {1.4, 2.0, 0.5}) {
-    std::vector<double> y = source.record(0, kB, kK);
+    std::vector<double> y = source.record(0, kMotionB, kMotionK);
     for (std::size_t t = 0; t < y.size(); ++t)
-      y[t] += kSigma * source.gauss()() * (t >= 60'000 ? factor : 1);
+      y[t] += kMotionSigma * source.gauss()() * (t >= 60'000 ? factor : 1);
     const Motion motion = motion_of(y);
     INFO("factor " << factor);
     REQUIRE(motion.changes.size() == 1);
@@ -88,10 +90,11 @@ TEST_CASE("motion: a change of strength has its instant and its factor") {
 }
 
 TEST_CASE("motion: a handled stretch is found, and the longest still one") {
-  test::NoiseSource source(kSamples, kRate, 33);
-  std::vector<double> y = source.record(kQ, kB, kK);
+  test::NoiseSource source(kMotionSamples, kMotionRate, 33);
+  std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
   for (std::size_t t = 30'000; t < 34'000; ++t)
-    y[t] += 20 * kSigma * std::sin(2 * std::numbers::pi * 1.3 * static_cast<double>(t) / kRate);
+    y[t] += 20 * kMotionSigma *
+            std::sin(2 * std::numbers::pi * 1.3 * static_cast<double>(t) / kMotionRate);
   const Motion motion = motion_of(y);
   REQUIRE(motion.moving_s.size() == 1);
   CHECK(motion.moving_s[0].low <= 300);
@@ -100,18 +103,18 @@ TEST_CASE("motion: a handled stretch is found, and the longest still one") {
   REQUIRE(motion.still_s.has_value());
   CHECK(motion.still_s->low == Approx(motion.moving_s[0].high));
   CHECK(motion.still_s->high > 990);
-  CHECK(longest_still(y, kRate)->low == motion.still_s->low);
+  CHECK(longest_still(y, kMotionRate)->low == motion.still_s->low);
 }
 
 TEST_CASE("motion: a recording in motion throughout is called one") {
-  test::NoiseSource source(kSamples, kRate, 34);
-  std::vector<double> y = source.record(kQ, kB, kK);
+  test::NoiseSource source(kMotionSamples, kMotionRate, 34);
+  std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
   // A hand's movement: an oscillation of 1 Hz whose logarithm of amplitude wanders.
   double strength = 0;
   for (std::size_t t = 0; t < y.size(); ++t) {
     strength += -strength * 0.001 + 0.05 * source.gauss()();
-    y[t] += 20 * kSigma * std::exp(strength) *
-            std::sin(2 * std::numbers::pi * static_cast<double>(t) / kRate);
+    y[t] += 20 * kMotionSigma * std::exp(strength) *
+            std::sin(2 * std::numbers::pi * static_cast<double>(t) / kMotionRate);
   }
   const Motion motion = motion_of(y);
   CHECK(motion.whole);
@@ -120,8 +123,8 @@ TEST_CASE("motion: a recording in motion throughout is called one") {
 }
 
 TEST_CASE("motion: signals from formulas are judged without a fit that cannot be") {
-  std::vector<double> ramp(kSamples), turns(kSamples);
-  for (std::size_t t = 0; t < kSamples; ++t) {
+  std::vector<double> ramp(kMotionSamples), turns(kMotionSamples);
+  for (std::size_t t = 0; t < kMotionSamples; ++t) {
     ramp[t] = static_cast<double>(t);
     turns[t] = t % 2 == 0 ? 1 : -1;
   }
@@ -130,13 +133,13 @@ TEST_CASE("motion: signals from formulas are judged without a fit that cannot be
 }
 
 TEST_CASE("motion: a staircase and a short record are not judged") {
-  test::NoiseSource source(kSamples, kRate, 35);
-  std::vector<double> y = source.record(kQ, kB, kK);
-  for (double& value : y) value = std::round(value / (6 * kSigma)) * 6 * kSigma;
+  test::NoiseSource source(kMotionSamples, kMotionRate, 35);
+  std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
+  for (double& value : y) value = std::round(value / (6 * kMotionSigma)) * 6 * kMotionSigma;
   CHECK_FALSE(motion_of(y).tested);
   y.resize(1000);
   CHECK_FALSE(motion_of(y).tested);
-  CHECK_FALSE(longest_still(y, kRate).has_value());
+  CHECK_FALSE(longest_still(y, kMotionRate).has_value());
 }
 
 TEST_CASE("motion: a gyroscope that was turned by hand lay still for 39 s before") {

@@ -78,13 +78,13 @@ Record laplace(std::size_t n, std::uint64_t seed) {
   return y;
 }
 
-Record autoregressive(std::size_t n, std::uint64_t seed) {
+Record autoregressive_record(std::size_t n, std::uint64_t seed) {
   Record y = white(n, seed);
   for (std::size_t t = 1; t < n; ++t) y[t] += 0.95 * y[t - 1];
   return y;
 }
 
-Record walk(std::size_t n, std::uint64_t seed) {
+Record walk_record(std::size_t n, std::uint64_t seed) {
   Record y = white(n, seed);
   for (std::size_t t = 1; t < n; ++t) y[t] += y[t - 1];
   return y;
@@ -116,7 +116,7 @@ Record thermometer(std::size_t n, std::uint64_t seed) {
   return y;
 }
 
-Record rounded(std::size_t n, std::uint64_t seed) {
+Record rounded_record(std::size_t n, std::uint64_t seed) {
   Record y = white(n, seed);
   for (double& value : y) value = std::round(value / 4) * 4;
   return y;
@@ -231,13 +231,13 @@ TEST_CASE("noise of other kinds has no spikes") {
                         {"t4", [](std::size_t n, std::uint64_t s) { return student(n, s, 4); }},
                         {"t5", [](std::size_t n, std::uint64_t s) { return student(n, s, 5); }},
                         {"Laplace", laplace},
-                        {"AR(1)", autoregressive},
+                        {"AR(1)", autoregressive_record},
                         {"flicker", flicker},
-                        {"walk", walk},
+                        {"walk", walk_record},
                         {"turned by hand", turned_by_hand},
                         {"loud stretches", loud_stretches},
                         {"thermometer", thermometer},
-                        {"rounded", rounded},
+                        {"rounded", rounded_record},
                         {"held", held},
                         {"telegraph", telegraph}};
   for (const Kind& kind : kinds) {

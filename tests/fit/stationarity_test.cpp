@@ -13,11 +13,11 @@ using Record = std::vector<double>;
 
 namespace {
 
-constexpr double kRate = 100;
-constexpr std::size_t kSamples = 64'000;
+constexpr double kSteadyRate = 100;
+constexpr std::size_t kSteadySamples = 64'000;
 
 Record clean(unsigned seed) {
-  test::NoiseSource source(kSamples, kRate, seed);
+  test::NoiseSource source(kSteadySamples, kSteadyRate, seed);
   return source.record(5e-3, 5e-3, 1.5e-3);
 }
 
@@ -25,7 +25,7 @@ Record clean(unsigned seed) {
 Record louder_between(unsigned seed, double factor, double from, double to) {
   Record y = clean(seed);
   test::Gaussian normal(seed + 1000);
-  const double added = 5e-3 * std::sqrt(kRate) * std::sqrt(factor * factor - 1);
+  const double added = 5e-3 * std::sqrt(kSteadyRate) * std::sqrt(factor * factor - 1);
   for (std::size_t t = 0; t < y.size(); ++t) {
     const double x = static_cast<double>(t) / static_cast<double>(y.size());
     if (x >= from && x < to) y[t] += added * normal();
@@ -34,7 +34,7 @@ Record louder_between(unsigned seed, double factor, double from, double to) {
 }
 
 Stationarity of(const Record& y) {
-  return fit_record(y, kRate, nullptr).stationarity;
+  return fit_record(y, kSteadyRate, nullptr).stationarity;
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ TEST_CASE("stationarity: the spread is that of the stretches") {
     const double log_factor = 0.06 * normal();
     sum += log_factor;
     squares += log_factor * log_factor;
-    for (std::size_t t = s * kSamples / 16; t < (s + 1) * kSamples / 16; ++t)
+    for (std::size_t t = s * kSteadySamples / 16; t < (s + 1) * kSteadySamples / 16; ++t)
       y[t] *= std::exp(log_factor);
   }
   const double sd = std::sqrt((squares - sum * sum / 16) / 15);
@@ -108,14 +108,14 @@ TEST_CASE("stationarity: scale and offset change nothing, and time reversed is t
 TEST_CASE("stationarity: short, holed and constant records are not judged") {
   Record y = clean(1);
   CHECK_FALSE(of(Record(y.begin(), y.begin() + 8000)).tested);
-  const NoiseFit fit = fit_record(y, kRate, nullptr);
+  const NoiseFit fit = fit_record(y, kSteadyRate, nullptr);
   for (std::size_t t = 0; t < y.size(); t += 8) y[t] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_FALSE(test_stationarity(y, kRate, fit).tested);
-  CHECK_FALSE(test_stationarity(Record(20'000, 1.0), kRate, fit).tested);
+  CHECK_FALSE(test_stationarity(y, kSteadyRate, fit).tested);
+  CHECK_FALSE(test_stationarity(Record(20'000, 1.0), kSteadyRate, fit).tested);
   Record gap = clean(2);  // one missing stretch that holds whole pieces
   for (std::size_t t = 30'000; t < 34'000; ++t) gap[t] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_FALSE(test_stationarity(gap, kRate, fit).tested);
+  CHECK_FALSE(test_stationarity(gap, kSteadyRate, fit).tested);
   FitOptions as_it_is;
   as_it_is.stationarity = false;
-  CHECK_FALSE(fit_record(clean(1), kRate, nullptr, as_it_is).stationarity.tested);
+  CHECK_FALSE(fit_record(clean(1), kSteadyRate, nullptr, as_it_is).stationarity.tested);
 }

@@ -44,11 +44,11 @@ std::unique_ptr<Runner> trained(const TrainingScene& s, const test::Values& valu
   return runner;
 }
 
-double rms(const Eigen::VectorXd& v) {
+double rms_of(const Eigen::VectorXd& v) {
   return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
 }
 
-std::string code_of(const std::function<void()>& action) {
+std::string training_code(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -105,11 +105,11 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
   const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
   const Eigen::MatrixXd rest = s.y.rightCols(18000);
   const double best =
-      rms((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
+      rms_of((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
   for (const double neurons : {3, 10}) {
     auto runner = trained(s, {{"neurons", neurons}});
     const test::Run run = test::run(*runner, rest);
-    const double ours = rms(run.x.row(0).transpose() - s.x.tail(18000));
+    const double ours = rms_of(run.x.row(0).transpose() - s.x.tail(18000));
     INFO(neurons);
     CHECK(ours < 1.01 * best);
     CHECK(std::sqrt(run.variance(0, 0)) == Approx(ours).epsilon(0.08));
@@ -121,12 +121,12 @@ TEST_CASE("perceptron: learns a bent sensor") {
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
   auto runner = trained(s, {{"starts", 1}, {"neurons", 6}});
   const double ours =
-      rms(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
+      rms_of(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
   const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
-  const double straight = rms((s.y.rightCols(4000).transpose() * affine.head(3)).array() +
-                              affine[3] - s.x.tail(4000).array());
+  const double straight = rms_of((s.y.rightCols(4000).transpose() * affine.head(3)).array() +
+                                 affine[3] - s.x.tail(4000).array());
   CHECK(ours < 0.8 * straight);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("perceptron: of a long window a part is kept, missing samples give no 
   const test::Run run = test::run(*runner, rest);
   CHECK(std::isnan(run.x(0, 5)));
   CHECK(std::isfinite(run.x(0, 6)));
-  CHECK(rms(run.x.rightCols(990).transpose() - s.x.tail(990)) < 0.25);
+  CHECK(rms_of(run.x.rightCols(990).transpose() - s.x.tail(990)) < 0.25);
 }
 
 TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
@@ -196,15 +196,15 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
   TrainingScene s = scene(3000, 120);
-  CHECK(code_of([&] { trained(s); }) == "E0860");
-  CHECK(code_of([&] { trained(s, {{"neurons", 1}}); }) == "");
+  CHECK(training_code([&] { trained(s); }) == "E0860");
+  CHECK(training_code([&] { trained(s, {{"neurons", 1}}); }) == "");
   // The engine keeps such samples away; the algorithm itself does not trust it.
   Perceptron perceptron(s.array, Settings(Perceptron::options));
   s.y.row(0).head(10).setConstant(1e308);
   s.y.row(0).segment(10, 10).setConstant(-1e308);
   for (Eigen::Index k = 0; k < 2000; ++k)
     perceptron.learn(Sample(s.y.col(k).data(), 3), Sample(&s.x[k], 1));
-  CHECK(code_of([&] { perceptron.finish_learning(); }) == "E0861");
+  CHECK(training_code([&] { perceptron.finish_learning(); }) == "E0861");
 }
 
 TEST_CASE("perceptron: a window longer than the room is no worse, however its length falls") {
@@ -217,7 +217,7 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
       for (Eigen::Index i = 0; i < 3; ++i) s.y(i, k) = s.x[k] + 0.01 * gauss();
     }
     const auto runner = trained(s, {{"most_samples", 1000}});
-    return rms(test::run(*runner, s.y.rightCols(2000)).x.row(0).transpose() - s.x.tail(2000));
+    return rms_of(test::run(*runner, s.y.rightCols(2000)).x.row(0).transpose() - s.x.tail(2000));
   };
   const double whole = error_of(1000);
   CHECK(whole < 0.012);
@@ -228,5 +228,5 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
 TEST_CASE("perceptron: a reference that stands still is refused") {
   TrainingScene s = scene(2000, 1000);
   s.x.setConstant(4.5);
-  CHECK(code_of([&] { trained(s); }) == "E0864");
+  CHECK(training_code([&] { trained(s); }) == "E0864");
 }

@@ -15,7 +15,7 @@
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
-using Column = std::vector<double>;
+using ColumnValues = std::vector<double>;
 
 namespace {
 
@@ -53,7 +53,7 @@ std::string fault_of(const std::string& literal) {
 }  // namespace
 
 TEST_CASE("C order, Fortran order, byte order and header version change nothing") {
-  const std::vector<Column> expected = {
+  const std::vector<ColumnValues> expected = {
       {0, 0.375, 0.75, 1.125}, {0.125, 0.5, 0.875, 1.25}, {0.25, 0.625, 1, 1.375}};
   for (const char* name :
        {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"}) {
@@ -68,21 +68,21 @@ TEST_CASE("C order, Fortran order, byte order and header version change nothing"
 }
 
 TEST_CASE("integers come over exactly, and are counted where a double cannot hold them") {
-  CHECK(read("int16.npy").columns == std::vector<Column>{{-32768, 0}, {32767, -1}});
+  CHECK(read("int16.npy").columns == std::vector<ColumnValues>{{-32768, 0}, {32767, -1}});
   CHECK(read("int16.npy").info.channels[0].integer);
   const auto large = read("int64.npy");
-  CHECK(large.columns[0] == Column{0x1p53, 0x1p53, -0x1p63, 0x1p63});
+  CHECK(large.columns[0] == ColumnValues{0x1p53, 0x1p53, -0x1p63, 0x1p63});
   REQUIRE(large.warnings.find("rounded_integer"));
   CHECK(large.warnings.find("rounded_integer")->count == 2);  // 2^53 + 1 and 2^63 - 1
   const auto natural = read("uint64.npy");
-  CHECK(natural.columns[0] == Column{0, 0x1p53, 0x1p64});
+  CHECK(natural.columns[0] == ColumnValues{0, 0x1p53, 0x1p64});
   CHECK(natural.warnings.find("rounded_integer")->count == 2);
 }
 
 TEST_CASE("half precision is exact; infinity and NaN are missing, infinity is counted") {
   const auto got = read("half.npy");
-  const Column& x = got.columns[0];
-  CHECK(Column(x.begin(), x.begin() + 6) == Column{0, 1, -2, 65504, 0x1p-24, 0x1p-14});
+  const ColumnValues& x = got.columns[0];
+  CHECK(ColumnValues(x.begin(), x.begin() + 6) == ColumnValues{0, 1, -2, 65504, 0x1p-24, 0x1p-14});
   CHECK((x[6] == 0 && std::signbit(x[6])));
   CHECK((std::isnan(x[7]) && std::isnan(x[8])));
   REQUIRE(got.warnings.find("infinite_value"));
@@ -96,9 +96,9 @@ TEST_CASE("a structured array gives its fields by name and its stamps to the nan
   CHECK(got.info.time.column == "t");
   CHECK(got.info.time.unit == "ns");
   CHECK(got.info.time.unit_guessed);
-  CHECK(got.columns[1] == Column{0.25, 1, 1.75, 2.5, 3.25});
-  CHECK(got.columns[5] == Column{-1, -2.5, -4, -5.5, -7});
-  CHECK(got.columns[6] == Column{-2, -1, 0, 1, 2});
+  CHECK(got.columns[1] == ColumnValues{0.25, 1, 1.75, 2.5, 3.25});
+  CHECK(got.columns[5] == ColumnValues{-1, -2.5, -4, -5.5, -7});
+  CHECK(got.columns[6] == ColumnValues{-2, -1, 0, 1, 2});
   const LogInfo info = read_recording(test::fixture("npy/structured.npy").string()).info;
   CHECK(info.time.rate_hz == Approx(200).epsilon(1e-12));
   CHECK(info.time.start_ns == 1403636579758555392);
@@ -107,7 +107,7 @@ TEST_CASE("a structured array gives its fields by name and its stamps to the nan
 TEST_CASE("padding of aligned records is skipped, UTF-8 names are kept") {
   const auto got = read("aligned_version_3.npy");
   CHECK(names(got.info) == "flag Größe ");
-  CHECK(got.columns == std::vector<Column>{{1, 2, 3}, {0.5, 1.5, 2.5}});
+  CHECK(got.columns == std::vector<ColumnValues>{{1, 2, 3}, {0.5, 1.5, 2.5}});
 }
 
 TEST_CASE("channels are chosen by name or position, in file order; a slip is named") {
@@ -115,7 +115,7 @@ TEST_CASE("channels are chosen by name or position, in file order; a slip is nam
   options.channels = {"acc_1", "gyr_0"};
   const auto got = read("structured.npy", options);
   CHECK(names(got.info) == "gyr_0 acc_1 ");
-  CHECK(got.columns[1] == Column{-0.5, -2, -3.5, -5, -6.5});
+  CHECK(got.columns[1] == ColumnValues{-0.5, -2, -3.5, -5, -6.5});
   options.channels = {"gry_0"};
   CHECK_THROWS_WITH(read("structured.npy", options), Catch::Contains("did you mean gyr_0?"));
   options.channels = {"c3"};
@@ -123,7 +123,7 @@ TEST_CASE("channels are chosen by name or position, in file order; a slip is nam
                     Catch::Contains("it has c0, c1, c2") || Catch::Contains("did you mean"));
   options.channels = {"c2"};
   for (const char* name : {"c_order.npy", "fortran_order.npy"})
-    CHECK(read(name, options).columns == std::vector<Column>{{0.25, 0.625, 1, 1.375}});
+    CHECK(read(name, options).columns == std::vector<ColumnValues>{{0.25, 0.625, 1, 1.375}});
 }
 
 TEST_CASE("an unnamed array has a time column only when it is named by position") {
@@ -251,7 +251,7 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto got = write({0, 1, nan, 2, 0.2, 3});
   CHECK(got.time_ns == std::vector<std::int64_t>{0, 200'000'000});
-  CHECK(got.columns[0] == Column{1, 3});
+  CHECK(got.columns[0] == ColumnValues{1, 3});
   CHECK(got.warnings.find("missing_timestamp")->count == 1);
   CHECK_THROWS_WITH(write({0, 1, 1e10, 2}),
                     Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));

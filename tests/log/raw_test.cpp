@@ -12,7 +12,7 @@
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
-using Column = std::vector<double>;
+using ColumnValues = std::vector<double>;
 
 namespace {
 
@@ -52,7 +52,7 @@ TEST_CASE("interleaved and planar, little and big, integers with scale and offse
         Raw(big, R"({"dtype": "i16", "endian": "big)" + tail + "}"),
         Raw(planar, R"({"dtype": "i16", "endian": "little)" + tail + R"(, "order": "planar"})")}) {
     const auto got = raw.read();
-    CHECK(got.columns == std::vector<Column>{{1.5, 2, 2.5}, {-1, -32768, 32767}});
+    CHECK(got.columns == std::vector<ColumnValues>{{1.5, 2, 2.5}, {-1, -32768, 32767}});
     CHECK(got.info.channels[0].unit == "deg/s");
     CHECK_FALSE(got.info.channels[0].integer);
     CHECK(got.info.channels[1].integer);
@@ -63,7 +63,7 @@ TEST_CASE("interleaved and planar, little and big, integers with scale and offse
       options.block_bytes = bytes;
       options.channels = {"b"};
       const auto part = raw.read(options);
-      CHECK(part.columns == std::vector<Column>{{-1, -32768, 32767}});
+      CHECK(part.columns == std::vector<ColumnValues>{{-1, -32768, 32767}});
       CHECK(part.sha256 == got.sha256);
     }
   }
@@ -107,7 +107,7 @@ TEST_CASE("a YAML sidecar says the same as a JSON one") {
       "1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
       ".yaml");
   const auto got = yaml.read();
-  CHECK(got.columns == std::vector<Column>{{1}, {2}});
+  CHECK(got.columns == std::vector<ColumnValues>{{1}, {2}});
   CHECK(got.info.channels[1].name == "010");
   CHECK(got.info.time.start_ns == 1403636579758555392);
   CHECK(read_recording(yaml.path).info.time.rate_hz == 200);

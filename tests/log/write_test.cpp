@@ -12,7 +12,7 @@
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
-using Column = std::vector<double>;
+using ColumnValues = std::vector<double>;
 
 namespace {
 
@@ -29,13 +29,13 @@ LogInfo info_of(const std::vector<Channel>& channels,
 // Written in blocks of uneven length, as readers deliver them.
 std::vector<std::string> write(const std::string& path,
                                const LogInfo& info,
-                               const std::vector<Column>& samples,
+                               const std::vector<ColumnValues>& samples,
                                const WriteOptions& options = {},
                                std::size_t step = 1000) {
   const auto writer = open_log_writer(path, info, options);
   for (std::size_t at = 0; at < samples[0].size(); at += step) {
     std::vector<std::span<const double>> block;
-    for (const Column& column : samples)
+    for (const ColumnValues& column : samples)
       block.emplace_back(std::span(column).subspan(at, std::min(step, column.size() - at)));
     writer->write(block);
   }
@@ -43,7 +43,7 @@ std::vector<std::string> write(const std::string& path,
   return writer->losses();
 }
 
-std::vector<std::uint64_t> bits(const Column& samples) {
+std::vector<std::uint64_t> bits(const ColumnValues& samples) {
   std::vector<std::uint64_t> all;
   for (const double x : samples)
     all.push_back(std::isnan(x) ? 0x7ff8000000000000U : std::bit_cast<std::uint64_t>(x));
@@ -51,17 +51,17 @@ std::vector<std::uint64_t> bits(const Column& samples) {
 }
 
 // Every bit pattern that is a finite double, and the odd missing one.
-Column any_doubles(std::size_t n, std::uint64_t seed) {
+ColumnValues any_doubles(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  Column values = {0.0,
-                   -0.0,
-                   5e-324,
-                   -2.2250738585072014e-308,
-                   std::numeric_limits<double>::max(),
-                   1.0 / 3,
-                   0.1,
-                   1e22,
-                   123456789012345680.0};
+  ColumnValues values = {0.0,
+                         -0.0,
+                         5e-324,
+                         -2.2250738585072014e-308,
+                         std::numeric_limits<double>::max(),
+                         1.0 / 3,
+                         0.1,
+                         1e22,
+                         123456789012345680.0};
   while (values.size() < n) {
     const double x = std::bit_cast<double>(random());
     values.push_back(std::isfinite(x) && random() % 50 != 0 ? x : kMissing);
@@ -73,7 +73,7 @@ Column any_doubles(std::size_t n, std::uint64_t seed) {
 
 TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
   const test::TemporaryFolder folder;
-  const std::vector<Column> samples = {
+  const std::vector<ColumnValues> samples = {
       any_doubles(5000, 1), any_doubles(5000, 2), any_doubles(5000, 3)};
   const LogInfo info =
       info_of({{"gyro_x", "deg/s"}, {"gyro_y", "deg/s"}, {"it's, \"odd\"", ""}}, 200);
@@ -109,7 +109,7 @@ TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
 
 TEST_CASE("32-bit files hold 32-bit values exactly, and say what they rounded") {
   const test::TemporaryFolder folder;
-  const std::vector<Column> samples = {{0.5, 1.0 / 3, kMissing, -0.0}};
+  const std::vector<ColumnValues> samples = {{0.5, 1.0 / 3, kMissing, -0.0}};
   WriteOptions options;
   options.dtype = "f32";
   for (const char* file : {"a.npy", "a.f32"}) {
@@ -174,7 +174,7 @@ TEST_CASE("an output is whole or absent, and nothing is overwritten unasked") {
     const std::string path = (folder / file).string();
     {
       const auto writer = open_log_writer(path, info_of({{"x", ""}}));
-      writer->write(std::vector<std::span<const double>>{Column(10, 1.0)});
+      writer->write(std::vector<std::span<const double>>{ColumnValues(10, 1.0)});
     }
     CHECK_FALSE(std::filesystem::exists(path));
     write(path, info_of({{"x", ""}}), {{1, 2}});
@@ -212,8 +212,9 @@ TEST_CASE("thousands of named channels do not fit a .npy header and say so") {
   const test::TemporaryFolder folder;
   std::vector<Channel> channels;
   for (int i = 0; i < 2000; ++i) channels.push_back({"sensor_" + std::to_string(i), ""});
-  const auto losses = write(
-      (folder / "a.npy").string(), info_of(channels, 0), std::vector<Column>(2000, Column{1, 2}));
+  const auto losses = write((folder / "a.npy").string(),
+                            info_of(channels, 0),
+                            std::vector<ColumnValues>(2000, ColumnValues{1, 2}));
   REQUIRE(losses.size() == 1);
   CHECK_THAT(losses[0], Catch::Contains("channel names"));
   CHECK(read_recording((folder / "a.npy").string()).info.channels.size() == 2000);

@@ -21,7 +21,8 @@ std::vector<ChannelLimit> limits_of(const std::string& blocks,
       parse_limits("format: noise-limits\nversion: 1\nlimits:\n" + blocks, "sheet.yaml"), channels);
 }
 
-std::string refusal(const std::string& blocks, const std::vector<NamedChannel>& channels = kImu) {
+std::string limits_refusal(const std::string& blocks,
+                           const std::vector<NamedChannel>& channels = kImu) {
   try {
     limits_of(blocks, channels);
   } catch (const Error& error) {
@@ -65,35 +66,39 @@ TEST_CASE("limits without a kind hold for every channel, in its own unit") {
 }
 
 TEST_CASE("limits that cannot be used are refused at their line and column") {
-  CHECK_THAT(refusal("  - white_nose: 1\n"),
+  CHECK_THAT(limits_refusal("  - white_nose: 1\n"),
              Contains("sheet.yaml:4:5") && Contains("did you mean white_noise?"));
   CHECK_THAT(
-      refusal("  - white_noise: {value: 1, unit: deg/√h, status: given}\n    kind: angular_rate\n"),
+      limits_refusal(
+          "  - white_noise: {value: 1, unit: deg/√h, status: given}\n    kind: angular_rate\n"),
       Contains("sheet.yaml:4:45") && Contains("unknown key"));
-  CHECK_THAT(refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: mg}}\n"),
+  CHECK_THAT(limits_refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: mg}}\n"),
              Contains("sheet.yaml:4:") &&
                  Contains("no unit of white_noise for a channel in deg/s") && Contains("deg/√h"));
-  CHECK_THAT(refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: deg/s/√Hz}}\n"),
+  CHECK_THAT(limits_refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: deg/s/√Hz}}\n"),
              Contains("one-sided or two-sided"));
-  CHECK_THAT(refusal("  - {channels: [gx, gz], bias_instability: {value: 1, unit: deg/h}}\n"),
-             Contains("sheet.yaml:4:21") && Contains("no such channel") && Contains("gz"));
-  CHECK_THAT(refusal("  - {kind: pressure, bias_instability: {value: 1, unit: Pa}}\n"),
+  CHECK_THAT(
+      limits_refusal("  - {channels: [gx, gz], bias_instability: {value: 1, unit: deg/h}}\n"),
+      Contains("sheet.yaml:4:21") && Contains("no such channel") && Contains("gz"));
+  CHECK_THAT(limits_refusal("  - {kind: pressure, bias_instability: {value: 1, unit: Pa}}\n"),
              Contains("sheet.yaml:4:12") && Contains("limits of another sensor?"));
-  CHECK_THAT(refusal("  - {kind: presure, bias_instability: {value: 1, unit: Pa}}\n"),
+  CHECK_THAT(limits_refusal("  - {kind: presure, bias_instability: {value: 1, unit: Pa}}\n"),
              Contains("did you mean pressure?"));
   CHECK_THAT(
-      refusal(
+      limits_refusal(
           "  - {kind: angular_rate, channels: gx, bias_instability: {value: 1, unit: deg/h}}\n"),
       Contains("exclude each other"));
-  CHECK_THAT(refusal("  - {channels: gx, bias_instability: {value: 1, unit: deg/h}}\n"
+  CHECK_THAT(
+      limits_refusal("  - {channels: gx, bias_instability: {value: 1, unit: deg/h}}\n"
                      "  - {kind: angular_rate, bias_instability: {value: 2, unit: deg/h}}\n"),
-             Contains("sheet.yaml:5:") && Contains("already, in line 4"));
-  CHECK_THAT(refusal("  - {kind: angular_rate}\n"), Contains("limits no noise term"));
-  CHECK_THAT(refusal("  - {kind: angular_rate, bias_instability: {value: 0, unit: deg/h}}\n"),
-             Contains("sheet.yaml:4:"));
-  CHECK_THAT(refusal("  - {kind: angular_rate, bias_instability: {unit: deg/h}}\n"),
+      Contains("sheet.yaml:5:") && Contains("already, in line 4"));
+  CHECK_THAT(limits_refusal("  - {kind: angular_rate}\n"), Contains("limits no noise term"));
+  CHECK_THAT(
+      limits_refusal("  - {kind: angular_rate, bias_instability: {value: 0, unit: deg/h}}\n"),
+      Contains("sheet.yaml:4:"));
+  CHECK_THAT(limits_refusal("  - {kind: angular_rate, bias_instability: {unit: deg/h}}\n"),
              Contains("value is missing"));
-  CHECK_THAT(refusal("  []\n"), Contains("at least one limit"));
+  CHECK_THAT(limits_refusal("  []\n"), Contains("at least one limit"));
   CHECK_THROWS_WITH(parse_limits("format: sensor-model\nversion: 1\n", "m.yaml"),
                     Contains("noise-limits"));
   CHECK_THROWS_WITH(parse_limits("format: noise-limits\nversion: 1\n", "m.yaml"),

@@ -15,10 +15,10 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kHead = "format: scene\nversion: 1\n";
-const std::string kRecorded = kHead + "recording: log.csv\nsensors: [a, b, c]\n";
+const std::string kSceneHead = "format: scene\nversion: 1\n";
+const std::string kRecorded = kSceneHead + "recording: log.csv\nsensors: [a, b, c]\n";
 const std::string kSimulated =
-    kHead +
+    kSceneHead +
     "simulate:\n  rate_hz: 100\n  duration_s: 2.5\n  seed: 18446744073709551615\n  oversampling: "
     "4\n  truth:\n    - {kind: sine, name: angle, amplitude: 0.3, frequency_hz: 0.5, offset: -1}\n"
     "    - {kind: derivative, of: angle, name: rate}\n    - {kind: points, points: [[0, 1], [2, "
@@ -39,7 +39,7 @@ std::string joined(const std::vector<std::string>& words) {
 TEST_CASE("scene: a recording, its sensors and what is known about it") {
   const test::SceneBench bench;
   const Scene s = bench.read(
-      kHead +
+      kSceneHead +
       "name: three monitors\nrecording: {file: log.csv, rate_hz: 99.5, delimiter: \",\", decimal: "
       "point, header: yes, names: [a, b], units: g, time_column: t, time_unit: s, skip_rows: 0, "
       "format: csv, from_s: 0.01, to_s: 60}\nsensors:\n  - {name: left, channel: a}\n  - {channel: "
@@ -101,7 +101,7 @@ TEST_CASE("scene: a simulation is ready to run") {
 TEST_CASE("scene: a truth signal out of a recording") {
   const test::SceneBench bench;
   const auto text = [](const std::string& rate, const std::string& signal) {
-    return kHead + "simulate: {rate_hz: " + rate + ", samples: 6, truth: " + signal +
+    return kSceneHead + "simulate: {rate_hz: " + rate + ", samples: 6, truth: " + signal +
            "}\nsensors: [{name: a, model: none}]\n";
   };
   const Scene s = bench.read(text("100", "{kind: recording, file: motion.csv, channel: angle}"));
@@ -126,10 +126,11 @@ TEST_CASE("scene: what is written reads back to the same scene") {
         kRecorded + "reference: {channels: [truth, b], mean: true, lag_s: -0.1}\nsimulated: {seed: "
                     "7, faults: [{sensor: b, kind: noise, value: 0.3}]}\nalgorithms: [{name: "
                     "takens, neighbours: 12}, mean]\n",
-        kHead + "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
-                "rate_hz: 1e300, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
-                "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
-                "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
+        kSceneHead +
+            "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
+            "rate_hz: 1e300, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
+            "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
+            "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
     const Scene s = bench.read(text);
     const std::string written = scene_yaml(s);
     const Scene again = bench.read(written, "again.yaml");
@@ -262,7 +263,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("simulated: {sed: 1}\n", "5:13: error E0540");
   const auto sensors = [&](const std::string& list, const std::string& begin) {
     INFO(list);
-    CHECK_THAT(bench.refusal(kHead + "recording: log.csv\nsensors: " + list + "\n"),
+    CHECK_THAT(bench.refusal(kSceneHead + "recording: log.csv\nsensors: " + list + "\n"),
                Catch::StartsWith("s.yaml:" + begin));
   };
   sensors("[]", "4:10: error E0736: sensors");
@@ -280,9 +281,10 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
           "4:42: error E0543: sensors[0].model.white_noise");
   const auto simulated = [&](const std::string& inside, const std::string& begin) {
     INFO(inside);
-    CHECK_THAT(bench.refusal(kHead + "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 10, " +
-                             inside + "}\n"),
-               Catch::StartsWith("s.yaml:" + begin));
+    CHECK_THAT(
+        bench.refusal(kSceneHead + "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 10, " +
+                      inside + "}\n"),
+        Catch::StartsWith("s.yaml:" + begin));
   };
   simulated("samples: 0", "4:34: error E0545: simulate.samples");
   simulated("samples: 1e3", "4:34: error E0541: simulate.samples");
@@ -312,20 +314,21 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   simulated("samples: 9, truth: {kind: points, points: []}", "4:67: error E0736");
   simulated("samples: 9, truth: {kind: zero, name: a}",
             "4:11: error E0554: two channels would be called a");
-  CHECK_THAT(bench.refusal(kHead + "sensors: [a]\nsimulate: {rate_hz: 10, samples: 9}\n"),
+  CHECK_THAT(bench.refusal(kSceneHead + "sensors: [a]\nsimulate: {rate_hz: 10, samples: 9}\n"),
              Contains("E0554") || Contains("E0743"));
-  CHECK_THAT(bench.refusal(kHead + "sensors: [{name: a}]\nsimulate: {rate_hz: 10, samples: 9}\n"),
-             Contains("E0743: sensors[0].model: a simulated sensor needs a model"));
   CHECK_THAT(
-      bench.refusal(kHead + "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, "
-                            "model: none}]\nreference: trut\n"),
+      bench.refusal(kSceneHead + "sensors: [{name: a}]\nsimulate: {rate_hz: 10, samples: 9}\n"),
+      Contains("E0743: sensors[0].model: a simulated sensor needs a model"));
+  CHECK_THAT(
+      bench.refusal(kSceneHead + "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, "
+                                 "model: none}]\nreference: trut\n"),
       Contains("E0738: reference: trut is not a truth signal") && Contains("did you mean truth?"));
   CHECK_THAT(bench.refusal("format: sensor-model\nversion: 1\n"), Contains("E0546"));
 }
 
 TEST_CASE("scene: outputs never overwrite what a scene reads, nor one another") {
   const test::SceneBench bench;
-  const Scene s = bench.read(kHead +
+  const Scene s = bench.read(kSceneHead +
                              "recording: log.csv\nsensors: [{name: a, model: gyro.sensor.yaml}]\n"
                              "reference: {channels: pm25, recording: station.csv}\n");
   const auto refusal = [&](const std::vector<std::string>& outputs) -> std::string {

@@ -38,7 +38,7 @@ std::vector<double> coloured(std::size_t n, double exponent, unsigned seed) {
   return {y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n)};
 }
 
-WelchOptions segments_of(std::uint64_t n) {
+WelchOptions line_segments(std::uint64_t n) {
   WelchOptions options;
   options.segment = n;
   return options;
@@ -72,7 +72,7 @@ TEST_CASE(
       const double rate = 200, frequency = (300 + place) * rate / 4096;
       for (std::size_t t = 0; t < y.size(); ++t)
         y[t] += 0.5 * std::sin(2 * std::numbers::pi * frequency * static_cast<double>(t) / rate);
-      WelchOptions options = segments_of(4096);
+      WelchOptions options = line_segments(4096);
       options.window = window;
       for (const Sides sides : {Sides::one, Sides::two})
         for (const Scaling scaling : {Scaling::psd, Scaling::ps, Scaling::lsd, Scaling::ls}) {
@@ -95,7 +95,7 @@ TEST_CASE("two lines are two, a strong line is one in spite of its leakage") {
   for (std::size_t t = 0; t < y.size(); ++t)
     y[t] += 1e3 * std::sin(0.5003 * static_cast<double>(t)) +
             std::sin(1.7 * static_cast<double>(t)) + std::sin(1.75 * static_cast<double>(t));
-  const auto lines = find_lines(welch(y, 2 * std::numbers::pi, segments_of(4096)));
+  const auto lines = find_lines(welch(y, 2 * std::numbers::pi, line_segments(4096)));
   REQUIRE(lines.size() == 3);
   CHECK(lines[0].frequency_hz == Approx(0.5003).margin(2e-4));
   CHECK(lines[0].amplitude == Approx(1e3).epsilon(0.01));
@@ -110,7 +110,7 @@ TEST_CASE("noise of any slope raises no false alarm") {
     for (unsigned seed = 0; seed < 60; ++seed) {
       const auto y = coloured(1U << 14U, exponent, 100 + seed);
       alarms += !find_lines(welch(y, 1)).empty();  // seven segments: few degrees of freedom
-      alarms += !find_lines(welch(y, 1, segments_of(256))).empty();
+      alarms += !find_lines(welch(y, 1, line_segments(256))).empty();
     }
   CHECK(alarms <= 2);  // 360 spectra at 1e-3 each: 0.36 expected
 
@@ -131,11 +131,11 @@ TEST_CASE("the lines of a real unit: the gyroscope at 19.9 Hz, the accelerometer
     return false;
   };
   const auto path = test::shared("data/static_adis16405_run1.npy");
-  CHECK(has(find_lines(welch(npy_column(path, 2, 6), 100, segments_of(8192))), 19.8, 20.0));
+  CHECK(has(find_lines(welch(npy_column(path, 2, 6), 100, line_segments(8192))), 19.8, 20.0));
   bool seen = false;
   for (const std::size_t axis : {3U, 4U, 5U})
     seen = seen ||
-           has(find_lines(welch(npy_column(path, axis, 6), 100, segments_of(32768))), 0.5, 0.62);
+           has(find_lines(welch(npy_column(path, axis, 6), 100, line_segments(32768))), 0.5, 0.62);
   CHECK(seen);
 }
 
@@ -182,5 +182,5 @@ TEST_CASE("rounding a slow drift makes no lines, and hides none that are larger 
 TEST_CASE("constant, empty and tiny spectra have no lines") {
   CHECK(find_lines(Spectrum{}).empty());
   CHECK(find_lines(welch(std::vector<double>(1000, 2.0), 1)).empty());
-  CHECK(find_lines(welch(coloured(64, 0, 1), 1, segments_of(8))).empty());
+  CHECK(find_lines(welch(coloured(64, 0, 1), 1, line_segments(8))).empty());
 }

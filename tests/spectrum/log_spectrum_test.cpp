@@ -13,7 +13,7 @@ using namespace libchar;
 
 namespace {
 
-std::vector<double> gaussian(std::size_t n, unsigned seed) {
+std::vector<double> gaussian_record(std::size_t n, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   std::vector<double> y(n);
@@ -26,7 +26,7 @@ std::vector<double> gaussian(std::size_t n, unsigned seed) {
 TEST_CASE("logarithmic bins keep the power, the order and the number") {
   WelchOptions options;
   options.segment = 1000;
-  const auto x = gaussian(1U << 17U, 1);
+  const auto x = gaussian_record(1U << 17U, 1);
   for (const Scaling scaling : {Scaling::psd, Scaling::lsd}) {
     options.scaling = scaling;
     const Spectrum s = welch(x, 100, options);
@@ -58,7 +58,8 @@ TEST_CASE("the scatter of an average over bins is its stated degrees of freedom"
     double sum = 0, squares = 0, dof = 0;
     const int records = 3000;
     for (int i = 0; i < records; ++i) {
-      const Spectrum b = log_binned(welch(gaussian(640, static_cast<unsigned>(i)), 1, options), 8);
+      const Spectrum b =
+          log_binned(welch(gaussian_record(640, static_cast<unsigned>(i)), 1, options), 8);
       const double v = b.value[b.value.size() - 2];  // about sixteen bins
       sum += v;
       squares += v * v;
@@ -73,7 +74,7 @@ TEST_CASE(
     "the log-frequency spectrum of a long record is flat for white noise and has the slope of a "
     "walk") {
   const double rate = 50;
-  auto x = gaussian(3'000'000, 2);
+  auto x = gaussian_record(3'000'000, 2);
   for (const Sides sides : {Sides::one, Sides::two}) {
     const Spectrum s = log_frequency_spectrum(x, rate, sides, 200);
     const double level = (sides == Sides::one ? 2 : 1) / rate;
@@ -101,8 +102,8 @@ TEST_CASE(
 }
 
 TEST_CASE("the log-frequency spectrum serves short records and records with missing samples") {
-  CHECK(log_frequency_spectrum(gaussian(100, 1), 1, Sides::one, 30).value.size() > 5);
-  auto x = gaussian(600'000, 3);
+  CHECK(log_frequency_spectrum(gaussian_record(100, 1), 1, Sides::one, 30).value.size() > 5);
+  auto x = gaussian_record(600'000, 3);
   for (std::size_t i = 11; i < x.size(); i += 101) x[i] = std::numeric_limits<double>::quiet_NaN();
   const Spectrum s = log_frequency_spectrum(x, 1, Sides::one, 64);
   CHECK(s.value.size() > 20);

@@ -20,9 +20,9 @@ using namespace libchar;
 
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> gaussian(std::size_t n, unsigned seed) {
+std::vector<double> white_samples(std::size_t n, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   std::vector<double> y(n);
@@ -30,7 +30,7 @@ std::vector<double> gaussian(std::size_t n, unsigned seed) {
   return y;
 }
 
-WelchOptions segments_of(std::uint64_t n) {
+WelchOptions welch_segments(std::uint64_t n) {
   WelchOptions options;
   options.segment = n;
   return options;
@@ -87,7 +87,7 @@ std::vector<double> slow_welch(const std::vector<double>& x,
 TEST_CASE("Welch's spectrum of the known vector, in 50 digits, is met to double precision") {
   const auto input = columns(test::known("fusion/psd_input.csv"));
   const auto wanted = columns(test::known("fusion/psd_welch.csv"));
-  WelchOptions options = segments_of(512);
+  WelchOptions options = welch_segments(512);
   options.window = Window::hann_nonzero;
   options.detrend = Detrend::none;
   const Spectrum got = welch(input[1], 100, options);
@@ -101,11 +101,11 @@ TEST_CASE("Welch's spectrum of the known vector, in 50 digits, is met to double 
 }
 
 TEST_CASE("Welch's spectrum is its definition, for odd, prime and even segments and any hop") {
-  const auto x = gaussian(700, 1);
+  const auto x = white_samples(700, 1);
   for (const std::size_t n : {8U, 9U, 64U, 97U, 150U, 311U, 700U})
     for (const double overlap : {0.0, 0.3, 0.5, 0.9}) {
       CAPTURE(n, overlap);
-      WelchOptions options = segments_of(n);
+      WelchOptions options = welch_segments(n);
       options.overlap = overlap;
       const auto hop = std::max<std::size_t>(
           1, static_cast<std::size_t>(std::round(static_cast<double>(n) * (1 - overlap))));
@@ -121,10 +121,10 @@ TEST_CASE(
     "the sum of the spectrum is the mean square (rectangular, no overlap), one- and two-sided, "
     "even and odd") {
   for (const std::size_t n : {50U, 51U}) {
-    const auto x = gaussian(n * 20, 2);
+    const auto x = white_samples(n * 20, 2);
     double square = 0;
     for (const double v : x) square += v * v / static_cast<double>(x.size());
-    WelchOptions options = segments_of(n);
+    WelchOptions options = welch_segments(n);
     options.window = Window::rectangular;
     options.overlap = 0;
     options.detrend = Detrend::none;
@@ -141,9 +141,9 @@ TEST_CASE(
 TEST_CASE(
     "two-sided frequencies run from above -Nyquist to +Nyquist and hold half the one-sided "
     "density") {
-  const auto x = gaussian(4000, 3);
+  const auto x = white_samples(4000, 3);
   for (const std::size_t n : {64U, 65U}) {
-    WelchOptions options = segments_of(n);
+    WelchOptions options = welch_segments(n);
     const Spectrum one = welch(x, 100, options);
     options.sides = Sides::two;
     const Spectrum two = welch(x, 100, options);
@@ -172,7 +172,7 @@ TEST_CASE("a sine on a bin reads its amplitude in every scaling, window and side
   for (const Window window :
        {Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top}) {
     CAPTURE(name_of(window));
-    WelchOptions options = segments_of(n);
+    WelchOptions options = welch_segments(n);
     options.window = window;
     const auto peak = [&](Scaling scaling) {
       options.scaling = scaling;
@@ -188,9 +188,9 @@ TEST_CASE("a sine on a bin reads its amplitude in every scaling, window and side
 
 TEST_CASE("equivalent noise bandwidths are those of the literature") {
   const auto bins = [](Window window) {
-    WelchOptions options = segments_of(4096);
+    WelchOptions options = welch_segments(4096);
     options.window = window;
-    return welch(gaussian(4096, 1), 4096, options).enbw_hz;
+    return welch(white_samples(4096, 1), 4096, options).enbw_hz;
   };
   CHECK(bins(Window::rectangular) == Approx(1).epsilon(1e-14));
   CHECK(bins(Window::hann) == Approx(1.5).epsilon(1e-14));
@@ -218,8 +218,8 @@ TEST_CASE("windows are named, symmetric and read back") {
 }
 
 TEST_CASE("invariants: scale by powers of two, offset, reversal, shift, zero") {
-  const auto x = gaussian(6000, 4);
-  const WelchOptions options = segments_of(500);
+  const auto x = white_samples(6000, 4);
+  const WelchOptions options = welch_segments(500);
   const Spectrum base = welch(x, 100, options);
 
   auto scaled = x;
@@ -256,10 +256,10 @@ TEST_CASE("invariants: scale by powers of two, offset, reversal, shift, zero") {
 }
 
 TEST_CASE("linear detrending removes a line, and leaves the noise") {
-  const auto x = gaussian(1U << 16U, 5);
+  const auto x = white_samples(1U << 16U, 5);
   auto drifting = x;
   for (std::size_t t = 0; t < x.size(); ++t) drifting[t] += 1e4 + 3.7 * static_cast<double>(t);
-  WelchOptions options = segments_of(1024);
+  WelchOptions options = welch_segments(1024);
   options.detrend = Detrend::linear;
   const Spectrum without = welch(x, 1, options), with = welch(drifting, 1, options);
   for (std::size_t k = 1; k < with.value.size(); ++k)
@@ -274,14 +274,14 @@ TEST_CASE(
   for (const double overlap : {0.0, 0.5, 0.75}) {
     for (const Window window : {Window::hann, Window::rectangular, Window::blackman_harris}) {
       CAPTURE(overlap, name_of(window));
-      WelchOptions options = segments_of(64);
+      WelchOptions options = welch_segments(64);
       options.window = window;
       options.overlap = overlap;
       options.detrend = Detrend::none;
       double sum = 0, squares = 0, edge_sum = 0, edge_squares = 0, dof = 0, edge_dof = 0;
       const int records = 4000;
       for (int i = 0; i < records; ++i) {
-        const Spectrum s = welch(gaussian(320, static_cast<unsigned>(i)), 10, options);
+        const Spectrum s = welch(white_samples(320, static_cast<unsigned>(i)), 10, options);
         sum += s.value[16];
         squares += s.value[16] * s.value[16];
         edge_sum += s.value[32];
@@ -302,11 +302,11 @@ TEST_CASE(
 }
 
 TEST_CASE("degrees of freedom: 2 a segment without overlap; Hann at half overlap as in the books") {
-  WelchOptions options = segments_of(256);
+  WelchOptions options = welch_segments(256);
   options.overlap = 0;
-  CHECK(welch(gaussian(2560, 1), 1, options).dof[5] == Approx(20).epsilon(1e-14));
+  CHECK(welch(white_samples(2560, 1), 1, options).dof[5] == Approx(20).epsilon(1e-14));
   options.overlap = 0.5;
-  const Spectrum s = welch(gaussian(25600, 1), 1, options);
+  const Spectrum s = welch(white_samples(25600, 1), 1, options);
   CHECK(s.segments == 199);
   CHECK(s.dof[5] ==
         Approx(2 * 199 / (1 + 2 * (1.0 - 1.0 / 199) / 36)).epsilon(1e-12));  // r_1 = 1/6 for Hann
@@ -314,7 +314,7 @@ TEST_CASE("degrees of freedom: 2 a segment without overlap; Hann at half overlap
   CHECK(s.neighbour_correlation[0] == Approx(0.44).margin(0.02));  // (2/3)^2 for one segment
   options.overlap = 0.99;  // many lags: by transform; the limit of dense overlap for Hann is 1/0.52
                            // times that of half overlap's 1/0.528
-  CHECK(welch(gaussian(25600, 1), 1, options).dof[5] == Approx(s.dof[5]).epsilon(0.12));
+  CHECK(welch(white_samples(25600, 1), 1, options).dof[5] == Approx(s.dof[5]).epsilon(0.12));
 }
 
 TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
@@ -326,7 +326,7 @@ TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
   CHECK(interval_factors(1e11, 0.95).first == Approx(0.99999123483248003).epsilon(1e-15));
   CHECK(interval_factors(1e11, 0.95).second == Approx(1.00000876528329220).epsilon(1e-15));
   CHECK(interval_factors(1e13, 0.95).second == Approx(1.00000087652311944).epsilon(1e-15));
-  const Spectrum s = welch(gaussian(1U << 18U, 6), 2, segments_of(4096));
+  const Spectrum s = welch(white_samples(1U << 18U, 6), 2, welch_segments(4096));
   int inside = 0, count = 0;
   for (std::size_t k = 2; k < 2048; k += 3, ++count) {
     const auto [low, high] = spectrum_interval(s, k, 0.95);
@@ -341,9 +341,9 @@ TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
 }
 
 TEST_CASE("threads change no bit") {
-  const auto x = gaussian(1U << 19U, 7);
+  const auto x = white_samples(1U << 19U, 7);
   for (const std::uint64_t n : {16U, 1000U, 4096U, 65536U}) {
-    WelchOptions options = segments_of(n);
+    WelchOptions options = welch_segments(n);
     options.threads = 1;
     const Spectrum single = welch(x, 1, options);
     for (const int threads : {0, 2, 3, 8}) {
@@ -354,12 +354,12 @@ TEST_CASE("threads change no bit") {
 }
 
 TEST_CASE("a stream gives the bits of the whole, however it is pushed, with missing samples too") {
-  auto x = gaussian(20011, 8);
+  auto x = white_samples(20011, 8);
   for (const bool dirty : {false, true}) {
-    if (dirty) x[0] = x[7003] = x[7004] = x[20010] = kMissing;
+    if (dirty) x[0] = x[7003] = x[7004] = x[20010] = kAbsent;
     for (const std::uint64_t n : {8U, 100U, 1024U, 5003U}) {
       for (const double overlap : {0.0, 0.5, 0.8}) {
-        WelchOptions options = segments_of(n);
+        WelchOptions options = welch_segments(n);
         options.overlap = overlap;
         options.detrend = Detrend::linear;
         const Spectrum whole = welch(x, 50, options);
@@ -382,9 +382,9 @@ TEST_CASE("a stream gives the bits of the whole, however it is pushed, with miss
 
 TEST_CASE(
     "segments that touch a missing sample are dropped and counted, and the rest is untouched") {
-  auto x = gaussian(1000, 9);
-  x[250] = kMissing;
-  WelchOptions options = segments_of(100);
+  auto x = white_samples(1000, 9);
+  x[250] = kAbsent;
+  WelchOptions options = welch_segments(100);
   const Spectrum s = welch(x, 1, options);
   CHECK(s.segments == 17);
   CHECK(s.dropped == 2);
@@ -403,16 +403,16 @@ TEST_CASE(
 TEST_CASE(
     "the default segment is a quarter of the record, shorter where samples are missing, with a "
     "note") {
-  CHECK(welch(gaussian(1003, 1), 1).segment == 250);
-  CHECK(welch(gaussian(10, 1), 1).segment == 8);
-  auto x = gaussian(4000, 10);
-  for (std::size_t i = 37; i < x.size(); i += 400) x[i] = kMissing;
+  CHECK(welch(white_samples(1003, 1), 1).segment == 250);
+  CHECK(welch(white_samples(10, 1), 1).segment == 8);
+  auto x = white_samples(4000, 10);
+  for (std::size_t i = 37; i < x.size(); i += 400) x[i] = kAbsent;
   const Spectrum s = welch(x, 1);
   CHECK(s.segment == 250);
   CHECK(s.segments >= 7);
   CHECK(s.notes.size() == 2);
 
-  const Spectrum shorter = welch(gaussian(100, 1), 1, segments_of(1000));
+  const Spectrum shorter = welch(white_samples(100, 1), 1, welch_segments(1000));
   CHECK(shorter.segment == 100);
   CHECK(shorter.notes.size() == 1);
 }
@@ -428,27 +428,27 @@ TEST_CASE("what cannot be done is refused with what is needed") {
   };
   CHECK(message([] { welch({}, 1); }).find("at least 8 consecutive samples") != std::string::npos);
   CHECK(message([] { welch(std::vector<double>(7, 1.0), 1); }).find("has 7") != std::string::npos);
-  CHECK(message([] { welch(std::vector<double>(100, kMissing), 1); }).find("has 0") !=
+  CHECK(message([] { welch(std::vector<double>(100, kAbsent), 1); }).find("has 0") !=
         std::string::npos);
-  CHECK_THROWS_AS(welch(gaussian(100, 1), 0), Error);
-  CHECK_THROWS_AS(welch(gaussian(100, 1), kMissing), Error);
-  WelchOptions options = segments_of(4);
-  CHECK_THROWS_AS(welch(gaussian(100, 1), 1, options), Error);
-  options = segments_of(16);
+  CHECK_THROWS_AS(welch(white_samples(100, 1), 0), Error);
+  CHECK_THROWS_AS(welch(white_samples(100, 1), kAbsent), Error);
+  WelchOptions options = welch_segments(4);
+  CHECK_THROWS_AS(welch(white_samples(100, 1), 1, options), Error);
+  options = welch_segments(16);
   options.overlap = 1;
-  CHECK_THROWS_AS(welch(gaussian(100, 1), 1, options), Error);
-  options.overlap = kMissing;
+  CHECK_THROWS_AS(welch(white_samples(100, 1), 1, options), Error);
+  options.overlap = kAbsent;
   CHECK_THROWS_AS(WelchStream(options), Error);
   CHECK_THROWS_AS(WelchStream(WelchOptions{}), Error);
-  WelchStream stream(segments_of(16));
-  stream.push(gaussian(15, 1));
+  WelchStream stream(welch_segments(16));
+  stream.push(white_samples(15, 1));
   CHECK(message([&] { stream.finish(1); }).find("segments of 16 samples") != std::string::npos);
 }
 
 TEST_CASE("infinite samples are missing samples") {
-  auto x = gaussian(1000, 9);
+  auto x = white_samples(1000, 9);
   x[250] = std::numeric_limits<double>::infinity();
-  const Spectrum s = welch(x, 1, segments_of(100));
+  const Spectrum s = welch(x, 1, welch_segments(100));
   CHECK(s.dropped == 2);
   for (const double v : s.value) REQUIRE(std::isfinite(v));
 }

@@ -93,9 +93,11 @@ Characterization characterized(Session& session,
   return result;
 }
 
-void say_written(const std::vector<OutputFile>& outputs) {
+void say_written(const std::vector<OutputFile>& outputs, const std::vector<std::string>& removed) {
   std::string written = "\nwrote";
   for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
+  if (!removed.empty()) written += "\nremoved, of an earlier run:";
+  for (const std::string& name : removed) written += fmt::format(" {}", printable(name));
   print(written + "\n");
 }
 
@@ -111,13 +113,13 @@ void run_one_by_one(Session& session,
     const CharacterizationView view = characterization_view(result);
     const fs::path folder = folder_for(verb, log, taken);
     const std::vector<OutputFile> outputs = report_files(view, folder);
-    write_outputs(outputs, folder, inputs_of(verb), verb.force);
+    const auto removed = write_outputs(outputs, folder, inputs_of(verb), verb.force);
     if (verb.json) {
       documents.push_back(json_report(view));
       continue;
     }
     print_text(characterization_text(view));
-    say_written(outputs);
+    say_written(outputs, removed);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
 }
@@ -128,15 +130,19 @@ struct FolderOutputs {
   std::vector<OutputFile> files;
 };
 
-/// Nothing is written before all of it can be.
-void write_folders(const CharacterizeVerb& verb, const std::vector<FolderOutputs>& all) {
+/// Nothing is written before all of it can be. What was removed from the last of them.
+std::vector<std::string> write_folders(const CharacterizeVerb& verb,
+                                       const std::vector<FolderOutputs>& all) {
   const std::vector<std::string> inputs = inputs_of(verb);
   for (const FolderOutputs& one : all) {
     std::vector<std::string> paths;
     for (const OutputFile& file : one.files) paths.push_back(file.path);
     check_outputs(paths, one.folder, inputs, verb.force);
   }
-  for (const FolderOutputs& one : all) write_outputs(one.files, one.folder, inputs, verb.force);
+  std::vector<std::string> removed;
+  for (const FolderOutputs& one : all)
+    removed = write_outputs(one.files, one.folder, inputs, verb.force);
+  return removed;
 }
 
 /// The reports of single recordings, in folders of their own below that of the page.
@@ -186,10 +192,10 @@ void run_pooled(Session& session,
   RunsReport report{results, &pooled, judged ? &*judged : nullptr, {}, session.command};
   std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
   all.push_back({verb.folder, runs_files(report, verb.folder)});
-  write_folders(verb, all);
+  const auto removed = write_folders(verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
   print_text(runs_text(report));
-  say_written(all.back().files);
+  say_written(all.back().files, removed);
 }
 
 void run_lot(Session& session,
@@ -204,12 +210,12 @@ void run_lot(Session& session,
   LotReport report{results, &lot, {}, session.command};
   std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
   all.push_back({verb.folder, lot_files(report, verb.folder)});
-  write_folders(verb, all);
+  const auto removed = write_folders(verb, all);
   if (verb.json) return print(dump_json(lot_json(report)));
   print_text(lot_text(report));
   for (const Characterization& result : results)
     if (result.limits) print_text("\n" + printable(result.log.file) + limits_text(*result.limits));
-  say_written(all.back().files);
+  say_written(all.back().files, removed);
 }
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {

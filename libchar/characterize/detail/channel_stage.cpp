@@ -240,6 +240,7 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz)
   const bool cleaned = answer.remedy.has_value();
   FitOptions options = options_->fit;
   options.clock = options_->data != SampleKind::rate;
+  if (!cleaned) options.difference_kurtosis = found_.difference_kurtosis;
   NoiseFit fit = fit_binned(cleaned ? *streams_->cleaned : streams_->bins,
                             rate_hz,
                             found_.samples,

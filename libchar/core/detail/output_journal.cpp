@@ -1,0 +1,127 @@
+#include "libchar/core/detail/output_journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/json.hpp"
+#include "libchar/core/whole_file.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path journal_of(const fs::path& folder) {
+  return folder / ".libchar-outputs.json";
+}
+
+[[noreturn]] void fail_on(const fs::path& path, const char* doing) {
+  throw Error({ErrorKind::output,
+               "E0501",
+               path.string(),
+               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
+               "",
+               ""});
+}
+
+/// The journal is a file in somebody's folder: no name in it leads out of that folder.
+std::string name_in(const Json& value) {
+  const auto name = value.get<std::string>();
+  if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos)
+    throw std::invalid_argument(name);
+  return name;
+}
+
+OutputJournal read_journal(const fs::path& folder) {
+  const fs::path path = journal_of(folder);
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  try {
+    const Json document = Json::parse(text.str());
+    OutputJournal journal;
+    for (const Json& pair : document.at("rename"))
+      journal.rename.emplace_back(name_in(pair.at(0)), name_in(pair.at(1)));
+    for (const Json& name : document.at("remove")) journal.remove.push_back(name_in(name));
+    return journal;
+  } catch (const std::exception&) {
+    throw Error({ErrorKind::output,
+                 "E0514",
+                 path.string(),
+                 "is not a list of outputs that an interrupted run has left",
+                 "",
+                 "remove it"});
+  }
+}
+
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;  // best effort: not every file system lets a folder be synchronised
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void write_journal(const fs::path& folder, const OutputJournal& journal) {
+  Json document = {{"rename", Json::array()}, {"remove", Json(journal.remove)}};
+  for (const auto& [from, to] : journal.rename)
+    document["rename"].push_back(Json::array({from, to}));
+  write_whole_file(journal_of(folder).string(), document.dump() + "\n", true);
+}
+
+void finish_journal(const fs::path& folder) {
+  if (!has_journal(folder)) return;
+  const OutputJournal journal = read_journal(folder);
+  for (const auto& [from, to] : journal.rename) {
+    const fs::path source = folder / from, target = folder / to;
+    // A second attempt: what failed once may have been a signal or a busy server.
+    if (::rename(source.c_str(), target.c_str()) != 0 && errno != ENOENT &&
+        ::rename(source.c_str(), target.c_str()) != 0)
+      fail_on(target, "rename into place");
+  }
+  for (const std::string& name : journal.remove) {
+    const fs::path path = folder / name;
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT && ::unlink(path.c_str()) != 0)
+      fail_on(path, "remove this file of an earlier run");
+  }
+  sync_folder(folder);
+  if (::unlink(journal_of(folder).c_str()) != 0 && errno != ENOENT &&
+      ::unlink(journal_of(folder).c_str()) != 0)
+    fail_on(journal_of(folder), "remove");
+}
+
+bool has_journal(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(journal_of(folder), ignored);
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ < 0) return;  // who may not read a folder may still write into it
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw Error({ErrorKind::output,
+               "E0515",
+               folder.string(),
+               "another run is writing its results into this folder",
+               "",
+               "wait for it or choose another folder"});
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+}  // namespace libchar

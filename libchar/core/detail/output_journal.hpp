@@ -1,0 +1,40 @@
+#pragma once
+// What a set of output files still has to do once all of it is on disk: written down before the first file gets its name, so that an
+// interrupted run can be finished by the next one.
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace libchar {
+
+struct OutputJournal {
+  std::vector<std::pair<std::string, std::string>>
+      rename;                       ///< temporary name, name; both in the folder
+  std::vector<std::string> remove;  ///< names of an earlier run's files that the set does not have
+};
+
+/// On disk when it returns. Throws Error(output).
+void write_journal(const std::filesystem::path& folder, const OutputJournal& journal);
+
+/// Does what the folder's journal says and removes it; nothing where there is none. What is done already is passed over, so that it can
+/// be done again after a kill. Throws Error(output) and leaves the journal where a name cannot be given.
+void finish_journal(const std::filesystem::path& folder);
+
+/// Whether a run was interrupted while its files got their names.
+bool has_journal(const std::filesystem::path& folder);
+
+/// One writer at a time: a lock on the folder itself, which ends with the process. Throws Error(output) where another run has it.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace libchar

@@ -1,0 +1,144 @@
+#include "libchar/core/output_files.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "libchar/core/detail/output_journal.hpp"
+#include "libchar/core/error.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void put_text(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+/// report.json, which names all, and one file for each name.
+std::vector<OutputFile> set_of(const fs::path& folder, const std::vector<std::string>& names) {
+  std::vector<OutputFile> outputs = {{(folder / "report.json").string(), ""}};
+  for (const std::string& name : names) outputs.push_back({(folder / name).string(), name + "\n"});
+  outputs[0].text = Json{{"files", file_names(outputs)}}.dump();
+  return outputs;
+}
+
+std::string code_of_outputs(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.problem().code;
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("what an earlier run named and the new one has not is removed, and nothing else") {
+  const test::TemporaryFolder folder;
+  write_outputs(set_of(folder.path(), {"a.yaml", "b.yaml"}), folder.path(), {}, false);
+  put_text(folder / "mine.yaml", "mine");
+  const auto removed = write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, true);
+  CHECK(removed == std::vector<std::string>{"b.yaml"});
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "mine.yaml", "report.json"});
+}
+
+TEST_CASE(
+    "a document that is not among its own files removes nothing, and no name leads out of the "
+    "folder") {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "in");
+  put_text(folder / "outside.txt", "outside");
+  put_text(folder / "in" / "mine.txt", "mine");
+  put_text(folder / "in" / "report.json",
+           R"({"files": ["report.json", "../outside.txt", "..", "", ".", 3]})");
+  put_text(folder / "in" / "list.json", R"({"files": ["mine.txt"]})");
+  CHECK(write_outputs(set_of(folder / "in", {}), folder / "in", {}, true).empty());
+  CHECK(fs::exists(folder / "outside.txt"));
+  CHECK(fs::exists(folder / "in" / "mine.txt"));
+}
+
+TEST_CASE("an input of the run is not removed as an earlier run's file") {
+  const test::TemporaryFolder folder;
+  write_outputs(set_of(folder.path(), {"b.yaml"}), folder.path(), {}, false);
+  const std::string input = (folder / "b.yaml").string();
+  CHECK(code_of_outputs([&] {
+          write_outputs(set_of(folder.path(), {}), folder.path(), {input}, true);
+        }) == "E0504");
+  CHECK(fs::exists(input));
+}
+
+TEST_CASE(
+    "a run that was killed between two names is finished by the next, and read by nobody before") {
+  const test::TemporaryFolder folder;
+  write_outputs(set_of(folder.path(), {"a.yaml", "b.yaml"}), folder.path(), {}, false);
+  // As left by a kill after the first of two names: a.yaml is new, report.json and the removal of b.yaml are to come.
+  put_text(folder / "a.yaml", "new a");
+  put_text(folder / "report.json.tmp-1-0", R"({"files": ["report.json", "a.yaml"]})");
+  write_journal(
+      folder.path(),
+      {{{"a.yaml.tmp-1-0", "a.yaml"}, {"report.json.tmp-1-0", "report.json"}}, {"b.yaml"}});
+  CHECK(code_of_outputs([&] { refuse_interrupted(folder.path()); }) == "E0516");
+  finish_journal(folder.path());
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
+  CHECK(test::slurp(folder / "a.yaml") == "new a");
+  CHECK(test::slurp(folder / "report.json").find("b.yaml") == std::string::npos);
+  CHECK_NOTHROW(refuse_interrupted(folder.path()));
+}
+
+TEST_CASE("a journal that leads out of its folder, or is none, is refused") {
+  const test::TemporaryFolder folder;
+  for (const char* text : {R"({"rename": [["a", "../b"]], "remove": []})",
+                           R"({"rename": [], "remove": [".."]})",
+                           R"({"rename": 3})",
+                           "",
+                           "{"}) {
+    put_text(folder / ".libchar-outputs.json", text);
+    CHECK(code_of_outputs([&] { finish_journal(folder.path()); }) == "E0514");
+  }
+}
+
+TEST_CASE("two runs on one folder: the second says so and writes nothing") {
+  const test::TemporaryFolder folder;
+  const FolderLock other(folder.path());
+  CHECK(code_of_outputs([&] {
+          write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, false);
+        }) == "E0515");
+  CHECK(names_in(folder.path()).empty());
+}
+
+TEST_CASE("killed at any moment, the next run leaves a whole set and no litter") {
+  // The child is killed after a growing number of microseconds, wherever that is; every third is let run to its end.
+  for (int trial = 0; trial < 60; ++trial) {
+    const test::TemporaryFolder folder;
+    write_outputs(set_of(folder.path(), {"old.yaml", "both.yaml"}), folder.path(), {}, false);
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      write_outputs(set_of(folder.path(), {"both.yaml", "new.yaml"}), folder.path(), {}, true);
+      ::_exit(0);
+    }
+    ::usleep(static_cast<useconds_t>(40 * trial));
+    if (trial % 3 != 0) ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    write_outputs(set_of(folder.path(), {"both.yaml", "last.yaml"}), folder.path(), {}, true);
+    CHECK(names_in(folder.path()) ==
+          std::set<std::string>{"both.yaml", "last.yaml", "report.json"});
+  }
+}
