@@ -61,8 +61,7 @@ std::string markdown_table(const WordTable& table) {
 }
 
 std::string html_table(const WordTable& table) {
-  std::string out =
-      "<div class=\"wide\"><table>\n<thead>" + table_head(table.head) + "</thead>\n<tbody>\n";
+  std::string out = "<div class=\"wide\"><table>\n" + table_head(table.head);
   for (const auto& row : table.rows) out += table_row(row);
   return out + "</tbody></table></div>\n";
 }
