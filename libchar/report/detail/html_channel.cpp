@@ -108,7 +108,8 @@ std::string process_row(const char* name, const Coefficient& c, const std::strin
                                number_text(c.ci95.low, 4),
                                high),
                    "n") +
-         card_cell("As the field says it", "", "") + card_cell("Status", status_chip(c.status), "") +
+         card_cell("As the field says it", "", "") +
+         card_cell("Status", status_chip(c.status), "") +
          card_cell("Known to", "±" + number_text(100 * c.relative_sd, 2) + " %", "n") +
          card_cell("Best possible", "–", "n") + card_cell("Record for 10 %", "–", "n") + "</tr>\n";
 }
