@@ -19,6 +19,8 @@
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
+#include "libchar/replay/detail/run_tracks.hpp"
+#include "libchar/replay/ranking.hpp"
 
 namespace libchar {
 namespace {
@@ -132,6 +134,15 @@ class Replay {
     for (const PlannedAlgorithm& algorithm : plan_.optimum)
       optimum_.emplace_back(algorithm, optimum_frame_);
     sensors_.resize(scene_.sensors.size());
+    tracker_ =
+        RunTracker(frame_, plan_.run_to - plan_.run_from, runs_.size(), sensors_are_comparable());
+  }
+
+  // They see one input in one unit.
+  bool sensors_are_comparable() const {
+    const std::vector<std::string>& units = instants_.info().units;
+    return !scene_.tilt && plan_.array.inputs() == 1 && (plan_.array.h().array() != 0).all() &&
+           std::all_of(units.begin(), units.end(), [&](const auto& u) { return u == units[0]; });
   }
 
   void learn_before_run() {
@@ -202,6 +213,7 @@ class Replay {
           for (const auto& blind : blind_)
             if (blind) blind->run(samples, skip);
           judge_sensors(samples, healthy, truth, skip);
+          tracker_.push(done, samples, truth, runs_);
           if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
@@ -304,6 +316,7 @@ class Replay {
                 const ReplayResult& so_far,
                 const ScoreOptions& scoring) const;
   std::vector<Meters> add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const;
+  void add_tracks(ReplayResult& out) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
   const Scene& scene_;
@@ -320,6 +333,7 @@ class Replay {
   std::vector<AlgorithmRun> runs_, optimum_;
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
+  RunTracker tracker_;
   CopiedSensors copies_;
   double largest_ = 0;   // magnitude of the sensors' usable samples
   bool beyond_ = false;  // there are larger ones
@@ -355,6 +369,7 @@ void Replay::add_facts(ReplayResult& out) const {
   out.rate_hz = info.rate_hz;
   out.instants = static_cast<std::uint64_t>(plan_.run_to - plan_.run_from);
   out.start_s = frame_.start_s;
+  out.scored_from_s = frame_.scored_from_s;
   if (plan_.learn_to > plan_.learn_from) out.learning = plan_.learning;
   out.evaluation = plan_.evaluation;
   out.window_s = options_.window_s > 0
@@ -432,6 +447,18 @@ std::vector<Meters> Replay::add_algorithms(ReplayResult& out, const ScoreOptions
   return meters;
 }
 
+// Of the method that one would use: the best, or else the first in the order.
+void Replay::add_tracks(ReplayResult& out) const {
+  const AlgorithmResult* shown = out.best ? &out.algorithms[*out.best] : nullptr;
+  for (const AlgorithmResult* a : ranked(out))
+    if (shown == nullptr && !a->bound) shown = a;
+  for (std::size_t i = 0; i < runs_.size() && shown != nullptr; ++i) {
+    if (!runs_[i].planned().asked || runs_[i].planned().label != shown->label) continue;
+    out.tracks = tracker_.result(i, out.best_sensor);
+    out.tracks.algorithm = static_cast<std::size_t>(shown - out.algorithms.data());
+  }
+}
+
 // Beyond, squares of samples are infinite or zero, and every score is made of them.
 void Replay::refuse_sizes() const {
   if (!beyond_ && (largest_ == 0 || largest_ >= 1 / fusion::kLargestSample)) return;
@@ -470,6 +497,7 @@ ReplayResult Replay::collect() {
   Meters single;
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
+  add_tracks(out);
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
     out.work.learnt += bound.learnt();

@@ -134,6 +134,22 @@ struct InputResult {
   double optimum_rmse = 0;  ///< of the best linear unbiased weights of the run; NaN: no reference
 };
 
+/// One true input over the run; a series each, empty where there is no reference.
+struct InputTracks {
+  Timeline reference, estimate, error;
+};
+
+/// What a run looks like, thinned to its smallest and largest values: the truth, what the best
+/// method made of the samples, the best single sensor.
+struct RunTracks {
+  std::optional<std::size_t> algorithm;  ///< whose estimate: the best, else the first in the order
+  std::vector<InputTracks> inputs;       ///< empty: nothing ran
+  Timeline sensor, sensor_error;  ///< of `best_sensor`, divided by its h: in the input's unit
+  /// without a reference: of each sensor, divided by its h, from the median of all; a series a
+  /// sensor. Empty where sensors do not see one input in one unit.
+  Timeline deviations;
+};
+
 /// Work done, to prove what was skipped.
 struct ReplayWork {
   std::uint64_t passes = 0;       ///< over the recording or simulation
@@ -151,6 +167,7 @@ struct ReplayResult {
   double rate_hz = 0;                ///< of the instants that are fused
   std::uint64_t instants = 0;        ///< of the run
   double start_s = 0;                ///< of the run, seconds from the recording's first sample
+  double scored_from_s = 0;          ///< behind the warm-up
   std::optional<TimeWindow> learning;
   TimeWindow evaluation;
   double window_s = 0;  ///< of the window RMS
@@ -169,6 +186,7 @@ struct ReplayResult {
   std::optional<Interval> best_over_sensor;
   /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
+  RunTracks tracks;
   Warnings warnings;
   ReplayWork work;
   double seconds = 0;  ///< measured

@@ -6,6 +6,8 @@
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/sha256.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/fusion/fault_log.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/detail/thinned_tracks.hpp"
 #include "libchar/replay/verdict.hpp"
@@ -37,6 +39,24 @@ std::size_t alarms_without_fault(const ReplayResult& r, const AlgorithmResult& a
       }));
 }
 
+// A noise fault gives a sensor less weight; it stays in use.
+bool takes_out(const FoundFault& found) {
+  return found.kind != fusion::name(fusion::FaultRule::noise);
+}
+
+std::vector<double> out_share(const ReplayResult& r, const AlgorithmResult& a) {
+  if (!a.watches_faults) return {};
+  std::vector<double> out(r.sensors.size(), 0.0);
+  const double run_s = static_cast<double>(r.instants) / r.rate_hz, end_s = r.start_s + run_s;
+  for (const FoundFault& found : a.faults)
+    if (takes_out(found) && found.sensor < out.size())
+      out[found.sensor] += std::max(0.0,
+                                    std::min(found.to_s.value_or(end_s), end_s) -
+                                        std::max(found.from_s, r.start_s)) /
+                           run_s;
+  return out;
+}
+
 AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, std::size_t divisor) {
   AlgorithmView out;
   out.result = &a;
@@ -50,6 +70,8 @@ AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, st
   out.variance_track = merged_bins(a.variance_track, divisor);
   out.answers = answers_of(a, r.faults.size());
   out.alarms_without_fault = alarms_without_fault(r, a);
+  out.out_share = out_share(r, a);
+  out.core_share = 1e-9 * a.ns_per_sample * r.rate_hz;
   return out;
 }
 
@@ -145,6 +167,9 @@ bool sensors_can_be_drawn(const std::vector<SensorResult>& sensors) {
          std::all_of(sensors.begin(), sensors.end(), alike);
 }
 
+/// Who has an estimate at so many of the instants lacks none that one would miss.
+constexpr double kNearlyAlways = 0.999;
+
 ReplayFigures figures_of(const ReplayResult& r) {
   const auto any = [&](auto has) {
     return std::any_of(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
@@ -159,6 +184,59 @@ ReplayFigures figures_of(const ReplayResult& r) {
   out.variances = any([](const auto& a) { return a.variances.has_value(); });
   out.faults = !r.faults.empty() || any([](const auto& a) { return !a.faults.empty(); });
   out.sensors = sensors_can_be_drawn(r.sensors);
+  out.ranking = any([](const auto& a) { return a.rmse > 0; });
+  out.availability = any([](const auto& a) { return a.availability < kNearlyAlways; });
+  out.run = !r.tracks.inputs.empty();
+  out.deviations = !r.tracks.deviations.empty();
+  out.time_matters =
+      any([&](const auto& a) { return 1e-9 * a.ns_per_sample * r.rate_hz > kCoreThatMatters; });
+  return out;
+}
+
+void add_mark(std::vector<RunMark>& out, RunMark mark, double start_s, double end_s) {
+  mark.from_s = std::max(mark.from_s, start_s);
+  mark.to_s = std::min(mark.to_s, end_s);
+  if (mark.from_s < mark.to_s) out.push_back(std::move(mark));
+}
+
+std::string fault_label(const ReplayResult& r, const SensorFault& fault) {
+  const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
+  return (fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name + ": " : "") +
+         std::string(name_of(fault.kind)) + (valueless ? "" : " " + significant(fault.value, 4));
+}
+
+std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
+  std::vector<RunMark> out;
+  if (r.learning)
+    add_mark(out,
+             {"learning", "learning window", {}, r.learning->from_s, r.learning->to_s},
+             r.start_s,
+             end_s);
+  add_mark(
+      out, {"warm-up", "warm-up, not scored", {}, r.start_s, r.scored_from_s}, r.start_s, end_s);
+  for (const SensorFault& fault : r.faults)
+    add_mark(out,
+             {"fault",
+              fault_label(r, fault),
+              fault.sensor < r.sensors.size() ? std::optional(fault.sensor) : std::nullopt,
+              fault.from_s,
+              fault.to_s},
+             r.start_s,
+             end_s);
+  return out;
+}
+
+/// All sensors together: about 400 kB of a page.
+constexpr std::size_t kMostDeviations = 40000;
+
+RunView run_view(const ReplayResult& r, double end_s) {
+  RunView out;
+  if (r.tracks.algorithm) out.method = r.algorithms[*r.tracks.algorithm].label;
+  if (r.best_sensor && !r.tracks.sensor.empty()) out.sensor = r.sensors[*r.best_sensor].name;
+  const Timeline& all = r.tracks.deviations;
+  const std::size_t numbers = all.time_s.size() * (1 + 2 * all.low.size());
+  out.deviations = merged_bins(all, (numbers + kMostDeviations - 1) / kMostDeviations);
+  out.marks = marks_of(r, end_s);
   return out;
 }
 
@@ -190,6 +268,7 @@ ReplayView replay_view(const ReplayResult& r) {
   out.ranked = views_of(out, ranked(r));
   out.skipped = skipped_algorithms(r);
   for (std::size_t j = 0; j < r.inputs.size(); ++j) out.inputs.push_back(input_view(out, j));
+  out.run = run_view(r, out.end_s);
   out.noise_sd = noise_sd(r);
   out.final_rows = final_rows(out);
   out.remarks = remarks_of(r);

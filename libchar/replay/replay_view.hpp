@@ -23,6 +23,24 @@ struct AlgorithmView {
   Timeline weight_track, variance_track;  ///< thinned to what a page can hold
   std::vector<const FaultAnswer*> answers;  ///< one a known fault; null: it does not watch
   std::size_t alarms_without_fault = 0;     ///< raised where the scene knows of none
+  /// of the run that each sensor was out (re-weighted ones are in use); empty: it does not watch
+  std::vector<double> out_share;
+  double core_share = 0;  ///< of one core, at the rate of the recording; NaN: not measured
+};
+
+/// A stretch of the run that plots over time mark, clipped to it.
+struct RunMark {
+  std::string kind;   ///< "fault", "warm-up", "learning"
+  std::string label;  ///< "gyro2: scale 0.8"
+  std::optional<std::size_t> sensor;
+  double from_s = 0, to_s = 0;
+};
+
+/// The run over time: the reference, the best method, the best single sensor.
+struct RunView {
+  std::string method, sensor;  ///< whose; "": none
+  Timeline deviations;         ///< of sensors from their median, thinned to what a page can hold
+  std::vector<RunMark> marks;
 };
 
 /// One true input, with what there is to draw of it.
@@ -51,7 +69,16 @@ struct ReplayFigures {
   bool error_over_time = false;    ///< cost: ns a sample
   bool error_over_memory = false;  ///< cost: peak bytes
   bool weights = false, variances = false, faults = false, sensors = false;
+  bool ranking = false;       ///< a method has a score
+  bool run = false;           ///< an estimate over time
+  bool deviations = false;    ///< of the sensors from their median
+  bool availability = false;  ///< of a method below 0.999: worth a column
+  /// run time can decide between methods: one of them takes more than `kCoreThatMatters` of a core
+  bool time_matters = false;
 };
+
+/// Of one core at the recording's rate; below it nobody chooses a method by its run time.
+inline constexpr double kCoreThatMatters = 1e-3;
 
 /// Points into the result that it is a view of, which must live as long.
 struct ReplayView {
@@ -66,6 +93,7 @@ struct ReplayView {
   std::vector<const AlgorithmView*> watching;  ///< those that take sensors out
   std::vector<SkippedAlgorithms> skipped;
   std::vector<InputView> inputs;
+  RunView run;
   std::vector<std::optional<double>> noise_sd;  ///< of a sensor's sample, as algorithms were told
   std::vector<FinalRow> final_rows;
   std::vector<AlgorithmRemark> remarks;

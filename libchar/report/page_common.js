@@ -8,18 +8,25 @@ const reportPage = (function () {
 
   // ---- colours ----
   // Okabe and Ito's, which readers who confuse red and green tell apart too. A page whose root is "themed" has a second set for dark
-  // screens; paper is always white.
+  // screens; paper is always white. `methods` and `sensors` were searched for the largest distance (Oklab) between any two of them and
+  // from the ink under normal sight and with each kind of cone missing (tests/report/palette_test.py).
   const LIGHT = {
     ink: "#16191d", dim: "#5a6470", paper: "#ffffff", halo: "rgba(255,255,255,0.9)", fine: "#edf0f3", decade: "#c3c9d0", border: "#8a929b",
     measured: "#0072b2", model: "#c44e00", simulated: "#00805d", outside: "rgba(90,100,112,0.13)",
     band68: "rgba(0,114,178,0.28)", band95: "rgba(0,114,178,0.13)", moved: "rgba(230,159,0,0.25)", missing: "rgba(90,100,112,0.35)",
     series: ["#0072b2", "#d55e00", "#009e73", "#b0508a", "#b37700", "#3a9fd6", "#16191d"],
+    methods: ["#4d0bf6", "#ab230a", "#899606", "#da41a3", "#6e84fb", "#730f78"],
+    sensors: ["#375ca1", "#9d7403", "#97475a", "#43315f", "#7688d7", "#6b2107", "#ca6e88"],
+    known: "#c9d3df", shade: "rgba(0,114,178,0.10)", grip: "rgba(27,79,143,0.16)",
   };
   const DARK = {
     ink: "#e6e9ec", dim: "#a4adb6", paper: "#15191d", halo: "rgba(21,25,29,0.9)", fine: "#252b31", decade: "#434b54", border: "#77818b",
     measured: "#56b4e9", model: "#ff8a4c", simulated: "#3fcf9f", outside: "rgba(164,173,182,0.16)",
     band68: "rgba(86,180,233,0.34)", band95: "rgba(86,180,233,0.17)", moved: "rgba(230,159,0,0.35)", missing: "rgba(164,173,182,0.4)",
     series: ["#56b4e9", "#ff8a4c", "#3fcf9f", "#e39ac4", "#f0c04a", "#9fd3f2", "#e6e9ec"],
+    methods: ["#356efe", "#de857f", "#d6c517", "#975295", "#29bdf4", "#52731e"],
+    sensors: ["#7691cf", "#dac572", "#df9492", "#a3874a", "#70cbeb", "#9f544c", "#496c91"],
+    known: "#3a4654", shade: "rgba(86,180,233,0.14)", grip: "rgba(140,200,242,0.22)",
   };
   const themed = document.documentElement.classList.contains("themed"), darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
   let onPaper = false;
@@ -305,7 +312,7 @@ const reportPage = (function () {
       if (themed && darkScreen.matches) redraw();
       figures.forEach(draw);
       charts.forEach((chart, figure) => {
-        const size = sizeOnPaper(figure.dataset.kind);
+        const size = sizeOnPaper(figure.dataset.kind, figure);
         if (Array.isArray(size)) chart.resize(size[0], size[1]);
         else chart.resize(690, size);
       });

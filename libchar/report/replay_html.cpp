@@ -15,8 +15,8 @@
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_page.hpp"
-#include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/detail/replay_figures.hpp"
 #include "libchar/report/detail/replay_tables.hpp"
 #include "libchar/report/detail/replay_words.hpp"
 #include "libchar/report/replay_json.hpp"
@@ -60,188 +60,60 @@ std::string scores_note(const ReplayView& view) {
            "from two halves of the array. Neither sees an error that all sensors share.</p>\n";
   return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or "
          "drifts. "
-         "Regret: "
+         "× best possible: "
          "RMSE ÷ RMSE of the optimum of " +
          view.optimum +
-         " on this run, minus 1; beyond 100 % the ratio itself. “× best”: interval of the ratio of "
-         "RMSEs, from what both saw at the same time; when it holds 1 the difference is not "
-         "resolved. "
+         " on this run; a method that follows changes may be below 1. “× best method”: interval of "
+         "the ratio of RMSEs, from what both saw at the same time; when it holds 1 the difference "
+         "is not resolved. "
          "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
          "look at the reference of the run itself: they are for comparison. A click on a column's "
          "head sorts by it.</p>\n";
 }
 
+// Costs are worth a word only where they could decide.
 std::string overview(const ReplayView& view) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
-  for (const std::string& sentence : view.verdict) out += "<p>" + html_text(sentence) + "</p>\n";
-  out += "</div>\n" + facts(view) + ranking_table(view);
-  return out + scores_note(view) + inputs_table(view) + "</section>\n";
+  for (const std::string& sentence : view.figures.time_matters ? view.verdict : view.steady_verdict)
+    out += "<p>" + html_text(sentence) + "</p>\n";
+  return out + "</div>\n" + facts(view) + "</section>\n";
 }
 
-std::string skipped(const ReplayView& view) {
-  std::string out = "<section class=\"part\" id=\"needs\">\n<h2>What each algorithm needs</h2>\n";
+std::string skipped_list(const ReplayView& view) {
   std::vector<std::string> items;
   for (const auto& [reason, labels] : view.skipped)
-    items.push_back(fmt::format("Skipped {}: {}", fmt::join(labels, ", "), reason));
-  return out + bullet_list(items, "plain") +
-         "<details><summary>Needs, cost and source of all</summary>\n" + needs_table(view) +
-         "</details>\n</section>\n";
+    items.push_back(fmt::format("{}: {}", fmt::join(labels, ", "), reason));
+  return items.empty() ? "" : "<h3>Skipped</h3>\n" + bullet_list(items, "plain skipped");
 }
 
-std::string cost_plots(const ReplayView& view) {
-  const std::string name = score_name(*view.result), unit = score_unit(*view.result);
-  std::string plots;
-  if (view.figures.error_over_time)
-    plots += plot_figure(
-        "cost-time",
-        0,
-        {"Error against run time",
-         name,
-         unit,
-         "Lower and further left is better. Dashed: the Pareto front, on which no method is "
-         "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
-         "methods."},
-        view.title);
-  if (view.figures.error_over_memory)
-    plots += plot_figure("cost-memory",
-                         0,
-                         {"Error against memory",
-                          name,
-                          unit,
-                          "Peak of the memory held from the heap, over learning and run."},
-                         view.title);
-  return plots.empty() ? ""
-                       : "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n<div "
-                         "class=\"plots cost\">\n" +
-                             plots + "</div>\n</section>\n";
+std::string ranking_section(const ReplayView& view) {
+  return "<section class=\"part\" id=\"ranking\">\n<h2>Ranking</h2>\n" + ranking_figure(view) +
+         skipped_list(view) + ranking_table(view) + scores_note(view) + inputs_table(view) +
+         "</section>\n";
 }
 
-std::string of_input(const ReplayResult& r, std::size_t j) {
-  return r.inputs.size() > 1 && j < r.inputs.size() ? " of " + r.inputs[j].name : "";
-}
-
-std::string window_plots(const ReplayView& view) {
-  const ReplayResult& r = *view.result;
-  std::string out;
-  for (std::size_t j = 0; j < view.inputs.size(); ++j)
-    if (view.inputs[j].has_window_rms)
-      out += plot_figure(
-          "window",
-          j,
-          {"RMS of the error in a window" + of_input(r, j),
-           "window RMS",
-           usual_unit(r.inputs[j].unit),
-           fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
-                       "in each bin of the plot.",
-                       duration_text(r.window_s))},
-          view.title);
-  return out;
-}
-
-std::string allan_plots(const ReplayView& view) {
-  const ReplayResult& r = *view.result;
-  std::string out;
-  for (std::size_t j = 0; j < view.inputs.size(); ++j)
-    if (view.inputs[j].has_allan)
-      out += plot_figure(
-          "error-allan",
-          j,
-          {"Allan deviation of the error" + of_input(r, j),
-           "overlapping Allan deviation",
-           usual_unit(r.inputs[j].unit),
-           "What averaging would remove falls with τ; what stays level or rises is drift."},
-          view.title);
-  return out;
-}
-
-// As many lines as replay_page.js draws of a large array.
-constexpr std::size_t kMostLines = 24;
-
-std::string lines_drawn(const ReplayResult& r, const char* which) {
-  return r.sensors.size() <= kMostLines
-             ? "A line a sensor; band: smallest and largest in each bin."
-             : fmt::format(
-                   "A line a sensor, of {} sensors the {} with the {} at the end; band: "
-                   "smallest and largest in each bin.",
-                   r.sensors.size(),
-                   kMostLines,
-                   which);
-}
-
-std::string track_plots(const ReplayView& view) {
-  const ReplayResult& r = *view.result;
-  const std::string& name = view.title;
-  const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
-  std::string out;
-  if (view.figures.weights)
-    out += plot_figure(
-        "weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
-  if (view.figures.variances)
-    out += plot_figure(
-        "variances",
-        0,
-        {"Noise variances as estimated",
-         "variance",
-         unit.empty() ? "" : "(" + unit + ")²",
-         lines_drawn(r, "smallest variances") +
-             (r.has_reference
-                  ? " Dotted: mean square error of the sensor over the run, its bias included."
-                  : "")},
-        name);
-  if (view.figures.faults)
-    out += plot_figure(
-        "faults",
-        0,
-        {"Faults",
-         "sensor",
-         "",
-         "Broad bars: faults that the scene knows. Narrow bars: the sensor was taken out."},
-        name);
-  return out;
-}
-
-std::string time_plots(const ReplayView& view) {
-  const std::string plots = window_plots(view) + track_plots(view), allan = allan_plots(view);
-  if (plots.empty() && allan.empty()) return "";
-  std::string out =
-      "<section class=\"part\" id=\"time\">\n<h2>Over time</h2>\n<div "
-      "id=\"stretch-place\"></div>\n";
-  if (view.result->has_reference) out += "<div id=\"shown-place\"></div>\n";
-  out += "<div class=\"plots over-time\">\n" + plots + "</div>\n";
-  if (!plots.empty())
-    out +=
-        "<p class=\"note\">Drag across a plot to look at a stretch; a double click shows the whole "
-        "run.</p>\n";
-  if (!allan.empty()) out += "<div class=\"plots\">\n" + allan + "</div>\n";
-  return out + weights_table(view) + "</section>\n";
+std::string needs(const ReplayView& view) {
+  return "<section class=\"part\" id=\"needs\">\n<h2>What each algorithm needs</h2>\n" +
+         folded("Needs, cost and source of all", needs_table(view)) + "</section>\n";
 }
 
 std::string faults(const ReplayView& view) {
-  const std::string table = faults_table(view);
-  return table.empty()
-             ? ""
-             : "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + table + "</section>\n";
+  const std::string figure = faults_figure(view), table = faults_table(view);
+  if (figure.empty() && table.empty()) return "";
+  return "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + figure + table +
+         out_share_table(view) + "</section>\n";
 }
 
-// Each sensor beside what fusing them gives: is it worth it?
-std::string sensor_plot(const ReplayView& view) {
-  if (!view.figures.sensors) return "";
-  const std::string unit = usual_unit(view.result->sensors[0].unit);
-  return "<div class=\"plots\">\n" +
-         plot_figure("sensors",
-                     0,
-                     {"Error of each sensor",
-                      "RMSE",
-                      unit,
-                      "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: "
-                      "noise of a sample as the algorithms were told. A sensor far above its noise "
-                      "failed, saturated or is not calibrated."},
-                     view.title) +
-         "</div>\n";
+std::string weights(const ReplayView& view) {
+  const std::string table = weights_table(view);
+  return table.empty() ? ""
+                       : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels "
+                         "at the end</h2>\n" +
+                             table + "</section>\n";
 }
 
 std::string sensors(const ReplayView& view) {
-  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensor_plot(view) +
+  return "<section class=\"part\" id=\"sensors\">\n<h2>Sensors</h2>\n" + sensors_figure(view) +
          sensors_table(view) + blind_table(view) + "</section>\n";
 }
 
@@ -307,9 +179,11 @@ std::string replay_html(const ReplayView& view) {
   return html_page({"Sensor fusion",
                     view.title,
                     std::string(replay_page_js()),
-                    std::string(page_css()) + std::string(replay_page_css())},
-                   overview(view) + cost_plots(view) + time_plots(view) + faults(view) +
-                       alignment_html(view) + sensors(view) + skipped(view) + provenance(view),
+                    std::string(page_css()) + std::string(replay_page_css()),
+                    true},
+                   overview(view) + run_section(view) + ranking_section(view) + faults(view) +
+                       time_section(view) + weights(view) + alignment_html(view) + sensors(view) +
+                       cost_section(view) + needs(view) + provenance(view),
                    json_in_script(document));
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/allan_json.hpp"
@@ -68,6 +70,79 @@ Json timeline_json(const Timeline& track) {
   for (const auto& series : track.low) low.push_back(drawn(series));
   for (const auto& series : track.high) high.push_back(drawn(series));
   return {{"time_s", drawn(track.time_s)}, {"low", std::move(low)}, {"high", std::move(high)}};
+}
+
+// Four digits of the range that is drawn: pressures of 101325 Pa that differ by 1 Pa are told apart.
+int digits_of(const Timeline& track) {
+  double low = kNone, high = kNone;
+  for (const auto* side : {&track.low, &track.high})
+    for (const auto& series : *side)
+      for (const double v : series) {
+        low = std::fmin(low, v);
+        high = std::fmax(high, v);
+      }
+  const double largest = std::fmax(std::fabs(low), std::fabs(high));
+  return high > low && std::isfinite(largest / (high - low))
+             ? std::clamp(
+                   4 + static_cast<int>(std::ceil(std::log10(largest / (high - low)))), 4, 15)
+             : 6;
+}
+
+Json drawn_to(const std::vector<double>& values, int digits) {
+  Json out = Json::array();
+  for (const double value : values)
+    out.push_back(std::isfinite(value)
+                      ? Json(parse_double(significant(value, digits)).value_or(value))
+                      : Json(nullptr));
+  return out;
+}
+
+// One series of a run: its times stand once beside all of them.
+Json track_json(const Timeline& track) {
+  if (track.empty()) return nullptr;
+  const int digits = digits_of(track);
+  Json low = Json::array(), high = Json::array();
+  for (const auto& series : track.low) low.push_back(drawn_to(series, digits));
+  for (const auto& series : track.high) high.push_back(drawn_to(series, digits));
+  return {{"low", std::move(low)}, {"high", std::move(high)}};
+}
+
+Json run_json(const ReplayView& view) {
+  const RunTracks& tracks = view.result->tracks;
+  if (!view.figures.run) return nullptr;
+  Json inputs = Json::array();
+  for (const InputTracks& input : tracks.inputs)
+    inputs.push_back({{"reference", track_json(input.reference)},
+                      {"estimate", track_json(input.estimate)},
+                      {"error", track_json(input.error)}});
+  const auto text_or_null = [](const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(json_text(text));
+  };
+  Json deviations = nullptr;
+  if (view.figures.deviations) {
+    deviations = track_json(view.run.deviations);
+    deviations["time_s"] = drawn_to(view.run.deviations.time_s, 10);
+  }
+  return {{"method", text_or_null(view.run.method)},
+          {"sensor", text_or_null(view.run.sensor)},
+          {"time_s", drawn_to(tracks.inputs[0].estimate.time_s, 10)},
+          {"inputs", std::move(inputs)},
+          {"sensor_value", track_json(tracks.sensor)},
+          {"sensor_error", track_json(tracks.sensor_error)},
+          {"deviations", std::move(deviations)}};
+}
+
+Json marks_json(const ReplayView& view) {
+  Json out = Json::array();
+  for (const RunMark& mark : view.run.marks)
+    out.push_back(
+        {{"kind", mark.kind},
+         {"label", json_text(mark.label)},
+         {"sensor",
+          mark.sensor ? Json(json_text(view.result->sensors[*mark.sensor].name)) : Json()},
+         {"from_s", json_number(mark.from_s)},
+         {"to_s", json_number(mark.to_s)}});
+  return out;
 }
 
 Json error_json(const ErrorScore& e) {
@@ -187,6 +262,7 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
       {"faults_not_kept", a.faults_not_kept},
       {"watches_faults", a.watches_faults},
       {"answers", answers_json(a)},
+      {"out_share", a.watches_faults ? numbers(view.out_share) : Json(nullptr)},
       {"weight_distance", json_number(a.weight_distance)},
       {"variance_error", json_number(a.variance_error)},
       {"inputs", inputs_json(result, a)},
@@ -270,6 +346,7 @@ void add_run(Json& out, const ReplayResult& result) {
   out["rate_hz"] = json_number(result.rate_hz);
   out["instants"] = result.instants;
   out["start_s"] = json_number(result.start_s);
+  out["scored_from_s"] = json_number(result.scored_from_s);
   out["learning"] = result.learning ? window(*result.learning) : Json(nullptr);
   out["evaluation"] = window(result.evaluation);
   out["window_s"] = json_number(result.window_s);
@@ -318,6 +395,11 @@ Json replay_json(const ReplayView& view) {
   out["best_over_sensor_ci95"] =
       result.best_over_sensor ? interval_json(*result.best_over_sensor) : Json(nullptr);
   out["offsets_decide"] = result.offsets_decide;
+  out["ranked"] = Json::array();
+  for (const AlgorithmView* algorithm : view.ranked)
+    out["ranked"].push_back(json_text(algorithm->result->label));
+  out["marks"] = marks_json(view);
+  out["run"] = run_json(view);
   out["algorithms"] = Json::array();
   for (const AlgorithmView& algorithm : view.algorithms)
     out["algorithms"].push_back(algorithm_json(result, algorithm));

@@ -1,24 +1,29 @@
-// Draws the plots of a replay from the JSON in the page (page_common.js): error against cost, everything over time with a stretch
-// to choose, the Allan deviation of each error. What is shown first is legible: the best method, the mean, the bounds.
+// Draws the plots of a replay from the JSON in the page (page_common.js): the run, the ranking, faults and findings, everything over time
+// with a stretch to choose, the Allan deviation of each error, error against cost. What is shown first is legible: the best method, the
+// mean, the bounds. A method has one colour throughout the page, and so has a sensor, from two palettes.
 (function () {
   "use strict";
 
-  const { report, INK, DIM, MEASURED, numberText, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
+  const { report, colours, numberText, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
 
   // ---- who is who ----
   const score = (a) => (report.score === "rmse" ? a.rmse : a.without_reference && a.without_reference.predictive_rms);
   const scoreName = report.score === "rmse" ? "RMSE" : "leave-one-out RMS";
   const ran = report.algorithms.filter((a) => a.status === "ran");
-  const order = ran.slice().sort((a, b) => (score(a) === null) - (score(b) === null) || score(a) - score(b));
+  const labelled = new Map(ran.map((a) => [a.label, a]));
+  const order = report.ranked.map((label) => labelled.get(label)).filter(Boolean);
   const unit = report.inputs.length ? report.inputs[0].unit : "";
   const withUnit = (text, u) => (u ? text + ", " + u : text);
 
-  // Neighbours in the table differ in colour and in dash; 8 and 5 have no common factor, so 40 lines differ in one of both.
-  const COLOURS = ["#1b4f8f", "#c03a12", "#1e7a3c", "#7a3fa0", "#a86a00", "#00757f", "#b0226b", "#4a4f57"];
+  // Neighbours in the table differ in colour and in dash; the numbers of colours and of dashes have no common factor, so that thirty
+  // methods and thirty-five sensors differ in one of both.
   const DASHES = [[], [9, 4], [2, 3], [11, 3, 2, 3], [5, 2, 1, 2, 1, 2]];
   const MARKS = ["circle", "rect", "triangle", "rectRot", "star", "crossRot"];
-  const style = (k) => ({ colour: COLOURS[k % COLOURS.length], dash: DASHES[k % DASHES.length] });
-  const styleOf = (a) => style(order.indexOf(a));
+  const style = (palette, k) => ({ colour: palette[k % palette.length], dash: DASHES[k % DASHES.length] });
+  const sensorStyle = (i) => style(colours().sensors, i);
+  const methodStyle = (k) => style(colours().methods, k);
+  const styleOf = (a) => methodStyle(order.indexOf(a));
+  const rgba = (colour, alpha) => "rgba(" + [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)).join(",") + "," + alpha + ")";
   const faint = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, "0");
 
   const shown = new Set();
@@ -40,23 +45,27 @@
   const inStretch = (t) => t >= stretch[0] && t <= stretch[1];
 
   function linearAxis(title, min, max) {
+    const c = colours();
     return {
-      type: "linear", min, max, title: { display: true, text: title, color: INK, font: { size: 12.5 } },
-      ticks: { color: INK, maxRotation: 0, callback: (v) => numberText(v, 5) }, grid: { color: "#edf0f3", borderColor: "#8a929b" },
+      type: "linear", min, max, title: { display: Boolean(title), text: title, color: c.ink, font: { size: 12.5 } },
+      ticks: { color: c.ink, maxRotation: 0, callback: (v) => numberText(v, 5) }, grid: { color: c.fine, borderColor: c.border },
     };
+  }
+  function roundStep(least) {
+    const power = Math.pow(10, Math.floor(Math.log10(least)));
+    return [1, 2, 5, 10].map((f) => f * power).find((s) => s >= least);
   }
   // Within less than a decade the powers of ten are too few: even steps, as on a linear axis.
   function valueAxis(title, min, max) {
     const axis = logAxis(title, min, max);
     if (!(max / min < 6)) return axis;
-    const rough = (max - min) / 6, power = Math.pow(10, Math.floor(Math.log10(rough)));
-    const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough);
+    const step = roundStep((max - min) / 6);
     axis.afterBuildTicks = (a) => {
       a.ticks = [];
       for (let k = Math.ceil(min / step); k * step <= max; ++k) a.ticks.push({ value: k * step });
     };
     axis.ticks.callback = (v) => numberText(v, 4);
-    axis.grid = { color: "#edf0f3", borderColor: "#8a929b" };
+    axis.grid = { color: colours().fine, borderColor: colours().border };
     return axis;
   }
   const timeAxis = () => linearAxis("time from the recording's first sample, " + timeUnit, stretch[0], stretch[1]);
@@ -141,7 +150,7 @@
       pen.save();
       pen.textBaseline = "middle";
       pen.lineWidth = 4;
-      pen.strokeStyle = "rgba(255,255,255,0.9)";
+      pen.strokeStyle = colours().halo;
       marks.forEach((p) => {
         pen.font = (p.a.label === report.best ? "700 " : p.dim ? "" : "600 ") + "12px system-ui, 'DejaVu Sans', sans-serif";
         const w = pen.measureText(p.name).width;
@@ -151,7 +160,7 @@
           taken.every((t) => box[0] > t[2] || box[2] < t[0] || box[1] > t[3] || box[3] < t[1]));
         if (!free) return;
         taken.push(free);
-        pen.fillStyle = p.dim ? "#8a929b" : INK;
+        pen.fillStyle = p.dim ? colours().border : colours().ink;
         pen.strokeText(p.name, free[0], (free[1] + free[3]) / 2);
         pen.fillText(p.name, free[0], (free[1] + free[3]) / 2);
       });
@@ -166,7 +175,7 @@
   function optimumLine(input, from, to, u) {
     const y = optimumOf(input);
     if (!positive(y)) return [];
-    return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: INK, backgroundColor: INK, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", numberText(y, 5) + " " + u] }];
+    return [{ label: "optimum of this scene", data: [{ x: from, y }, { x: to, y }], borderColor: colours().ink, backgroundColor: colours().ink, borderDash: [1, 4], borderWidth: 1.4, pointRadius: 0, pointHitRadius: 4, fill: false, order: 6, tip: () => ["optimum of this scene", numberText(y, 5) + " " + u] }];
   }
   function costChart(key, front, title, axis, tipLine) {
     const all = order.filter((a) => positive(score(a)) && positive(a[key]));
@@ -179,7 +188,7 @@
     ];
     const tip = (p) => {
       const out = [p.a.label, scoreName + " " + numberText(score(p.a), 5) + " " + unit];
-      if (p.a.regret !== null) out.push("regret " + numberText(100 * p.a.regret, 3) + " %");
+      if (p.a.regret !== null) out.push(numberText(1 + p.a.regret, 5) + " × best possible");
       out.push(tipLine(p.x));
       if (p.a.bound) out.push("bound: not a method");
       else out.push(p.dim ? "another method is better in both" : "on the front");
@@ -187,10 +196,10 @@
     };
     const sets = kinds.map((kind) => {
       const data = points.filter((p) => kind.of(p.a));
-      const colours = data.map((p) => (p.a.bound ? DIM : p.dim ? "#aab2bb" : MEASURED));
+      const c = colours(), inks = data.map((p) => (p.a.bound ? c.dim : p.dim ? c.border : c.measured));
       return {
-        label: kind.name, data, showLine: false, named: true, marks: true, pointStyle: kind.mark, borderColor: kind.mark === "triangle" ? DIM : MEASURED, borderWidth: 1.8,
-        pointBorderColor: colours, pointBackgroundColor: data.map((p, i) => (p.a.bound ? "#fff" : colours[i])), pointRadius: data.map((p) => (p.a.label === report.best ? 8 : 5.5)), pointHoverRadius: 8, tip, order: 1, fill: false,
+        label: kind.name, data, showLine: false, named: true, marks: true, pointStyle: kind.mark, borderColor: kind.mark === "triangle" ? c.dim : c.measured, borderWidth: 1.8,
+        pointBorderColor: inks, pointBackgroundColor: data.map((p, i) => (p.a.bound ? c.paper : inks[i])), pointRadius: data.map((p) => (p.a.label === report.best ? 8 : 5.5)), pointHoverRadius: 8, tip, order: 1, fill: false,
       };
     }).filter((set) => set.data.length);
     const [xMin, xMax] = padded(points.map((p) => p.x), 2.2);
@@ -202,7 +211,7 @@
     if (line.length) {
       line.unshift({ x: line[0].x, y: yMax });
       line.push({ x: xMax, y: line[line.length - 1].y });
-      sets.push({ label: "Pareto front", data: line, stepped: "before", borderColor: COLOURS[1], borderWidth: 1.5, borderDash: [6, 3], pointRadius: 0, pointHitRadius: 0, fill: false, order: 5 });
+      sets.push({ label: "Pareto front", data: line, stepped: "before", borderColor: colours().model, borderWidth: 1.5, borderDash: [6, 3], pointRadius: 0, pointHitRadius: 0, fill: false, order: 5 });
     }
     return chart(sets, logAxis(title, xMin, xMax), valueAxis(axis, yMin, yMax), [pointNames]);
   }
@@ -236,8 +245,8 @@
     const sets = [];
     drawnSensors(values, logarithmic).forEach((i) => {
       const s = report.sensors[i];
-      if (track) sets.push(...bandLine(s.name, track, i, style(i), logarithmic, timeTip(u)));
-      else if (values && values.length && values[i] !== null && (!logarithmic || values[i] > 0)) sets.push(flat(s.name, values[i], style(i), timeTip(u)));
+      if (track) sets.push(...bandLine(s.name, track, i, sensorStyle(i), logarithmic, timeTip(u)));
+      else if (values && values.length && values[i] !== null && (!logarithmic || values[i] > 0)) sets.push(flat(s.name, values[i], sensorStyle(i), timeTip(u)));
     });
     return sets;
   }
@@ -247,7 +256,7 @@
       const pen = chart.ctx, area = chart.chartArea;
       pen.save();
       pen.font = "13px system-ui, 'DejaVu Sans', sans-serif";
-      pen.fillStyle = DIM;
+      pen.fillStyle = colours().dim;
       pen.textAlign = "center";
       pen.fillText(text, (area.left + area.right) / 2, (area.top + area.bottom) / 2);
       pen.restore();
@@ -263,36 +272,77 @@
     if (estimated) {
       drawnSensors(tracked.variances, true).forEach((i) => {
         const s = report.sensors[i];
-        if (positive(s.rmse)) sets.push(Object.assign(flat("", s.rmse * s.rmse, { colour: faint(style(i).colour, 0.55), dash: [1, 3] }), { order: 6, borderWidth: 1.3 }));
+        if (positive(s.rmse)) sets.push(Object.assign(flat("", s.rmse * s.rmse, { colour: faint(sensorStyle(i).colour, 0.55), dash: [1, 3] }), { order: 6, borderWidth: 1.3 }));
       });
     }
     return chart(sets, timeAxis(), logFor(axis + (u ? ", " + u : ""), sets, 1.3), [dragging].concat(estimated ? [] : [nothing((tracked ? tracked.label : "This method") + " estimates no variances")]));
   }
 
   const MOST_ROWS = 24;
-  function faultsChart() {
-    const end = whole[1], names = report.sensors.map((s) => s.name);
+  // Above each known fault what it is and when it was found, beside each finding its name, where there is room.
+  const faultNotes = {
+    id: "faultNotes",
+    afterDatasetsDraw(chart) {
+      const pen = chart.ctx, area = chart.chartArea, rows = chart.scales.y.ticks.length, height = (area.bottom - area.top) / Math.max(1, rows);
+      if (height < 26) return;
+      pen.save();
+      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+      pen.textBaseline = "middle";
+      pen.lineWidth = 3;
+      pen.strokeStyle = colours().halo;
+      pen.fillStyle = colours().ink;
+      const taken = new Map();
+      chart.data.datasets.forEach((set, index) => {
+        chart.getDatasetMeta(index).data.forEach((bar, i) => {
+          const text = set.data[i].note;
+          if (!text) return;
+          const level = Math.round(bar.y + set.above * height), width = pen.measureText(text).width;
+          const x = Math.max(area.left + 2, Math.min(Math.min(bar.base, bar.x) + 3, area.right - width - 2));
+          const there = taken.get(level) || [];
+          if (there.some(([from, to]) => x < to + 8 && x + width > from - 8)) return;
+          taken.set(level, there.concat([[x, x + width]]));
+          pen.strokeText(text, x, level);
+          pen.fillText(text, x, level);
+        });
+      });
+      pen.restore();
+    },
+  };
+  const seconds = (s) => (s < 1e-3 ? numberText(1e6 * s, 3) + " µs" : s < 1 ? numberText(1e3 * s, 3) + " ms" : s < 300 ? numberText(s, 3) + " s" : s < 18000 ? numberText(s / 60, 3) + " min" : numberText(s / 3600, 3) + " h");
+  const valued = (f) => f.kind + (f.kind === "stuck" || f.kind === "dropout" ? "" : " " + numberText(f.value));
+  function answerTo(index) {
+    const answer = tracked && tracked.answers ? tracked.answers.find((a) => a.fault === index) : null;
+    return !answer ? "" : answer.found_after_s === null ? "missed" : answer.found_after_s === 0 ? "found at once" : "found after " + seconds(answer.found_after_s);
+  }
+  // Only the sensors that have something to show, of a large array.
+  function faultRows(bars) {
+    const all = report.sensors.map((s, i) => String(i)), busy = new Set(bars.map((p) => p.y));
+    return all.length <= MOST_ROWS ? all : all.filter((i) => busy.has(i)).slice(0, MOST_ROWS);
+  }
+  function faultsChart(index, axis, u, figure) {
+    const end = whole[1], names = report.sensors.map((s) => s.name), c = colours();
     const bar = (f) => ({ x: [Math.max(f.from_s / TIME, whole[0]), Math.min(f.to_s === null ? end : f.to_s / TIME, end)], y: String(names.indexOf(f.sensor)), f });
     const span = (f) => numberText(f.from_s / TIME, 6) + " … " + (f.to_s === null ? "the end" : numberText(f.to_s / TIME, 6) + " " + timeUnit);
-    const known = report.faults.filter((f) => f.from_s / TIME < end && (f.to_s === null || f.to_s / TIME > whole[0])).map(bar);
-    const found = tracked ? tracked.faults.map(bar) : [];
-    // Of a large array only the sensors that have something to show.
-    const busy = new Set(known.concat(found).map((p) => p.y)), all_rows = names.map((n, i) => String(i));
-    const rows = names.length <= MOST_ROWS ? all_rows : all_rows.filter((i) => busy.has(i)).slice(0, MOST_ROWS);
-    const silent = known.length + found.length ? [] : [nothing("No fault is known, and none was found")];
-    const plain = { grouped: false, minBarLength: 3, borderSkipped: false };
+    const known = report.faults.map((f, i) => Object.assign(bar(f), { answer: answerTo(i) })).filter((p) => p.x[0] < p.x[1]);
+    known.forEach((p) => { p.note = [valued(p.f), p.answer].filter(Boolean).join(", "); });
+    const found = (tracked ? tracked.faults : []).map((f) => Object.assign(bar(f), { note: f.kind.replace("_", " ") }));
+    const rows = faultRows(known.concat(found)), drawn = (bars) => bars.filter((p) => rows.includes(p.y));
+    figure.querySelector(".canvas").style.height = 90 + Math.max(120, rows.length * 44) + "px";
+    const ink = (p) => sensorStyle(Number(p.y)).colour, plain = { grouped: false, minBarLength: 3, borderSkipped: false };
+    const tip = (what) => (p) => [names[p.y] + ": " + what(p), span(p.f)];
+    const bars = (label, data, more) => Object.assign({ label, data: drawn(data) }, plain, more);
+    const out = found.filter((p) => p.f.kind !== "noise"), noisy = found.filter((p) => p.f.kind === "noise"), by = tracked ? tracked.label : "–";
     const sets = [
-      Object.assign({ label: "found by " + (tracked ? tracked.label : "–"), data: found.filter((p) => rows.includes(p.y)), backgroundColor: COLOURS[1], swatch: COLOURS[1], barPercentage: 0.36, order: 1, tip: (p) => [names[p.y] + ": out", span(p.f)] }, plain),
-      Object.assign({ label: "known to the scene", data: known.filter((p) => rows.includes(p.y)), backgroundColor: "#9fb9da", swatch: "#9fb9da", barPercentage: 0.85, order: 2, tip: (p) => [names[p.y] + ": " + p.f.kind + (p.f.value === null ? "" : " " + numberText(p.f.value)), span(p.f)] }, plain),
-    ];
-    const y = { type: "category", labels: rows, offset: true, ticks: { color: INK, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "") }, grid: { color: "#edf0f3", borderColor: "#8a929b" } };
-    const all = options(timeAxis(), y);
-    all.parsing = true;
-    all.normalized = false;
-    all.indexAxis = "y";
+      bars("out, by " + by, out, { backgroundColor: drawn(out).map(ink), swatch: c.dim, barPercentage: 0.3, above: 0.3, order: 1, tip: tip((p) => "out, " + p.note) }),
+      bars("re-weighted, by " + by, noisy, { backgroundColor: c.paper, borderColor: drawn(noisy).map(ink), borderWidth: 2, swatch: noisy.length ? c.border : "", barPercentage: 0.24, above: 0.3, order: 1, tip: tip(() => "noisier, less weight") }),
+      bars("known to the scene", known, { backgroundColor: c.known, swatch: known.length ? c.known : "", barPercentage: 0.9, above: -0.3, order: 2, tip: tip((p) => p.note) }),
+    ].filter((set) => set.swatch);
+    const y = { type: "category", labels: rows, offset: true, ticks: { color: c.ink, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "", chartWidth(figure)) }, grid: { color: c.fine, borderColor: c.border } };
+    const all = options(timeAxis(), y), silent = known.length + found.length ? [] : [nothing("No fault is known, and none was found")];
+    Object.assign(all, { parsing: true, normalized: false, indexAxis: "y" });
     all.plugins.legend = plainLegend();
     all.plugins.tooltip.callbacks.label = (item) => item.dataset.tip(item.raw);
-    return { type: "bar", data: { labels: rows, datasets: sets }, plugins: [whitePaper, dragging].concat(silent), options: all };
+    return { type: "bar", data: { labels: rows, datasets: sets }, plugins: [whitePaper, dragging, faultNotes].concat(silent), options: all };
   }
 
   // ---- Allan deviation of the errors ----
@@ -301,7 +351,7 @@
     order.filter((a) => shown.has(a)).forEach((a) => {
       const curve = a.inputs[input] && a.inputs[input].allan;
       if (!curve) return;
-      const k = order.indexOf(a), look = style(k), data = [];
+      const k = order.indexOf(a), look = methodStyle(k), data = [];
       curve.tau_s.forEach((x, i) => { if (positive(x) && positive(curve.deviation[i])) data.push({ x, y: curve.deviation[i] }); });
       sets.push({ label: a.label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: look.dash, pointStyle: MARKS[k % MARKS.length], pointRadius: 3.5, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [a.label, "τ = " + numberText(p.x) + " s", numberText(p.y, 5) + " " + u] });
     });
@@ -319,9 +369,10 @@
       if (s.rmse_ci95 && positive(s.rmse_ci95[0])) { low.push(s.rmse_ci95[0]); high.push(s.rmse_ci95[1]); }
     });
     const tip = (p) => [p.s.name, "RMSE " + numberText(p.s.rmse, 5) + " " + u].concat(p.s.rmse_ci95 ? ["95 %: " + numberText(p.s.rmse_ci95[0]) + " … " + numberText(p.s.rmse_ci95[1])] : [], positive(p.s.noise_variance) ? ["noise of a sample " + numberText(Math.sqrt(p.s.noise_variance), 4)] : []);
+    const inks = (points) => points.map((p) => sensorStyle(p.x).colour), c = colours();
     const sets = [
-      { label: "sensor", data: measured, showLine: false, marks: true, intervals: true, borderColor: MEASURED, backgroundColor: MEASURED, pointRadius: 5, pointHoverRadius: 7, fill: false, order: 1, tip },
-      { label: "noise it was said to have", data: told, showLine: false, marks: true, borderColor: MEASURED, backgroundColor: "#fff", pointStyle: "rectRot", pointRadius: 6, pointBorderWidth: 1.6, fill: false, order: 2, tip },
+      { label: "sensor", data: measured, showLine: false, marks: true, intervals: "upright", borderColor: c.dim, pointBorderColor: inks(measured), pointBackgroundColor: inks(measured), pointRadius: 5, pointHoverRadius: 7, fill: false, order: 1, tip },
+      { label: "noise it was said to have", data: told, showLine: false, marks: true, borderColor: c.dim, pointBorderColor: inks(told), pointBackgroundColor: c.paper, backgroundColor: c.paper, pointStyle: "rectRot", pointRadius: 6, pointBorderWidth: 1.6, fill: false, order: 2, tip },
     ].filter((set) => set.data.length);
     const best = order.find((a) => a.label === report.best), mean = order.find((a) => a.name === "mean");
     const level = (name, y, look) => sets.push(Object.assign(flat(name, y, look, () => [name, "RMSE " + numberText(y, 5) + " " + u]), { data: [{ x: -0.5, y }, { x: last, y }], order: 5 }));
@@ -331,34 +382,197 @@
     }
     const [yMin, yMax] = padded(sets.flatMap((set) => set.data.map((p) => p.y)).concat(low, high), 1.2);
     const x = linearAxis("sensor", -0.5, last);
-    x.ticks = { color: INK, autoSkip: true, maxRotation: 60, callback: (v) => (all[v] ? shortened(all[v].name) : "") };
+    x.ticks = { color: colours().ink, autoSkip: true, maxRotation: 60, callback: (v) => (all[v] ? shortened(all[v].name) : "") };
     x.afterBuildTicks = (a) => { a.ticks = all.map((s, i) => ({ value: i })); };
     return chart(sets, x, valueAxis(withUnit(axis, u), yMin, yMax), [intervalBars]);
   }
-  const shortened = (name) => (name.length > 18 ? name.slice(0, 17) + "…" : name);
-  // Upright lines from end to end of a point's 95 % interval.
+  // Names beside an axis leave most of a small screen to the plot.
+  const chartWidth = (figure) => figure.querySelector(".canvas").clientWidth || 690;
+  const shortened = (name, width, most) => {
+    const room = Math.min(most || 18, Math.max(8, Math.floor((width || 690) / 24)));
+    return name.length > room ? name.slice(0, room - 1) + "…" : name;
+  };
+  // Lines from end to end of a point's 95 % interval, upright or level.
   const intervalBars = {
     id: "intervalBars",
     beforeDatasetsDraw(chart) {
-      const pen = chart.ctx, y = chart.scales.y;
+      const pen = chart.ctx, { x, y } = chart.scales;
       chart.data.datasets.forEach((set, index) => {
         if (!set.intervals) return;
+        const upright = set.intervals === "upright", inks = set.pointBorderColor;
         pen.save();
-        pen.strokeStyle = set.borderColor;
-        pen.lineWidth = 1.6;
+        pen.lineWidth = 1.8;
         chart.getDatasetMeta(index).data.forEach((mark, i) => {
-          const pair = set.data[i].s.rmse_ci95;
+          const pair = set.data[i].ci || (set.data[i].s && set.data[i].s.rmse_ci95);
           if (!pair || !positive(pair[0])) return;
+          pen.strokeStyle = Array.isArray(inks) ? inks[i] : set.borderColor;
+          const ends = pair.map((v) => (upright ? y.getPixelForValue(v) : Math.min(x.getPixelForValue(v), chart.chartArea.right)));
+          const to = (along, across) => (upright ? [mark.x + across, along] : [along, mark.y + across]);
           pen.beginPath();
-          pair.forEach((v) => { pen.moveTo(mark.x - 4, y.getPixelForValue(v)); pen.lineTo(mark.x + 4, y.getPixelForValue(v)); });
-          pen.moveTo(mark.x, y.getPixelForValue(pair[0]));
-          pen.lineTo(mark.x, y.getPixelForValue(pair[1]));
+          ends.forEach((v) => { pen.moveTo(...to(v, -4)); pen.lineTo(...to(v, 4)); });
+          pen.moveTo(...to(ends[0], 0));
+          pen.lineTo(...to(ends[1], 0));
           pen.stroke();
         });
         pen.restore();
       });
     },
   };
+
+  // ---- the run: reference, best method, best single sensor ----
+  const run = report.run;
+  const trackOf = (one) => (one ? { time_s: run.time_s, low: one.low, high: one.high } : null);
+  const named = (name) => report.sensors.findIndex((s) => s.name === name);
+  // Known faults in the colour of their sensor, what is not scored in grey; names where there is room, in up to three lines.
+  const stretchMarks = {
+    id: "stretchMarks",
+    beforeDatasetsDraw(chart) {
+      const pen = chart.ctx, area = chart.chartArea, x = chart.scales.x, lines = [[], [], []];
+      pen.save();
+      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+      pen.textBaseline = "top";
+      report.marks.forEach((mark) => {
+        const from = Math.max(area.left, x.getPixelForValue(mark.from_s / TIME)), to = Math.min(area.right, x.getPixelForValue(mark.to_s / TIME));
+        if (!(to > area.left && from < area.right)) return;
+        const ink = mark.sensor === null ? colours().dim : sensorStyle(named(mark.sensor)).colour;
+        pen.fillStyle = mark.kind === "fault" ? rgba(ink, 0.16) : colours().outside;
+        pen.fillRect(from, area.top, Math.max(1, to - from), area.bottom - area.top);
+        pen.fillStyle = ink;
+        if (mark.kind === "fault" && from > area.left) pen.fillRect(from, area.top, 1.5, area.bottom - area.top);
+        const width = pen.measureText(mark.label).width, at = Math.min(from + 4, area.right - width - 2);
+        const line = lines.findIndex((boxes) => boxes.every(([a, b]) => at > b + 6 || at + width < a - 6));
+        if (line < 0 || width > area.right - area.left) return;
+        lines[line].push([at, at + width]);
+        chart.labelsOfMarks.push([mark.label, at, area.top + 3 + 13 * line, ink]);
+      });
+      pen.restore();
+    },
+    beforeDraw(chart) { chart.labelsOfMarks = []; },
+    afterDatasetsDraw(chart) {
+      const pen = chart.ctx;
+      pen.save();
+      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+      pen.textBaseline = "top";
+      pen.lineWidth = 3;
+      pen.strokeStyle = colours().halo;
+      chart.labelsOfMarks.forEach(([text, x, y, ink]) => {
+        pen.strokeText(text, x, y);
+        pen.fillStyle = ink;
+        pen.fillText(text, x, y);
+      });
+      pen.restore();
+    },
+  };
+  // From the smallest to the largest value within the stretch.
+  function reach(track, series) {
+    if (!track) return [Infinity, -Infinity];
+    const [from, to] = window_of(track.time_s);
+    let low = Infinity, high = -Infinity;
+    for (let i = from; i < to; ++i) {
+      if (track.low[series][i] !== null) low = Math.min(low, track.low[series][i]);
+      if (track.high[series][i] !== null) high = Math.max(high, track.high[series][i]);
+    }
+    return [low, high];
+  }
+  // As tall as `tracks` need, and for `guests` up to `cap` times that: one that failed may not flatten what counts.
+  function linearFor(title, tracks, guests, cap) {
+    const join = ([a, b], [c, d]) => [Math.min(a, c), Math.max(b, d)], empty = [Infinity, -Infinity];
+    let [low, high] = tracks.map((t) => reach(t, 0)).reduce(join, empty);
+    if (!(low <= high)) [low, high] = [-1, 1];
+    const height = high - low || Math.abs(high) || 1, [least, most] = guests.map((t) => reach(t, 0)).reduce(join, empty);
+    low = Math.max(Math.min(low, least), low - cap * height);
+    high = Math.min(Math.max(high, most), high + cap * height);
+    const rough = 1.17 * (high - low || height), step = roundStep(rough / 5);
+    return linearAxis(title, step * Math.floor((low - 0.05 * rough) / step), step * Math.ceil((high + 0.12 * rough) / step));
+  }
+  // A stretch of many samples has no middle worth a line: its band alone is drawn, the first of `parts` on top.
+  function runSets(parts, u) {
+    return parts.filter(([, track]) => track).flatMap(([name, track, look], order) => {
+      const sets = bandLine(name, track, 0, look, false, timeTip(u)), single = sets[0].data.every((p) => p.low === p.high || isNaN(p.low));
+      sets[1].backgroundColor = rgba(look.colour, order ? 0.35 : 0.75);
+      sets[0].showLine = single;
+      return sets.map((set) => Object.assign(set, { order: set.quiet ? 10 + order : order }));
+    });
+  }
+  const sensorLook = () => Object.assign(sensorStyle(named(run.sensor)), { dash: [] });
+  const methodLook = () => Object.assign(styleOf(labelled.get(run.method)), { dash: [] });
+  function signalChart(input, axis, u) {
+    const one = run.inputs[input], reference = trackOf(one.reference), estimate = trackOf(one.estimate), sensor = input === 0 ? trackOf(run.sensor_value) : null;
+    const sets = runSets([
+      ["fused by " + run.method, estimate, methodLook()],
+      ["reference", reference, { colour: colours().ink, dash: [4, 3] }],
+      [run.sensor + ", the best single sensor", sensor, sensor ? sensorLook() : null],
+    ], u);
+    return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [reference, estimate], [sensor], 0.5), [stretchMarks, dragging]);
+  }
+  function errorChart(input, axis, u) {
+    const error = trackOf(run.inputs[input].error), sensor = input === 0 ? trackOf(run.sensor_error) : null;
+    const sets = runSets([
+      ["error of " + run.method, error, methodLook()],
+      ["error of " + run.sensor, sensor, sensor ? sensorLook() : null],
+    ], u);
+    return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [error], [sensor], 2), [stretchMarks, dragging]);
+  }
+  function deviationsChart(index, axis, u) {
+    const track = run.deviations, sets = [];
+    drawnSensors(null, false).forEach((i) => sets.push(...bandLine(report.sensors[i].name, track, i, sensorStyle(i), false, timeTip(u))));
+    return chart(sets, timeAxis(), linearAxis(withUnit(axis, u), undefined, undefined), [stretchMarks, dragging]);
+  }
+
+  // ---- the ranking ----
+  const ROW = 23, FARTHEST = 30;
+  // Rows of those that are as good as the best.
+  const equals = {
+    id: "equals",
+    beforeDatasetsDraw(chart) {
+      const pen = chart.ctx, area = chart.chartArea, y = chart.scales.y, half = Math.abs(y.getPixelForValue(1) - y.getPixelForValue(0)) / 2;
+      pen.save();
+      pen.fillStyle = colours().shade;
+      chart.data.datasets[0].data.forEach((p) => { if (p.equal) pen.fillRect(area.left, y.getPixelForValue(p.y) - half, area.right - area.left, 2 * half); });
+      pen.restore();
+    },
+    // What is beyond the sheet stands at its edge, with its number.
+    afterDatasetsDraw(chart) {
+      const pen = chart.ctx;
+      pen.save();
+      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+      pen.textBaseline = "middle";
+      pen.textAlign = "right";
+      pen.fillStyle = colours().ink;
+      chart.getDatasetMeta(0).data.forEach((mark, i) => {
+        const p = chart.data.datasets[0].data[i];
+        if (p.beyond) pen.fillText(numberText(score(p.a), 3), mark.x - 10, mark.y);
+      });
+      pen.restore();
+    },
+  };
+  const intervalOf = (a) => (report.score === "rmse" ? a.rmse_ci95 : a.without_reference && a.without_reference.predictive_ci95);
+  function rankingChart(index, axis, u, figure) {
+    const c = colours(), scored = order.filter((a) => positive(score(a))), rows = scored.filter((a) => !a.bound).concat(scored.filter((a) => a.bound));
+    figure.querySelector(".canvas").style.height = 96 + ROW * rows.length + "px";
+    const least = minMax(rows.map(score))[0], sensor = report.sensors.find((s) => s.name === report.best_sensor), optimum = report.score === "rmse" && report.inputs.length === 1 ? optimumOf(0) : null;
+    const data = rows.map((a, y) => {
+      const beyond = score(a) > FARTHEST * least, ci = intervalOf(a);
+      return { x: Math.min(score(a), FARTHEST * least), y, a, beyond, ci: beyond ? null : ci, equal: !a.bound && (a.as_good_as_best || a.label === report.best) };
+    });
+    const values = data.flatMap((p) => [p.x].concat(p.ci || [])).concat(optimum, sensor ? sensor.rmse : null), [low, high] = padded(values, 1);
+    const room = Math.max(1.01, Math.pow(high / low, 0.05)), inks = data.map((p) => styleOf(p.a).colour);
+    const tip = (p) => [p.a.label, scoreName + " " + numberText(score(p.a), 5) + " " + u].concat(p.ci ? ["95 %: " + numberText(p.ci[0], 5) + " … " + numberText(p.ci[1], 5)] : [], p.a.regret === null ? [] : [numberText(1 + p.a.regret, 5) + " × best possible"], p.a.ratio_to_best_ci95 ? ["× best method: " + numberText(p.a.ratio_to_best_ci95[0], 5) + " … " + numberText(p.a.ratio_to_best_ci95[1], 5)] : []);
+    const upright = (label, x, colour, dash) => (positive(x) ? [{ label, data: [{ x, y: -0.5 }, { x, y: rows.length - 0.5 }], borderColor: colour, backgroundColor: colour, borderDash: dash, borderWidth: 1.6, pointRadius: 0, pointHitRadius: 4, fill: false, order: 5, tip: () => [label, numberText(x, 5) + " " + u] }] : []);
+    const sets = [{
+      label: "", data, showLine: false, intervals: "level", borderColor: c.ink, pointBorderColor: inks, pointBackgroundColor: data.map((p, i) => (p.a.bound ? c.paper : inks[i])),
+      pointStyle: data.map((p) => (p.beyond ? "triangle" : "circle")), pointRotation: data.map((p) => (p.beyond ? 90 : 0)), pointRadius: data.map((p) => (p.a.label === report.best ? 6.5 : 4.5)), pointBorderWidth: 1.8, pointHoverRadius: 7, fill: false, order: 1, tip,
+    }].concat(upright("best possible: optimum of this scene", optimum, c.ink, [1, 4]), sensor ? upright("best single sensor: " + sensor.name, sensor.rmse, sensorStyle(named(sensor.name)).colour, [6, 4]) : [],
+      [{ label: "as good as the best", data: [], swatch: c.shade }]);
+    const y = linearAxis("", -0.5, rows.length - 0.5), wide = chartWidth(figure);
+    y.reverse = true;
+    y.ticks = { color: c.ink, autoSkip: false, font: { size: 12 }, callback: (v) => (rows[v] ? shortened(rows[v].label, wide, 28) : "") };
+    y.afterBuildTicks = (a) => { a.ticks = rows.map((row, i) => ({ value: i })); };
+    y.grid = { color: c.fine, borderColor: c.border };
+    const config = chart(sets, valueAxis(withUnit(axis, u), low / room, high * room), y, [equals, intervalBars]);
+    config.options.interaction = { mode: "nearest", axis: "xy", intersect: false };
+    return config;
+  }
 
   // ---- dragging out a stretch ----
   let drag = null;
@@ -368,7 +582,7 @@
       if (!drag || drag.chart !== chart) return;
       const pen = chart.ctx, area = chart.chartArea;
       pen.save();
-      pen.fillStyle = "rgba(27,79,143,0.16)";
+      pen.fillStyle = colours().grip;
       pen.fillRect(Math.min(drag.from, drag.to), area.top, Math.abs(drag.to - drag.from), area.bottom - area.top);
       pen.restore();
     },
@@ -401,10 +615,12 @@
   const MAKERS = {
     "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => numberText(x, 3) + " ns a sample"),
     "cost-memory": (i, axis, u) => costChart("peak_bytes", "memory", "peak memory, bytes", withUnit(axis, u), onMemory),
+    signal: signalChart, error: errorChart, deviations: deviationsChart, ranking: rankingChart,
     window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, "error-allan": allanChart, sensors: sensorsChart,
   };
-  const HEIGHTS = { faults: 220, sensors: 220, "cost-time": 340, "cost-memory": 340 };
-  const { figures, charts } = start(MAKERS, (kind) => HEIGHTS[kind] || 300, "details:not([open])");
+  const HEIGHTS = { sensors: 220, "cost-time": 340, "cost-memory": 340, signal: 230, error: 200, deviations: 230 };
+  const onPaperHeight = (kind, figure) => HEIGHTS[kind] || (kind === "ranking" || kind === "faults" ? parseInt(figure.querySelector(".canvas").style.height, 10) : 300);
+  const { figures, charts } = start(MAKERS, onPaperHeight, "details:not([open])");
 
   // ---- what is shown ----
   let waiting = false;
@@ -417,7 +633,7 @@
       waiting = false;
       charts.forEach((drawn, figure) => {
         if (!stale.has(figure.dataset.kind)) return;
-        const fresh = MAKERS[figure.dataset.kind](Number(figure.dataset.channel), figure.dataset.axis, figure.dataset.unit);
+        const fresh = MAKERS[figure.dataset.kind](Number(figure.dataset.channel), figure.dataset.axis, figure.dataset.unit, figure);
         drawn.destroy();
         charts.set(figure, new Chart(figure.querySelector("canvas"), fresh));
       });
@@ -425,7 +641,7 @@
     });
   }
 
-  const OVER_TIME = ["window", "weights", "variances", "faults"], OF_TRACKED = ["weights", "variances", "faults"], OF_SHOWN = ["window", "error-allan"];
+  const OVER_TIME = ["signal", "error", "deviations", "window", "weights", "variances", "faults"], OF_TRACKED = ["weights", "variances", "faults"], OF_SHOWN = ["window", "error-allan"];
   const element = (name, text) => { const e = document.createElement(name); if (text !== undefined) e.textContent = text; return e; };
   const button = (text, action) => { const b = element("button", text); b.type = "button"; b.addEventListener("click", action); return b; };
 
@@ -451,13 +667,14 @@
     place.append(set);
   }
 
-  let moved = () => {};
+  const moved = [];
   function look(to) {
     // Some thousand samples at least make a stretch worth looking at; an empty one is none.
     stretch = to[1] - to[0] > (whole[1] - whole[0]) * 1e-5 ? to : whole.slice();
-    moved();
+    moved.forEach((follow) => follow());
     redraw(OVER_TIME);
   }
+  const withLabel = (text, control) => { const l = element("label", text + " "); l.append(control); return l; };
   function stretchControls(place) {
     const bar = element("div");
     bar.className = "controls";
@@ -468,20 +685,30 @@
     const slid = () => { if (Number(from.value) < Number(to.value)) look([at(from), at(to)]); };
     from.addEventListener("input", slid);
     to.addEventListener("input", slid);
-    moved = () => {
+    const follow = () => {
       from.value = Math.round((steps * (stretch[0] - whole[0])) / length);
       to.value = Math.round((steps * (stretch[1] - whole[0])) / length);
       said.textContent = numberText(stretch[0], 6) + " … " + numberText(stretch[1], 6) + " " + timeUnit;
     };
-    moved();
-    const labelled = (text, control) => { const l = element("label", text + " "); l.append(control); return l; };
-    bar.append(labelled("From", from), labelled("to", to), said, button("whole run", () => look(whole.slice())));
-    if (trackable.length) {
-      const choice = element("select");
-      trackable.forEach((a, i) => { const o = element("option", a.label); o.value = i; o.selected = a === tracked; choice.append(o); });
-      choice.addEventListener("change", () => { tracked = trackable[Number(choice.value)]; redraw(OF_TRACKED); });
-      bar.append(labelled("Weights, variances and faults of", choice));
-    }
+    follow();
+    moved.push(follow);
+    bar.append(withLabel("From", from), withLabel("to", to), said, button("whole run", () => look(whole.slice())));
+    place.append(bar);
+  }
+  // Whose weights, variances and findings; every such choice on the page is the same one.
+  const choices = [];
+  function methodChoice(place) {
+    if (!trackable.length) return;
+    const choice = element("select"), bar = element("div");
+    bar.className = "choice";
+    trackable.forEach((a, i) => { const o = element("option", a.label); o.value = i; o.selected = a === tracked; choice.append(o); });
+    choice.addEventListener("change", () => {
+      tracked = trackable[Number(choice.value)];
+      choices.forEach((other) => { other.value = choice.value; });
+      redraw(OF_TRACKED);
+    });
+    choices.push(choice);
+    bar.append(withLabel("Findings, weights and variances of", choice));
     place.append(bar);
   }
 
@@ -508,8 +735,80 @@
   }
 
   document.querySelectorAll("table.ranking").forEach(sortable);
-  const shownPlace = document.getElementById("shown-place"), stretchPlace = document.getElementById("stretch-place");
+  const shownPlace = document.getElementById("shown-place");
   if (shownPlace) algorithmBoxes(shownPlace);
-  if (stretchPlace) stretchControls(stretchPlace);
+  document.querySelectorAll(".stretch-place").forEach(stretchControls);
+  document.querySelectorAll(".choice-place").forEach(methodChoice);
+  // ---- numbers to take along ----
+  const cellOf = (v) => (v === null || v === undefined ? "" : typeof v === "number" ? String(v) : /[",\n\r]/.test(v) ? '"' + v.replace(/"/g, '""') + '"' : v);
+  const csv = (rows) => rows.map((row) => row.map(cellOf).join(",") + "\n").join("");
+  // A string of JSON is one of YAML.
+  const key = (name) => (/^[A-Za-z_][A-Za-z0-9_.-]*$/.test(name) && !/^(true|false|null|yes|no|on|off|y|n)$/i.test(name) ? name : JSON.stringify(name));
+  const yamlNumber = (v) => (v === null || v === undefined ? "null" : String(v));
+  // [algorithm, what, a number a sensor]
+  function weightRows() {
+    return order.flatMap((a) => {
+      const out = [], inputs = report.inputs.map((input) => input.name);
+      if (flatWeights(a)) out.push([a.label, "weights", a.weights]);
+      else if (a.weights && a.weights.length) a.weights[0].forEach((first, j) => out.push([a.label, "weights of " + (inputs[j] || j + 1), a.weights.map((row) => row[j])]));
+      if (a.variances) out.push([a.label, "variances", a.variances]);
+      return out;
+    });
+  }
+  const sensorNames = report.sensors.map((s) => s.name);
+  const COPIES = {
+    weights: {
+      CSV: () => csv([["algorithm", "what"].concat(sensorNames)].concat(weightRows().map(([label, what, values]) => [label, what].concat(values)))),
+      YAML: () => {
+        let out = "", last = null;
+        weightRows().forEach(([label, what, values]) => {
+          if (label !== last) out += key(label) + ":\n";
+          last = label;
+          out += "  " + key(what) + ":\n" + values.map((v, i) => "    " + key(sensorNames[i]) + ": " + yamlNumber(v) + "\n").join("");
+        });
+        return out;
+      },
+    },
+    alignment: {
+      CSV: () => {
+        const terms = ["delay_s", "bias", "gain"], crosses = Math.max(0, ...report.alignment.sensors.map((s) => s.cross.length)), all = terms.concat(Array.from({ length: crosses }, (none, k) => "cross_" + (k + 1)));
+        const of = (s, term) => (term.startsWith("cross_") ? s.cross[Number(term.slice(6)) - 1] : s[term]) || { value: null, standard_error: null };
+        return csv([["sensor"].concat(all.flatMap((t) => [t, t + "_standard_error"]))].concat(report.alignment.sensors.map((s) => [s.sensor].concat(all.flatMap((t) => [of(s, t).value, of(s, t).standard_error])))));
+      },
+      YAML: () => report.alignment.sensors.map((s) => key(s.sensor) + ": {delay_s: " + yamlNumber(s.delay_s.value) + ", bias: " + yamlNumber(s.bias.value) + ", gain: " + yamlNumber(s.gain.value) + ", cross: [" + s.cross.map((c) => yamlNumber(c.value)).join(", ") + "]}\n").join(""),
+    },
+  };
+  // Pages that were opened from a file may have no clipboard of their own: then by a selected text, and if that is refused too, the
+  // text stays there to be copied by hand.
+  function copy(text, said) {
+    const done = () => { said.textContent = "copied"; setTimeout(() => { said.textContent = ""; }, 2500); };
+    const byHand = () => {
+      const area = element("textarea");
+      area.value = text;
+      area.readOnly = true;
+      area.rows = 8;
+      said.after(area);
+      area.select();
+      let worked = false;
+      try { worked = document.execCommand("copy"); } catch (refused) { worked = false; }
+      if (worked) { area.remove(); done(); } else said.textContent = "press Ctrl+C";
+    };
+    if (navigator.clipboard && window.isSecureContext) navigator.clipboard.writeText(text).then(done, byHand);
+    else byHand();
+  }
+  document.querySelectorAll(".copy-place").forEach((place) => {
+    const kinds = COPIES[place.dataset.copy], said = element("output");
+    Object.keys(kinds).forEach((kind) => place.append(button("Copy as " + kind, () => copy(kinds[kind](), said))));
+    place.append(said);
+  });
+
+  // What seldom decides is folded away; without this script every column is there.
+  document.querySelectorAll("table.ranking").forEach((table) => {
+    if (!table.querySelector(".more")) return;
+    const more = button("All columns", () => { more.textContent = table.classList.toggle("few") ? "All columns" : "Fewer columns"; });
+    table.classList.add("few");
+    more.className = "more-columns";
+    table.parentElement.before(more);
+  });
   figures.filter((f) => OVER_TIME.includes(f.dataset.kind)).forEach((f) => makeDraggable(f.querySelector("canvas")));
 })();

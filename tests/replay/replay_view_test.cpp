@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "libchar/replay/detail/thinned_tracks.hpp"
@@ -39,6 +40,70 @@ TEST_CASE("replay view: an alarm on another sensor or at another time is one wit
   CHECK(view.algorithms[0].alarms_without_fault == 2);
   REQUIRE(view.algorithms[0].answers.size() == 1);
   CHECK(view.algorithms[0].answers[0]->found_s == 0.02);
+}
+
+TEST_CASE("replay view: marks are clipped to the run, and name what they mark") {
+  ReplayResult r = test::synthetic_replay();  // from 0 to 100 s
+  r.start_s = 20;
+  r.instants = 60000;
+  r.learning = TimeWindow{0, 30};
+  r.scored_from_s = 22;
+  r.faults = {{1, FaultKind::scale, 0.85, 10, 25},
+              {2, FaultKind::stuck, 0, 70, std::numeric_limits<double>::infinity()},
+              {0, FaultKind::bias, 1, 90, 95}};
+  const ReplayView view = replay_view(r);
+  REQUIRE(view.run.marks.size() == 4);
+  CHECK(view.run.marks[0].kind == "learning");
+  CHECK(view.run.marks[0].from_s == 20);
+  CHECK(view.run.marks[0].to_s == 30);
+  CHECK(view.run.marks[1].kind == "warm-up");
+  CHECK(view.run.marks[1].to_s == 22);
+  CHECK(view.run.marks[2].label == "gyr_1: scale 0.85");
+  CHECK(view.run.marks[2].sensor == 1);
+  CHECK(view.run.marks[2].from_s == 20);
+  CHECK(view.run.marks[3].label == "gyr_2: stuck");
+  CHECK(view.run.marks[3].to_s == 80);
+  CHECK(view.run.method == r.algorithms[*r.best].label);
+  CHECK(view.run.sensor == "gyr_0");
+}
+
+TEST_CASE("replay view: shares of the run that a sensor was out, clipped to it") {
+  ReplayResult r = test::synthetic_replay();
+  r.start_s = 20;
+  r.instants = 60000;  // to 80 s
+  AlgorithmResult& a = r.algorithms[0];
+  a.ran = a.watches_faults = true;
+  a.faults = {{1, "bias", 10, 26}, {1, "gain", 74, {}}, {2, "noise", 30, 40}, {0, "dead", 30, 33}};
+  const ReplayView view = replay_view(r);
+  REQUIRE(view.algorithms[0].out_share.size() == r.sensors.size());
+  CHECK(view.algorithms[0].out_share[0] == Approx(0.05));
+  CHECK(view.algorithms[0].out_share[1] == Approx(0.2));
+  CHECK(view.algorithms[0].out_share[2] == 0);
+}
+
+TEST_CASE("replay view: run time matters from a thousandth of a core on") {
+  ReplayResult r = test::synthetic_replay();
+  for (AlgorithmResult& a : r.algorithms) a.ns_per_sample = 50;
+  r.algorithms[2].ns_per_sample = 1000;
+  r.rate_hz = 999;
+  CHECK_FALSE(replay_view(r).figures.time_matters);
+  CHECK(replay_view(r).algorithms[2].core_share == Approx(0.999e-3));
+  r.rate_hz = 1001;
+  CHECK(replay_view(r).figures.time_matters);
+  r.algorithms[2].ran = false;
+  CHECK_FALSE(replay_view(r).figures.time_matters);
+}
+
+TEST_CASE("replay view: deviations of many sensors fit a page, and keep their extremes") {
+  ReplayResult r = test::without_reference();
+  std::mt19937_64 random(7);
+  r.tracks.deviations = test::synthetic_track(64, 2000, 0.05, 100, random);
+  r.tracks.deviations.high[63][1234] = 8.5;
+  const ReplayView view = replay_view(r);
+  const Timeline& thin = view.run.deviations;
+  REQUIRE(thin.high.size() == 64);
+  CHECK(thin.time_s.size() * 129 <= 2 * 40000);
+  CHECK(*std::max_element(thin.high[63].begin(), thin.high[63].end()) == 8.5);
 }
 
 TEST_CASE("replay view: what stands at the end has a row a matrix column, and no negative root") {

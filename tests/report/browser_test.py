@@ -303,6 +303,46 @@ def check_saving(browser, page):
     expect(not console, f"{page}: saving says {console[:3]}")
 
 
+def check_colours(browser, page):
+    """A sensor has one colour in every plot, and so has a method; the first of them are all different."""
+    browser.open(page.resolve().as_uri())
+    browser.run(UNFOLD)
+    browser.run(DRAW_ALL)
+    found = browser.run("""const report = JSON.parse(document.getElementById('report-data').textContent), sensors = report.sensors.map((s) => s.name), methods = report.algorithms.map((a) => a.label), out = {};
+      const note = (name, ink) => { (out[name] = out[name] || []).push(ink); };
+      Object.values(Chart.instances).forEach((c) => c.data.datasets.forEach((set) => {
+        const name = sensors.concat(methods).find((n) => [n, 'error of ' + n, 'fused by ' + n, n + ', the best single sensor', 'best single sensor: ' + n].includes(set.label));
+        if (name && typeof set.borderColor === 'string') note(name, set.borderColor);
+        if (set.intervals) set.data.forEach((p, i) => note((p.a || { label: p.s.name }).label, set.pointBorderColor[i]));
+      }));
+      return out;""")
+    expect(len(found) > 20, f"{page}: only {len(found)} lines with a name")
+    for name, inks in found.items():
+        expect(len(set(inks)) == 1, f"{page}: {name} has the colours {sorted(set(inks))}")
+    expect(sum(len(inks) > 2 for inks in found.values()) > 5, f"{page}: no line stands in several plots")
+
+
+def check_copying(browser, page):
+    """The buttons copy every weight to its last digit, as CSV and as YAML; without a clipboard the text is there to be taken by hand."""
+    browser.open(page.resolve().as_uri())
+    browser.run("""window.copied = []; Object.defineProperty(navigator, 'clipboard', { value: { writeText: (t) => { window.copied.push(t); return Promise.resolve(); } } });
+      document.querySelectorAll('.copy-place button').forEach((b) => b.click());""")
+    expect(browser.until("return window.copied.length >= 2"), f"{page}: nothing copied")
+    csv, yaml = browser.run("return window.copied")[:2]
+    report = json.loads(page.with_name("report.json").read_text())
+    rows = [line.split(",") for line in csv.splitlines()]
+    expect(rows[0] == ["algorithm", "what"] + [s["name"] for s in report["sensors"]], f"{page}: the copied table begins with {rows[0]}")
+    for a in report["algorithms"]:
+        if a["status"] != "ran" or not a["weights"]:
+            continue
+        mine = [row[2:] for row in rows if row[:2] == [a["label"], "weights"]]
+        expect(len(mine) == 1 and [float(v) for v in mine[0]] == a["weights"], f"{page}: the weights of {a['label']} are copied as {mine}")
+        expect(f"{a['label']}:\n  weights:\n    {report['sensors'][0]['name']}: " in yaml, f"{page}: {a['label']} is not in the YAML")
+    browser.run("Object.defineProperty(window, 'isSecureContext', { value: false }); document.execCommand = () => false; document.querySelector('.copy-place button').click()")
+    expect(browser.run("return (document.querySelector('.copy-place textarea') || {}).value") == csv, f"{page}: no text to copy by hand")
+    browser.console()
+
+
 def check_paper(browser, page, most):
     browser.open(page.resolve().as_uri())
     pdf = base64.b64decode(browser.protocol("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})["data"])
@@ -337,11 +377,16 @@ def main():
             check_dark(browser, folder / "imu/report.html")
             check_paper(browser, folder / "imu/report.html", 2)
             check_without_script(browser, folder / "imu/report.html")
-            for kind, plots in {"plain": 8, "large": 8, "inputs": 8, "blind": 5, "nothing": 1, "hostile": 7}.items():
+            for kind, plots in {"plain": 11, "large": 11, "inputs": 13, "blind": 8, "nothing": 1, "hostile": 10}.items():
                 subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)
                 check_page(browser, folder / ("replay-" + kind) / "report.html", plots, replay=True)
-            check_widths(browser, folder / "replay-plain/report.html")
-            check_widths(browser, folder / "replay-hostile/report.html")
+            for kind in ("plain", "blind", "hostile"):
+                check_widths(browser, folder / ("replay-" + kind) / "report.html", (390, 800, 1400))
+                check_saving(browser, folder / ("replay-" + kind) / "report.html")
+            check_dark(browser, folder / "replay-plain/report.html")
+            check_colours(browser, folder / "replay-large/report.html")
+            check_copying(browser, folder / "replay-plain/report.html")
+            check_paper(browser, folder / "replay-plain/report.html", 12)
             check_without_script(browser, folder / "replay-plain/report.html")
             for given in sys.argv[3:]:
                 check_page(browser, pathlib.Path(given), replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])

@@ -69,6 +69,17 @@ TEST_CASE("html: names from a file never become elements or attributes") {
   CHECK(test::count(page, "&lt;img src=x onerror=alert(1)&gt;") > 0);
 }
 
+TEST_CASE("html: every row of every table has the cells of its head") {
+  Characterization result = test::synthetic_imu();
+  REQUIRE(result.channels[0].fit);
+  GaussMarkovFit process;
+  process.sigma = process.tau_s = (*result.channels[0].fit)[Term::white];
+  result.channels[0].fit->gauss_markov = process;
+  const std::string page = without_assets(html_report(result));
+  CHECK(test::count(page, "correlation time") > 0);
+  CHECK(test::rows_that_do_not_fit(page) == std::vector<std::string>());
+}
+
 TEST_CASE("html: the plot says what its points hold and its lines do not") {
   Characterization result = test::synthetic_imu();
   for (ChannelResult& c : result.channels)

@@ -87,8 +87,40 @@ TEST_CASE("replay html: a figure an input, and no figure without anything to dra
                            std::regex("\\b(nan|inf)\\b")));
 }
 
+TEST_CASE("replay html: the run stands first, with the error below it and what it is beside") {
+  const std::string page = tables_of(without_replay_assets(replay_html(test::synthetic_replay())));
+  const std::size_t signal = page.find("data-kind=\"signal\""),
+                    error = page.find("data-kind=\"error\"");
+  REQUIRE(signal != std::string::npos);
+  CHECK(signal < error);
+  CHECK(page.find("<figure") < signal);
+  CHECK(page.find("<figure", page.find("<figure") + 1) > signal);  // it is the first one
+  CHECK(error < page.find("data-kind=\"ranking\""));
+  CHECK(test::count(page, "gyr_0, the best single sensor") == 1);
+  CHECK(test::count(page, "data-kind=\"deviations\"") == 0);
+  const std::string blind =
+      tables_of(without_replay_assets(replay_html(test::without_reference())));
+  CHECK(test::count(blind, "data-kind=\"signal\"") == 1);
+  CHECK(test::count(blind, "data-kind=\"error\"") == 0);
+  CHECK(test::count(blind, "data-kind=\"deviations\"") == 1);
+  CHECK(test::count(blind, "best single sensor") == 0);
+}
+
+TEST_CASE("replay html: has colours for dark screens") {
+  CHECK(test::count(replay_html(test::synthetic_replay()), "<html lang=\"en\" class=\"themed\">") ==
+        1);
+}
+
 TEST_CASE("replay html: 24 algorithms on 12 sensors stay below 3 MB") {
   CHECK(replay_html(test::synthetic_replay(12)).size() < 3'000'000);
+}
+
+TEST_CASE("replay html: 200 sensors without a reference stay below 3 MB") {
+  ReplayResult r = test::synthetic_replay(200);
+  std::mt19937_64 random(3);
+  r.has_reference = false;
+  r.tracks.deviations = test::synthetic_track(200, 2000, 0.05, 100, random);
+  CHECK(replay_html(r).size() < 3'000'000);
 }
 
 TEST_CASE("replay markdown: tables keep their columns whatever the names hold") {

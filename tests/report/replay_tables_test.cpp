@@ -68,12 +68,49 @@ TEST_CASE("replay page: methods stand in the order of their score") {
   CHECK(rows > 10);
 }
 
-TEST_CASE("replay page: a large regret is a multiple of the optimum, a small one a percentage") {
+TEST_CASE("replay page: the error stands as a multiple of the best possible one") {
   ReplayResult r = test::synthetic_replay();
   for (AlgorithmResult& a : r.algorithms) a.regret = 16.013;
-  CHECK(test::count(ranking_of(r), "17.0 × optimum") > 5);
+  CHECK(test::count(ranking_of(r), ">17.01 ×<") > 5);
   for (AlgorithmResult& a : r.algorithms) a.regret = 0.0034;
-  CHECK(test::count(ranking_of(r), ">0.34 %<") > 5);
+  CHECK(test::count(ranking_of(r), ">1.0034 ×<") > 5);
+  for (AlgorithmResult& a : r.algorithms) a.regret = test::kNan;
+  CHECK(test::count(ranking_of(r), " ×<") == 0);
+}
+
+TEST_CASE("replay page: nanoseconds stand in front only where the rate makes them matter") {
+  ReplayResult r = test::synthetic_replay();
+  const std::string folded = "<th scope=\"col\" class=\"more\">ns a sample</th>",
+                    in_front = "<th scope=\"col\">ns a sample</th>";
+  for (AlgorithmResult& a : r.algorithms) a.ns_per_sample = 1000;
+  r.rate_hz = 990;  // 0.099 % of a core
+  CHECK(test::count(ranking_of(r), folded) == 1);
+  CHECK(test::count(body_of(r), "run time decides nothing here") == 1);
+  CHECK(test::count(body_of(r), "ns a sample, ") == 0);
+  r.rate_hz = 1010;
+  CHECK(test::count(ranking_of(r), in_front) == 1);
+  CHECK(test::count(body_of(r), "run time decides nothing here") == 0);
+}
+
+TEST_CASE("replay page: every row of every table has the cells of its head") {
+  for (const std::string& kind : kinds()) {
+    INFO(kind);
+    CHECK(test::rows_that_do_not_fit(body_of(test::synthetic_replay_of_kind(kind))) ==
+          std::vector<std::string>());
+  }
+}
+
+TEST_CASE("replay page: how long each sensor was out, those that never were left away") {
+  ReplayResult r = test::synthetic_replay();
+  for (AlgorithmResult& a : r.algorithms) a.watches_faults = false;
+  AlgorithmResult& a = r.algorithms[0];
+  a.watches_faults = true;
+  a.faults = {{1, "bias", 40, 60}, {1, "gain", 95, {}}, {2, "noise", 10, 90}};
+  const std::string table = out_share_table(replay_view(r));
+  CHECK(test::count(table, "<tr><th scope=\"row\">gyr_1</th><td>25.0 %</td></tr>") == 1);
+  CHECK(test::count(table, "<tr><th scope=\"row\">") == 1);  // noise only re-weights
+  a.faults.clear();
+  CHECK(out_share_table(replay_view(r)).empty());
 }
 
 TEST_CASE("replay page: a table for each input when there are several, none for one") {

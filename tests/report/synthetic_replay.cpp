@@ -84,6 +84,20 @@ AlgorithmResult synthetic_algorithm(const ReplayResult& r,
   return a;
 }
 
+// As a replay keeps it: 1000 stretches of each.
+RunTracks synthetic_run(const ReplayResult& r, std::mt19937_64& random) {
+  RunTracks out;
+  out.algorithm = r.best.value_or(0);
+  for (std::size_t j = 0; j < r.inputs.size(); ++j)
+    out.inputs.push_back({synthetic_track(1, 1000, 1, 100, random),
+                          synthetic_track(1, 1000, 1, 100, random),
+                          synthetic_track(1, 1000, 0.03, 100, random)});
+  if (r.inputs.size() > 1) return out;
+  out.sensor = synthetic_track(1, 1000, 1, 100, random);
+  out.sensor_error = synthetic_track(1, 1000, 0.05, 100, random);
+  return out;
+}
+
 void judge(ReplayResult& r) {
   r.best.reset();
   for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
@@ -171,6 +185,8 @@ ReplayResult synthetic_replay(std::size_t sensors, std::size_t inputs) {
   r.warnings.add("short_rest", "the rest is shorter than a second", "", 1);
   r.work = {3, 10000, 2400000, 0};
   r.seconds = 4.2;
+  if (inputs == 1) r.best_sensor = 0;
+  r.tracks = synthetic_run(r, random);
   return r;
 }
 
@@ -181,6 +197,11 @@ ReplayResult without_reference() {
   r.learning.reset();
   r.reference_use.clear();
   r.inputs[0].optimum_rmse = kNan;
+  r.best_sensor.reset();
+  std::mt19937_64 random(20202);
+  r.tracks.sensor = r.tracks.sensor_error = {};
+  r.tracks.inputs[0].reference = r.tracks.inputs[0].error = {};
+  r.tracks.deviations = synthetic_track(r.sensors.size(), 1000, 0.05, 100, random);
   for (SensorResult& s : r.sensors) {
     s.error = ErrorScore{};
     s.error.rmse = kNan;
@@ -226,6 +247,8 @@ ReplayResult nothing_scored() {
   }
   r.faults.clear();
   r.best.reset();
+  r.best_sensor.reset();
+  r.tracks = {};
   return r;
 }
 

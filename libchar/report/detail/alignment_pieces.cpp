@@ -61,8 +61,7 @@ std::string markdown_table(const WordTable& table) {
 }
 
 std::string html_table(const WordTable& table) {
-  std::string out =
-      "<div class=\"wide\"><table>\n<thead>" + table_head(table.head) + "</thead>\n<tbody>\n";
+  std::string out = "<div class=\"wide\"><table>\n" + table_head(table.head);
   for (const auto& row : table.rows) out += table_row(row);
   return out + "</tbody></table></div>\n";
 }
@@ -139,7 +138,8 @@ std::string alignment_html(const ReplayView& view) {
   const AlignmentWords words = alignment_words(r, *r.alignment);
   std::string out = "<section class=\"part\" id=\"alignment\">\n<h2>Alignment</h2>\n";
   for (const std::string& sentence : words.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
-  return out + html_table(words.learnt) + "<h3>Error budget</h3>\n" + html_table(words.budget) +
+  return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" +
+         html_table(words.learnt) + "<h3>Error budget</h3>\n" + html_table(words.budget) +
          "<p class=\"note\">Shares of each sensor’s mean square error over the evaluation, with "
          "95 % intervals; last row: what the fused error would lose. Jitter: the part of what "
          "alignment leaves that follows the square of the input’s slope.</p>\n</section>\n";

@@ -97,29 +97,30 @@ std::string derived_row(const std::string& name,
          fmt::format("<td colspan=\"5\">{}</td></tr>\n", html_text(what));
 }
 
+std::string process_row(const char* name, const Coefficient& c, const std::string& unit) {
+  const std::string high = std::isfinite(c.ci95.high) ? number_text(c.ci95.high, 4) : "no end";
+  return fmt::format("<tr><th scope=\"row\">{}</th>", name) +
+         card_cell("Value",
+                   fmt::format("<b>{}</b> <span class=\"dim\">{}</span><span class=\"ci\">[{}, "
+                               "{}]</span>",
+                               html_text(value_text(c)),
+                               html_text(unit),
+                               number_text(c.ci95.low, 4),
+                               high),
+                   "n") +
+         card_cell("As the field says it", "", "") +
+         card_cell("Status", status_chip(c.status), "") +
+         card_cell("Known to", "±" + number_text(100 * c.relative_sd, 2) + " %", "n") +
+         card_cell("Best possible", "–", "n") + card_cell("Record for 10 %", "–", "n") + "</tr>\n";
+}
+
 std::string process_rows(const GaussMarkovFit& process, const std::string& unit) {
-  const auto row = [&](const char* name, const Coefficient& c, const std::string& of) {
-    const std::string high = std::isfinite(c.ci95.high) ? number_text(c.ci95.high, 4) : "no end";
-    return fmt::format(
-        "<tr><th scope=\"row\">{}</th><td class=\"n\"><b>{}</b></td><td class=\"n\">[{}, "
-        "{}]</td><td "
-        "class=\"u\">{}</td><td></td><td>{}</td><td class=\"n\">±{} %</td><td "
-        "class=\"n\">–</td><td "
-        "class=\"n\">–</td></tr>\n",
-        name,
-        html_text(value_text(c)),
-        number_text(c.ci95.low, 4),
-        high,
-        html_text(of),
-        status_chip(c.status),
-        number_text(100 * c.relative_sd, 2));
-  };
-  return row("Gauss–Markov <b>σ</b><span class=\"dim\"> standard deviation</span>",
-             process.sigma,
-             unit.empty() ? "U" : unit) +
-         row("Gauss–Markov <b>τ</b><span class=\"dim\"> correlation time</span>",
-             process.tau_s,
-             "s");
+  return process_row("Gauss–Markov <b>σ</b><span class=\"dim\"> standard deviation</span>",
+                     process.sigma,
+                     unit.empty() ? "U" : unit) +
+         process_row("Gauss–Markov <b>τ</b><span class=\"dim\"> correlation time</span>",
+                     process.tau_s,
+                     "s");
 }
 
 std::string derived_rows(const ChannelView& view, double rate_hz) {

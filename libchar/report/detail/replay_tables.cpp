@@ -17,12 +17,14 @@ namespace {
 
 constexpr std::size_t kMostFaultRows = 60;
 
-/// From here on a regret is easier to read as a multiple of the optimum.
-constexpr double kLargeRegret = 1;
-
-// A cell with the number that the column is sorted by; empty: none.
-std::string cell(const std::string& shown, double value, const std::string& below = "") {
-  return fmt::format("<td class=\"n\" data-value=\"{}\">{}{}</td>",
+// A cell with the number that the column is sorted by; empty: none. `css` "n more": of a column that
+// is folded at first.
+std::string cell(const std::string& shown,
+                 double value,
+                 const std::string& below = "",
+                 const char* css = "n") {
+  return fmt::format("<td class=\"{}\" data-value=\"{}\">{}{}</td>",
+                     css,
                      std::isfinite(value) ? shortest(value) : "",
                      html_text(shown),
                      below.empty() ? "" : "<span class=\"ci\">" + html_text(below) + "</span>");
@@ -59,48 +61,114 @@ const char* css_of(const AlgorithmView& v) {
   return v.best ? "best" : v.result->bound ? "bound" : "";
 }
 
-std::string regret_in_words(double regret) {
-  return regret > kLargeRegret ? number_text(1 + regret, 3) + " × optimum" : percent_text(regret);
+// "1.0016 ×", "18 ×": four decimals, for a few hundredths of a per cent can be resolved.
+std::string times_text(double ratio) {
+  if (!std::isfinite(ratio)) return "–";
+  return (ratio < 10 ? fmt::format("{:.4f}", ratio) : number_text(ratio, 4)) + " ×";
 }
 
 std::string plain_number(double value) {
   return std::isfinite(value) ? significant(value, 4) : "–";
 }
 
-std::string with_reference_cells(const AlgorithmResult& a) {
-  const ErrorScore none;
-  const bool any = !a.inputs.empty();
-  const ErrorScore& e = any ? a.inputs[0].error : none;
-  const double nan = std::nan("");
-  const std::string ratio = a.ratio_to_best && std::isfinite(a.ratio_to_best->low)
-                                ? "× best: " + interval_text(*a.ratio_to_best)
-                                : "";
-  std::string out = cell(regret_in_words(a.regret), a.regret, ratio);
-  out += cell(number_text(any ? e.bias : nan, 3),
-              any ? std::fabs(e.bias) : nan,
-              any && std::isfinite(e.bias_ci95.low) ? interval_text(e.bias_ci95, 2) : "");
-  out += cell(number_text(any ? e.maximum : nan, 3), any ? e.maximum : nan);
-  out += cell(duration_text(any ? e.converged_s : nan), any ? e.converged_s : nan);
+/// A column of the ranking: its head, and whether it is folded at first.
+struct RankingColumn {
+  std::string head;
+  bool more;
+  std::string (*cell)(const AlgorithmResult& a, const char* css);
+};
+
+const ErrorScore& score_of(const AlgorithmResult& a) {
+  static const ErrorScore none = [] {
+    ErrorScore e;
+    e.rmse = e.bias = e.maximum = e.converged_s = std::nan("");
+    e.bias_ci95 = {std::nan(""), std::nan("")};
+    return e;
+  }();
+  return a.inputs.empty() ? none : a.inputs[0].error;
+}
+
+std::string score_cell(const AlgorithmResult& a, const char* css) {
+  return cell(number_text(a.rmse),
+              a.rmse,
+              std::isfinite(a.rmse_ci95.low) ? interval_text(a.rmse_ci95) : "",
+              css);
+}
+
+std::string possible_cell(const AlgorithmResult& a, const char* css) {
+  return cell(times_text(1 + a.regret), a.regret, "", css);
+}
+
+std::string ratio_cell(const AlgorithmResult& a, const char* css) {
+  if (!a.ratio_to_best || !std::isfinite(a.ratio_to_best->low))
+    return cell("–", std::nan(""), "", css);
+  return cell(interval_text(*a.ratio_to_best), a.ratio_to_best->low, "", css);
+}
+
+std::string bias_cell(const AlgorithmResult& a, const char* css) {
+  const ErrorScore& e = score_of(a);
+  return cell(number_text(e.bias, 3),
+              std::fabs(e.bias),
+              std::isfinite(e.bias_ci95.low) ? interval_text(e.bias_ci95, 2) : "",
+              css);
+}
+
+// The scores, then what each costs; what seldom decides is folded at first.
+std::vector<RankingColumn> ranking_columns(const ReplayView& view) {
+  using A = const AlgorithmResult&;
+  const bool reference = view.result->has_reference;
+  const std::string unit = score_unit(*view.result);
+  std::vector<RankingColumn> out = {
+      {score_name(*view.result) + (unit.empty() ? "" : ", " + unit), false, score_cell}};
+  if (reference) out.push_back({"× best possible", false, possible_cell});
+  out.push_back({"× best method", false, ratio_cell});
+  if (reference) {
+    out.push_back({"Bias", true, bias_cell});
+    out.push_back({"Maximum", true, [](A a, const char* css) {
+                     return cell(number_text(score_of(a).maximum, 3), score_of(a).maximum, "", css);
+                   }});
+    out.push_back({"Converged", true, [](A a, const char* css) {
+                     const double s = score_of(a).converged_s;
+                     return cell(duration_text(s), s, "", css);
+                   }});
+  } else {
+    out.push_back({"Split-array RMS", false, [](A a, const char* css) {
+                     const double rms = a.blind ? a.blind->split_rms : std::nan("");
+                     return cell(number_text(rms), rms, "", css);
+                   }});
+  }
+  out.push_back({"Available", !view.figures.availability, [](A a, const char* css) {
+                   return cell(percent_text(a.availability, 1), a.availability, "", css);
+                 }});
+  out.push_back({"ns a sample", !view.figures.time_matters, [](A a, const char* css) {
+                   return cell(number_text(a.ns_per_sample, 3), a.ns_per_sample, "", css);
+                 }});
+  out.push_back({"Memory", true, [](A a, const char* css) {
+                   return cell(bytes_text(a.peak_bytes),
+                               a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::nan(""),
+                               "",
+                               css);
+                 }});
+  out.push_back({"Learning", true, [](A a, const char* css) {
+                   return cell(duration_text(a.learning_s), a.learning_s, "", css);
+                 }});
   return out;
 }
 
-std::string ranking_row(const ReplayResult& r, const AlgorithmView& v) {
-  const AlgorithmResult& a = *v.result;
+std::string ranking_row(const std::vector<RankingColumn>& columns, const AlgorithmView& v) {
   std::string out = fmt::format("<tr class=\"{}\">", css_of(v)) + name_cell(v);
-  out += cell(number_text(a.rmse),
-              a.rmse,
-              std::isfinite(a.rmse_ci95.low) ? interval_text(a.rmse_ci95) : "");
-  if (r.has_reference)
-    out += with_reference_cells(a);
-  else
-    out += cell(a.blind ? number_text(a.blind->split_rms) : "–",
-                a.blind ? a.blind->split_rms : std::nan(""));
-  out += cell(percent_text(a.availability, 1), a.availability);
-  out += cell(number_text(a.ns_per_sample, 3), a.ns_per_sample);
-  const double bytes = a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::nan("");
-  out += cell(bytes_text(a.peak_bytes), bytes);
-  out += cell(duration_text(a.learning_s), a.learning_s);
+  for (const RankingColumn& column : columns)
+    out += column.cell(*v.result, column.more ? "n more" : "n");
   return out + "</tr>\n";
+}
+
+std::string ranking_head(const std::vector<RankingColumn>& columns) {
+  std::string out = "<thead><tr><th scope=\"col\">Algorithm</th>";
+  for (const RankingColumn& column : columns)
+    out += fmt::format("<th scope=\"col\"{}>{}</th>",
+                       column.more ? " class=\"more\"" : "",
+                       html_text(column.head));
+  return out + "</tr></thead>\n<tbody>\n";
 }
 
 std::string joined(const std::vector<std::string>& all) {
@@ -110,26 +178,18 @@ std::string joined(const std::vector<std::string>& all) {
 }  // namespace
 
 std::string ranking_table(const ReplayView& view) {
-  const ReplayResult& r = *view.result;
-  const std::string unit = score_unit(r);
-  std::vector<std::string> head = {"Algorithm", score_name(r) + (unit.empty() ? "" : ", " + unit)};
-  if (r.has_reference)
-    for (const char* name : {"Regret", "Bias", "Maximum", "Converged"}) head.emplace_back(name);
-  else
-    head.emplace_back("Split-array RMS");
-  for (const char* name : {"Available", "ns a sample", "Memory", "Learning"})
-    head.emplace_back(name);
-  std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + table_head(head);
+  const std::vector<RankingColumn> columns = ranking_columns(view);
+  std::string out = "<div class=\"wide\"><table class=\"ranking\">\n" + ranking_head(columns);
   std::string bounds;
   for (const AlgorithmView* a : view.ranked)
-    (a->result->bound ? bounds : out) += ranking_row(r, *a);
+    (a->result->bound ? bounds : out) += ranking_row(columns, *a);
   // Their own body, so that sorting keeps them apart from what one could use.
   if (!bounds.empty())
     out +=
         fmt::format(
             "</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">Bounds: they look at the "
             "reference of the run itself, and nobody could use them</th></tr>\n",
-            head.size()) +
+            columns.size() + 1) +
         bounds;
   return out + "</tbody></table></div>\n";
 }
@@ -169,7 +229,7 @@ std::string input_row(const AlgorithmView& v, std::size_t j) {
   };
   return fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>", css_of(v), html_text(a.label)) +
          cell(number_text(e.rmse), e.rmse, interval(e.rmse_ci95)) +
-         cell(regret_in_words(input.optimum_ratio - 1), input.optimum_ratio) +
+         cell(times_text(input.optimum_ratio), input.optimum_ratio) +
          cell(number_text(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
          cell(number_text(e.maximum, 3), e.maximum) +
          cell(duration_text(e.converged_s), e.converged_s) +
@@ -184,7 +244,7 @@ std::string input_table(const ReplayView& view, std::size_t j) {
                     "</p>\n<div class=\"wide\"><table class=\"ranking\">\n" +
                     table_head({"Algorithm",
                                 "RMSE" + (unit.empty() ? "" : ", " + unit),
-                                "Above the optimum",
+                                "× best possible",
                                 "Bias",
                                 "Maximum",
                                 "Converged",
@@ -267,14 +327,14 @@ std::string weights_table(const ReplayView& view) {
     row.push_back(number_text(final.distance, 3));
     rows += table_row(row);
   }
-  return "<details><summary>Weights and noise levels at the end</summary>\n<div "
+  return "<div class=\"copy-place\" data-copy=\"weights\"></div>\n<div "
          "class=\"wide\"><table>\n" +
          table_head(head) + rows +
          "</tbody></table></div>\n<p class=\"note\">Distance: of weights, root mean square over "
          "the run of "
          "their Euclidean distance from the optimal fixed weights; of standard deviations, root "
          "mean square "
-         "of ln(variance / the sensor's mean square error).</p>\n</details>\n";
+         "of ln(variance / the sensor's mean square error).</p>\n";
 }
 
 namespace {
@@ -282,7 +342,8 @@ namespace {
 std::string answer_in_words(const FaultAnswer* answer) {
   if (answer == nullptr) return "–";
   if (!answer->found_s) return "missed";
-  return "found after " + duration_text(*answer->found_s) +
+  return (*answer->found_s == 0 ? "found at once"
+                                : "found after " + duration_text(*answer->found_s)) +
          (answer->returned_s
               ? ", used again " + duration_text(*answer->returned_s) + " after its end"
               : "");
@@ -326,6 +387,27 @@ std::string faults_table(const ReplayView& view) {
                             kMostFaultRows,
                             known)
               : "");
+}
+
+// Sensors that were never out need no row.
+std::string out_share_table(const ReplayView& view) {
+  const std::vector<SensorResult>& sensors = view.result->sensors;
+  std::vector<std::string> head = {"Share of the run out"};
+  for (const AlgorithmView* a : view.watching) head.push_back(a->result->label);
+  std::string rows;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    std::vector<std::string> row = {sensors[i].name};
+    bool ever = false;
+    for (const AlgorithmView* a : view.watching) {
+      const double share = i < a->out_share.size() ? a->out_share[i] : 0;
+      ever = ever || share > 0;
+      row.push_back(share > 0 ? percent_text(share) : "never");
+    }
+    if (ever) rows += table_row(row);
+  }
+  return rows.empty() ? ""
+                      : "<div class=\"wide\"><table>\n" + table_head(head) + rows +
+                            "</tbody></table></div>\n";
 }
 
 }  // namespace libchar

@@ -22,5 +22,7 @@ std::string blind_table(const ReplayView& view);
 std::string weights_table(const ReplayView& view);
 /// Faults that the scene knows against what each algorithm found; "" without either.
 std::string faults_table(const ReplayView& view);
+/// How long each method that watches had each sensor out; "" where none ever was.
+std::string out_share_table(const ReplayView& view);
 
 }  // namespace libchar

@@ -1,0 +1,136 @@
+#include "libchar/replay/detail/run_tracks.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "libchar/replay/replay.hpp"
+#include "tests/replay/replay_numbers.hpp"
+#include "tests/replay/scene_text.hpp"
+
+using namespace libchar;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Timeline enveloped(const std::vector<double>& values, std::size_t bins, std::size_t block) {
+  Envelope envelope(static_cast<std::int64_t>(values.size()), bins);
+  for (std::size_t at = 0; at < values.size(); at += block)
+    envelope.push(static_cast<std::int64_t>(at),
+                  static_cast<Eigen::Index>(std::min(block, values.size() - at)),
+                  [&](Eigen::Index k) { return values[at + static_cast<std::size_t>(k)]; });
+  Timeline out;
+  envelope.add_to(out, 100, 10);
+  return out;
+}
+
+// Three sensors of a sine that differ by offsets; the second fails for a while.
+std::string log_of(std::size_t rows, bool with_truth) {
+  std::string out = with_truth ? "t[s],a,b,c,truth\n" : "t[s],a,b,c\n";
+  for (std::size_t k = 0; k < rows; ++k) {
+    const double x = std::sin(0.01 * static_cast<double>(k)), wiggle = k % 7 == 0 ? 0.25 : 0;
+    out += std::to_string(0.01 * static_cast<double>(k)) + "," + std::to_string(x + 0.5) + "," +
+           (k % 11 == 3 ? "" : std::to_string(x - wiggle)) + "," + std::to_string(x - 1) +
+           (with_truth ? "," + std::to_string(x) : "") + "\n";
+  }
+  return out;
+}
+
+std::string scene_of(const std::string& more) {
+  return "format: scene\nversion: 1\nname: three\nrecording: three.csv\nsensors:\n"
+         "  - {name: a}\n  - {name: b}\n  - {name: c}\n" +
+         more;
+}
+
+}  // namespace
+
+TEST_CASE("envelope: the smallest and the largest of each stretch, the last one shorter") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> values = {3, 1, 2, -5, kNan, 7, kNan, kNan, infinity, 4};
+  const Timeline t = enveloped(values, 4, values.size());  // stretches of 3, 3, 3, 1
+  REQUIRE(t.low.size() == 1);
+  REQUIRE(t.low[0].size() == 4);
+  CHECK(t.low[0][0] == 1);
+  CHECK(t.high[0][0] == 3);
+  CHECK(t.low[0][1] == -5);
+  CHECK(t.high[0][1] == 7);
+  CHECK(std::isnan(t.low[0][2]));
+  CHECK(std::isnan(t.high[0][2]));
+  CHECK(t.low[0][3] == 4);
+  CHECK(t.time_s[0] == Approx(100.1));
+  CHECK(t.time_s[3] == Approx(100.9));
+}
+
+TEST_CASE("envelope: blocks of any size give the same") {
+  std::vector<double> values;
+  for (int k = 0; k < 1003; ++k) values.push_back(std::sin(0.7 * k) * k);
+  const Timeline whole = enveloped(values, 100, values.size());
+  CHECK(whole.time_s.size() == 92);  // of 11 each
+  for (const std::size_t block : {1, 5, 11, 12, 500})
+    CHECK(enveloped(values, 100, block).high == whole.high);
+}
+
+TEST_CASE("replay: keeps the run of the best method and of the best single sensor") {
+  const test::SceneBench bench;
+  bench.put("three.csv", log_of(5000, true));
+  const ReplayResult r =
+      replay(bench.read(scene_of("reference: truth\nwarm_up_s: 2\nalgorithms: [mean, median]\n")));
+  REQUIRE(r.best);
+  REQUIRE(r.algorithms[*r.best].label == "median");
+  CHECK(r.tracks.algorithm == r.best);
+  CHECK(r.scored_from_s == 2);
+  REQUIRE(r.tracks.inputs.size() == 1);
+  const InputTracks& input = r.tracks.inputs[0];
+  REQUIRE(input.error.low[0].size() == 1000);  // stretches of 5
+  // The sensor b, where it is there; else the middle of a and c.
+  const double e = 1e-6;
+  for (std::size_t bin = 0; bin < 1000; ++bin) {
+    double low = 1, high = -1, sensor_low = 1;
+    for (std::size_t k = 5 * bin; k < 5 * bin + 5; ++k) {
+      const double wiggle = k % 7 == 0 ? 0.25 : 0, error = k % 11 == 3 ? -0.25 : -wiggle;
+      low = std::min(low, error);
+      high = std::max(high, error);
+      if (k % 11 != 3) sensor_low = std::min(sensor_low, -wiggle);
+    }
+    REQUIRE(input.error.low[0][bin] == Approx(low).margin(2 * e));
+    REQUIRE(input.error.high[0][bin] == Approx(high).margin(2 * e));
+    REQUIRE(r.tracks.sensor_error.low[0][bin] == Approx(sensor_low).margin(2 * e));
+  }
+  CHECK(input.reference.high[0][31] == Approx(std::sin(1.57)).margin(1e-3));
+  CHECK(r.sensors[*r.best_sensor].name == "b");
+  CHECK(r.tracks.deviations.empty());
+}
+
+TEST_CASE("replay: without a reference the distance of each sensor from the median is kept") {
+  const test::SceneBench bench;
+  bench.put("three.csv", log_of(3000, false));
+  const ReplayResult r = replay(bench.read(scene_of("algorithms: [mean, median]\n")));
+  REQUIRE(r.tracks.deviations.low.size() == 3);
+  CHECK(r.tracks.inputs[0].reference.empty());
+  CHECK(r.tracks.inputs[0].error.empty());
+  CHECK_FALSE(r.tracks.inputs[0].estimate.empty());
+  CHECK(r.tracks.sensor.empty());
+  // Stretches of 3. In the second one b is missing once: the median is the middle of a and c then.
+  CHECK(r.tracks.deviations.low[0][0] == Approx(0.5).margin(1e-5));
+  CHECK(r.tracks.deviations.high[0][0] == Approx(0.75).margin(1e-5));
+  CHECK(r.tracks.deviations.high[0][1] == Approx(0.75).margin(1e-5));
+  CHECK(r.tracks.deviations.high[1][0] == Approx(0).margin(1e-5));
+  CHECK(r.tracks.deviations.low[2][0] == Approx(-1).margin(1e-5));
+}
+
+TEST_CASE("replay: the run that is kept does not depend on the block size") {
+  const test::SceneBench bench;
+  bench.put("three.csv", log_of(4000, true));
+  const Scene scene = bench.read(scene_of("reference: truth\nalgorithms: [mean, median]\n"));
+  const ReplayResult standard = replay(scene);
+  for (const std::size_t block : {1, 37, 100000}) {
+    ReplayOptions options;
+    options.block = block;
+    const ReplayResult other = replay(scene, options);
+    CHECK(other.tracks.inputs[0].error.low == standard.tracks.inputs[0].error.low);
+    CHECK(other.tracks.sensor.high == standard.tracks.sensor.high);
+  }
+}
