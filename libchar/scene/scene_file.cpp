@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
@@ -10,6 +11,7 @@
 #include "libchar/core/fields.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_reference.hpp"
@@ -182,6 +184,18 @@ Scene parse_scene(std::string_view text, const std::string& path, const SceneRea
   const Document document = parse_document(text, path);
   check_format(document, path, "scene", 1);
   return SceneReader(document, path, options).read();
+}
+
+bool looks_like_scene(const std::string& path) {
+  const std::string small = ascii_lower(path);
+  for (const char* suffix : {".yaml", ".yml", ".json"})
+    if (small.ends_with(suffix)) return true;
+  if (read_once(path)) return false;
+  std::string front(4096, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(front.data(), static_cast<std::streamsize>(front.size()));
+  front.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return ("\n" + front).find("\nformat: scene") != std::string::npos;
 }
 
 bool is_scene_file(const std::string& path) {
