@@ -85,6 +85,10 @@ VectorXd solve_lower(const MatrixXd& l, const VectorXd& b) {
   return l.triangularView<Eigen::Lower>().solve(b);
 }
 
+VectorXd solve_factored(const MatrixXd& l, const VectorXd& b) {
+  return l.transpose().triangularView<Eigen::Upper>().solve(solve_lower(l, b));
+}
+
 VectorXd cholesky_solve(const MatrixXd& a, const VectorXd& b) {
   return a.llt().solve(b);
 }

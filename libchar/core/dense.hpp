@@ -57,6 +57,8 @@ Eigen::MatrixXd inverse_cholesky_factor(const Eigen::MatrixXd& a);
 /// L^-1 B and L^-1 b, L lower triangular.
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& l, const Eigen::MatrixXd& b);
 Eigen::VectorXd solve_lower(const Eigen::MatrixXd& l, const Eigen::VectorXd& b);
+/// (L L')^-1 b, L lower triangular.
+Eigen::VectorXd solve_factored(const Eigen::MatrixXd& l, const Eigen::VectorXd& b);
 /// A^-1 b and A^-1 of a symmetric positive definite A.
 Eigen::VectorXd cholesky_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd cholesky_inverse(const Eigen::MatrixXd& a);

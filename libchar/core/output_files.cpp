@@ -115,10 +115,11 @@ void check_outputs(const std::vector<std::string>& paths,
 }
 
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
-                                       const std::filesystem::path& folder,
+                                       const std::filesystem::path& into,
                                        const std::vector<std::string>& inputs,
                                        bool force,
                                        const std::function<void()>& before_names) {
+  const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
   make_folder(folder);
   const FolderLock lock(folder);
   const std::vector<std::string> names = names_of(outputs);

@@ -42,11 +42,17 @@ std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
 }
 
 template <Algorithm A>
+double cost_ns(const Array& array, const Settings& settings) {
+  if constexpr (HasCost<A>) return A::cost_ns(array, settings);
+  return 10.0 * static_cast<double>(array.channels * array.inputs());
+}
+
+template <Algorithm A>
 constexpr Entry entry() {
   if constexpr (HasOptions<A>)
-    return {&A::description, A::options, &make<A>};
+    return {&A::description, A::options, &make<A>, &cost_ns<A>};
   else
-    return {&A::description, {}, &make<A>};
+    return {&A::description, {}, &make<A>, &cost_ns<A>};
 }
 
 // The order of reports: baselines, blind methods, methods that learn from a reference, bounds.

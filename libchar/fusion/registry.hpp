@@ -14,6 +14,8 @@ struct Entry {
   std::span<const Option> options;
   /// Throws Error(usage) when the algorithm cannot run on what is given (ask `why_not` first).
   std::unique_ptr<Runner> (*make)(const Array&, const Settings&);
+  /// Of a step, as declared: nanoseconds of a core of 3 GHz.
+  double (*cost_ns)(const Array&, const Settings&);
 };
 
 std::span<const Entry> algorithms();

@@ -158,6 +158,20 @@ void ErrorMeter::push(std::span<const double> error) {
   for (const double e : error) put(e);
 }
 
+std::uint64_t ErrorMeter::cell_samples_of(std::uint64_t samples) {
+  std::uint64_t cell = 1;
+  while (cell * kMostCells < samples) cell *= 2;
+  return cell;
+}
+
+ErrorMeter ErrorMeter::where_known(const ErrorMeter& other) const {
+  ErrorMeter out = *this;
+  for (std::size_t k = 0; k < std::min(out.cells_.size(), other.cells_.size()); ++k)
+    if (other.cells_[k].n == 0)
+      out.cells_[k] = {0, 0, 0, 0, out.cells_[k].n + out.cells_[k].missing};
+  return out;
+}
+
 std::vector<ErrorCell> ErrorMeter::cells() const {
   return cells_;
 }

@@ -27,6 +27,10 @@ class ErrorMeter {
   /// The cells, the last one possibly shorter than `cell_samples`.
   std::vector<ErrorCell> cells() const;
   std::uint64_t cell_samples() const { return cell_samples_; }
+  /// Of a meter that has seen so many samples.
+  static std::uint64_t cell_samples_of(std::uint64_t samples);
+  /// The same, but only the cells in which the other (which saw equally many samples) has an estimate too.
+  ErrorMeter where_known(const ErrorMeter& other) const;
 
  private:
   void put(double error);

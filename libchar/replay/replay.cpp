@@ -17,6 +17,7 @@
 #include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/partial_scores.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 #include "libchar/replay/detail/run_tracks.hpp"
@@ -119,7 +120,9 @@ class Replay {
     for (const PlannedAlgorithm& algorithm : plan_.algorithms)
       if (algorithm.runs()) {
         runs_.emplace_back(algorithm, frame_);
-        if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run())
+        const bool left_out = !algorithm.blind.whole && algorithm.blind.stretches.empty();
+        if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run() &&
+            !left_out)
           blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.array, plan_.live));
         else
           blind_.push_back(nullptr);
@@ -211,7 +214,7 @@ class Replay {
           for (AlgorithmRun& run : runs_) run.score(done, truth, skip);
           for (AlgorithmRun& run : optimum_) run.score(done, truth, skip);
           for (const auto& blind : blind_)
-            if (blind) blind->run(samples, skip);
+            if (blind) blind->run(done, samples, skip);
           judge_sensors(samples, healthy, truth, skip);
           tracker_.push(done, samples, truth, runs_);
           if (workspace_.estimates != nullptr) give_estimates(truth);
@@ -489,6 +492,7 @@ ReplayResult Replay::collect() {
   add_facts(out);
   add_sensors(out, scoring);
   const std::vector<Meters> meters = add_algorithms(out, scoring);
+  if (!out.has_reference) extend_partial_scores(out, meters, scoring);
   std::vector<double> healthy_rms;
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));

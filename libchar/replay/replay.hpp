@@ -32,7 +32,10 @@ struct ReplayOptions {
   std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
   double window_s = 0;                             ///< of the window RMS; 0: a fiftieth of the run
   bool allan = true;                               ///< Allan deviation of each error
-  bool no_skip = false;   ///< do all work, whether an output needs it or not: same numbers
+  bool no_skip = false;  ///< do all work, whether an output needs it or not: same numbers
+  /// processor time that leave-one-out of one algorithm may take, by the declared cost of its steps; beyond it runs on
+  /// stretches of the evaluation, or not at all. Infinite: no limit
+  double budget_s = 5;
   std::size_t block = 0;  ///< instants at once; 0: by length. Results do not depend on it
 };
 

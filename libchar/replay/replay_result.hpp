@@ -58,6 +58,8 @@ struct BlindScore {
   double split_rms =
       0;  ///< RMS of half the difference of two parts of the array; NaN: could not run
   Interval leave_one_out_ci95;
+  double share =
+      1;  ///< of the evaluation that was scored; below 1 leave-one-out costs more than its budget
   /// geometric mean over the sensors of their leave-one-out RMS: what methods are ranked by
   double predictive_rms = 0;
   Interval predictive_ci95;

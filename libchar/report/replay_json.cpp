@@ -187,7 +187,8 @@ Json inputs_json(const ReplayResult& result, const AlgorithmResult& algorithm) {
 
 Json blind_json(const std::optional<BlindScore>& blind) {
   if (!blind) return nullptr;
-  return {{"leave_one_out_rms", json_number(blind->leave_one_out_rms)},
+  return {{"share", json_number(blind->share)},
+          {"leave_one_out_rms", json_number(blind->leave_one_out_rms)},
           {"leave_one_out_ci95", interval_json(blind->leave_one_out_ci95)},
           {"leave_one_out", numbers(blind->leave_one_out)},
           {"predictive_rms", json_number(blind->predictive_rms)},

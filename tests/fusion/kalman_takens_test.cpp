@@ -67,6 +67,37 @@ TEST_CASE("delay search: what sorting finds, ties to the earlier") {
   }
 }
 
+TEST_CASE("delay search: neighbours that follow each other, spikes and gaps, search after search") {
+  constexpr std::size_t kDimension = 6, kStarts = 1003, kSearches = 400;
+  for (const std::size_t neighbours : {3UL, 20UL, 90UL}) {
+    test::Gaussian gauss(neighbours);
+    std::vector<double> series(kStarts + kSearches + kDimension);
+    double slow = 0;
+    for (double& z : series) z = slow = 0.99 * slow + gauss();
+    for (std::size_t k = 3; k < series.size(); k += 211) series[k] = std::nan("");
+    series[700] = 1e9;
+    DelaySearch search(kDimension, neighbours, kStarts);
+    for (std::size_t from = 0; from < kSearches; ++from) {
+      std::vector<double> query(kDimension);
+      for (std::size_t j = 0; j < kDimension; ++j) query[j] = 3 * gauss();
+      std::vector<std::pair<double, std::ptrdiff_t>> all;
+      for (std::size_t s = 0; s < kStarts; ++s) {
+        double distance = 0;
+        for (std::size_t j = 0; j < kDimension; ++j)
+          distance += std::abs(series[from + s + j] - query[j]);
+        if (!std::isnan(distance + series[from + s + kDimension])) all.emplace_back(distance, s);
+      }
+      std::sort(all.begin(), all.end());
+      const auto found = search.nearest(series.data() + from, kStarts, query.data());
+      REQUIRE(found.size() == neighbours);
+      bool same = true;
+      for (std::size_t i = 0; i < neighbours; ++i)
+        same = same && found[i].distance == all[i].first && found[i].start == all[i].second;
+      CHECK(same);
+    }
+  }
+}
+
 TEST_CASE("kalman-takens-published: 50-digit vectors") {
   const test::Vectors inputs("fusion_inputs.csv"), file("kalman_takens.csv");
   const auto answer = test::answers()["kalman_takens"];

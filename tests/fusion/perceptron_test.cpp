@@ -3,6 +3,8 @@
 
 #include "libchar/fusion/algorithms/perceptron.hpp"
 
+#include <tbb/global_control.h>
+
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
 
@@ -97,6 +99,44 @@ TEST_CASE("tanh network: derivatives against differences; neurons in any order")
   CHECK(network.output(other.data(), z.data()) == Approx(out).epsilon(1e-13));
 }
 
+TEST_CASE("network normals: sums over the rows; the same bits on one core and on all") {
+  const TanhNetwork network{4, 5};
+  test::Gaussian gauss(3);
+  std::vector<double> p(network.size()), rows(5 * 1500);
+  for (double& v : p) v = gauss();
+  for (double& v : rows) v = gauss();
+  const TrainingRows all{rows.data(), 1500};
+  Eigen::MatrixXd slopes(1500, network.size());
+  Eigen::VectorXd errors(1500);
+  std::vector<double> row(network.size());
+  for (Eigen::Index k = 0; k < 1500; ++k) {
+    const double* const z = rows.data() + 5 * k;
+    errors[k] = network.output(p.data(), z, row.data()) - z[4];
+    slopes.row(k) = Eigen::Map<Eigen::RowVectorXd>(row.data(), slopes.cols());
+  }
+  NetworkNormals normals(network);
+  REQUIRE(normals.linearise(all, p.data()));
+  CHECK(normals.squares(all, p.data()) == Approx(errors.squaredNorm()).epsilon(1e-13));
+  const Eigen::MatrixXd square = slopes.transpose() * slopes;
+  const Eigen::VectorXd slope = slopes.transpose() * errors;
+  const double size = square.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < square.rows(); ++i) {
+    CHECK(normals.slope()[i] == Approx(slope[i]).epsilon(1e-12).margin(1e-12 * size));
+    for (Eigen::Index j = 0; j < square.cols(); ++j)
+      CHECK(normals.curvature(i, j) == Approx(square(i, j)).epsilon(1e-12).margin(1e-13 * size));
+  }
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  NetworkNormals alone(network);
+  REQUIRE(alone.linearise(all, p.data()));
+  for (Eigen::Index i = 0; i < square.rows(); ++i)
+    for (Eigen::Index j = 0; j < square.cols(); ++j)
+      CHECK(alone.curvature(i, j) == normals.curvature(i, j));
+  CHECK(alone.squares(all, p.data()) == normals.squares(all, p.data()));
+  p[0] = std::nan("");
+  CHECK_FALSE(normals.linearise(all, p.data()));
+  CHECK(std::isinf(normals.squares(all, p.data())));
+}
+
 TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
   const TrainingScene s = scene(22000, 4000);
   // The best there can be: least squares with a constant, from the same window.
@@ -136,6 +176,10 @@ TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not
   const Eigen::MatrixXd x = test::run(*trained(s), rest).x;
   CHECK(test::run(*trained(s), rest).x == x);
   CHECK(test::run(*trained(s, {{"seed", 2}}), rest).x != x);
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    CHECK(test::run(*trained(s), rest).x == x);
+  }
   for (const Eigen::Index block : {1, 17}) CHECK(test::run(*trained(s), rest, 1, block).x == x);
   auto in_parts = test::make("perceptron", s.array);
   for (Eigen::Index k = 0; k < 2000; k += 250)

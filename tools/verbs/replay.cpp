@@ -39,7 +39,7 @@ struct ReplayVerb {
   std::vector<std::string> algorithms, settings;
   bool explain = false, list = false, force = false, json = false, no_allan = false,
        no_skip = false;
-  std::optional<double> window_s;
+  std::optional<double> window_s, budget_s;
 };
 
 [[noreturn]] void refuse_replay(const std::string& where,
@@ -100,6 +100,7 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
   for (const std::string& fault : verb.source.faults) faults.push_back(printable(fault));
   return {{"window_s", finite_or_null(result.window_s)},
           {"allan", !verb.no_allan},
+          {"budget_s", verb.budget_s.value_or(ReplayOptions().budget_s)},
           {"no_skip", verb.no_skip},
           {"no_faults", verb.source.no_faults},
           {"faults", std::move(faults)}};
@@ -123,6 +124,7 @@ ReplayOptions options_of(const ReplayVerb& verb) {
   options.window_s = verb.window_s.value_or(0);
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
+  if (verb.budget_s) options.budget_s = *verb.budget_s;
   return options;
 }
 
@@ -228,6 +230,11 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_duration("--window",
                        verb->window_s,
                        "length of the window RMS (default: a fiftieth of the evaluation)");
+  options.add_duration("--budget",
+                       verb->budget_s,
+                       "processor time that leave-one-out of one algorithm may take, counted by "
+                       "its declared cost; beyond, "
+                       "it runs on stretches or not at all (default: 5 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
       .add_text("--estimates",

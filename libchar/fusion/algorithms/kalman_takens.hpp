@@ -35,6 +35,12 @@ inline constexpr std::array kKalmanTakensOptions{
            "Q of the prediction; 0: estimated from its errors"},
     Option{"memory", "samples", 1000, 10, 1e9, "over which the errors tell Q"}};
 
+/// Of a step: the search is nearly all of it.
+inline double kalman_takens_cost_ns(const Settings& settings, std::string_view stretches) {
+  return 500 + settings[stretches] * (0.3 + 0.15 * settings["dimension"]) +
+         30 * settings["neighbours"];
+}
+
 /// What both algorithms share: a series to look in and a Kalman update.
 class KalmanTakensFilter {
  public:
@@ -77,6 +83,9 @@ struct KalmanTakens {
       .needs = {.noise_levels = true, .accepts_missing = true}};
   static constexpr std::array options = kKalmanTakensOptions;
   KalmanTakens(const Array& array, const Settings& settings) : filter_(array, settings, false) {}
+  static double cost_ns(const Array&, const Settings& settings) {
+    return kalman_takens_cost_ns(settings, "dictionary");
+  }
   Estimate step(const Sample& y) { return filter_.step(y); }
   void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
 

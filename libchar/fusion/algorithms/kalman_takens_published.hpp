@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
+#include "libchar/fusion/algorithms/kalman_takens.hpp"
 #include "libchar/fusion/detail/delay_search.hpp"
 
 namespace libchar::fusion {
@@ -41,6 +42,9 @@ struct KalmanTakensPublished {
              "R over the noise variance; 1/623 is the spectral density that the listing takes"}};
 
   KalmanTakensPublished(const Array& array, const Settings& settings);
+  static double cost_ns(const Array&, const Settings& settings) {
+    return kalman_takens_cost_ns(settings, "training");
+  }
   Estimate step(const Sample& y);
 
  private:

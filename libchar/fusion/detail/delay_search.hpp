@@ -3,9 +3,10 @@
 // starts s with the smallest cityblock distances
 //   D_s = sum_j |z_{s+j} - q_j|
 // among those whose d values and successor z_{s+d} are all there. The search is exact: all
-// distances (vectorised over s), then one pass that keeps the M best in order. Equal distances go
-// by the smaller start. A thousand stretches of six values fit the first cache; a tree would not
-// pay (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances 13 us).
+// distances (vectorised over s), then one pass that keeps the M best in order: those within a
+// limit that is known from the smallest distances of 3 M classes of starts. Equal distances go by the smaller start. A thousand stretches of six values fit
+// the first cache; a tree would not pay (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances
+// 13 us).
 
 #include <span>
 #include <vector>
@@ -27,8 +28,14 @@ class DelaySearch {
   std::size_t dimension() const { return dimension_; }
 
  private:
+  std::size_t take_within(double limit, std::size_t starts);
+  void sort_by_distance(std::size_t count);
+  void rank_by_distance(std::size_t count);
+
   std::size_t dimension_, neighbours_;
-  std::vector<double> distances_;
+  std::vector<double> distances_, smallest_, of_class_;  // of a start, a group, a class of them
+  std::vector<double> within_distances_;
+  std::vector<std::ptrdiff_t> within_;  // starts that may be among the nearest
   std::vector<Neighbour> found_;
 };
 

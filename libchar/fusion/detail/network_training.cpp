@@ -1,83 +1,137 @@
 #include "libchar/fusion/detail/network_training.hpp"
 
-#include <ceres/ceres.h>
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "libchar/core/dense.hpp"
-#include "libchar/core/silent_glog.hpp"
 #include "libchar/fusion/detail/uniform.hpp"
 
 namespace libchar::fusion {
 namespace {
 
-class Residuals final : public ceres::CostFunction {
+/// Watches the held-out rows: keeps the best parameters, says when they stay worse.
+class EarlyStop {
  public:
-  Residuals(const TanhNetwork& network, const TrainingRows& rows) : network_(network), rows_(rows) {
-    set_num_residuals(static_cast<int>(rows.count));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(network.size()));
-  }
-  bool Evaluate(const double* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
-    const double* const p = parameters[0];
-    double* row = jacobians ? jacobians[0] : nullptr;
-    for (std::size_t k = 0; k < rows_.count; ++k) {
-      const double* const z = rows_.rows + k * (network_.inputs + 1);
-      residuals[k] =
-          (row ? network_.output(p, z, row) : network_.output(p, z)) - z[network_.inputs];
-      if (!std::isfinite(residuals[k])) return false;
-      if (row) row += network_.size();
-    }
-    return true;
-  }
-
- private:
-  const TanhNetwork& network_;
-  const TrainingRows& rows_;
-};
-
-double mean_square(const TanhNetwork& network, const TrainingRows& rows, const double* p) {
-  double sum = 0;
-  for (std::size_t k = 0; k < rows.count; ++k) {
-    const double* const z = rows.rows + k * (network.inputs + 1);
-    const double off = network.output(p, z) - z[network.inputs];
-    sum += off * off;
-  }
-  return sum / static_cast<double>(rows.count);
-}
-
-/// Watches the held-out rows: keeps the best parameters, ends the training when they stay worse.
-class EarlyStop final : public ceres::IterationCallback {
- public:
-  EarlyStop(const TanhNetwork& network,
-            const TrainingRows& held_out,
-            const std::vector<double>& parameters,
-            int patience)
-      : network_(network), held_out_(held_out), parameters_(parameters), patience_(patience) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    iterations = summary.iteration;
-    const double square = mean_square(network_, held_out_, parameters_.data());
+  EarlyStop(NetworkNormals& normals, const TrainingRows& held_out, int patience)
+      : normals_(normals), held_out_(held_out), patience_(patience) {}
+  /// True: no gain for too long.
+  bool worse(const std::vector<double>& parameters, bool moved) {
+    const double square =
+        normals_.squares(held_out_, parameters.data()) / static_cast<double>(held_out_.count);
     if (square < best_square) {
       best_square = square;
-      best = parameters_;
+      best = parameters;
       waited_ = 0;
-    } else if (summary.step_is_successful && ++waited_ >= patience_) {
-      return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+      return false;
     }
-    return ceres::SOLVER_CONTINUE;
+    return moved && ++waited_ >= patience_;
   }
   std::vector<double> best;
   double best_square = std::numeric_limits<double>::infinity();
-  int iterations = 0;
 
  private:
-  const TanhNetwork& network_;
+  NetworkNormals& normals_;
   const TrainingRows& held_out_;
-  const std::vector<double>& parameters_;
   int patience_, waited_ = 0;
 };
+
+/// The scaled system of one linearisation.
+struct ScaledSystem {
+  Eigen::MatrixXd a;  // S J'J S
+  Eigen::VectorXd g;  // S J'e
+};
+
+ScaledSystem scaled(const NetworkNormals& normals, const Eigen::VectorXd& scale) {
+  ScaledSystem out{Eigen::MatrixXd(scale.size(), scale.size()),
+                   scale.cwiseProduct(normals.slope())};
+  for (Eigen::Index j = 0; j < scale.size(); ++j)
+    for (Eigen::Index i = 0; i < scale.size(); ++i)
+      out.a(i, j) = scale[i] * scale[j] * normals.curvature(i, j);
+  return out;
+}
+
+struct TrustRegion {
+  double radius = 1e4, shrink = 2;
+  static constexpr double kLargest = 1e16, kSmallest = 1e-32;
+  void accept(double share) {  // of the promised decrease
+    radius = std::min(kLargest, radius / std::max(1. / 3, 1 - std::pow(2 * share - 1, 3)));
+    shrink = 2;
+  }
+  void reject() {
+    radius /= shrink;
+    shrink *= 2;
+  }
+};
+
+/// y, and the decrease of half the sum of squares that it promises; none where the system has no solution or promises nothing.
+struct ScaledStep {
+  Eigen::VectorXd y;
+  double promised;
+};
+std::optional<ScaledStep> damped_step(const ScaledSystem& system, double radius) {
+  Eigen::MatrixXd damped = system.a;
+  damped.diagonal() += (system.a.diagonal().cwiseMax(1e-6).cwiseMin(1e32) / radius).eval();
+  const auto factor = cholesky_factor(damped);
+  if (!factor) return {};
+  const Eigen::VectorXd y = -solve_factored(*factor, system.g);
+  const double promised = -(y.dot(system.g) + 0.5 * y.dot(system.a * y));
+  if (!y.allFinite() || !(promised > 0)) return {};
+  return ScaledStep{y, promised};
+}
+
+constexpr double kLeastShare = 1e-3;    // of the promise, for a step to be taken
+constexpr double kLeastChange = 1e-12;  // of the parameters
+constexpr int kMostInvalid = 5;         // systems in a row without a step
+
+/// Descends from p until it is over; returns the iterations.
+int descend(NetworkNormals& normals,
+            const TrainingRows& rows,
+            const TrainingPlan& plan,
+            std::vector<double> p,
+            EarlyStop& watch) {
+  if (!normals.linearise(rows, p.data())) return 0;
+  const auto size = static_cast<Eigen::Index>(p.size());
+  Eigen::VectorXd scale(size);
+  for (Eigen::Index i = 0; i < size; ++i) scale[i] = 1 / (1 + std::sqrt(normals.curvature(i, i)));
+  ScaledSystem system = scaled(normals, scale);
+  TrustRegion region;
+  double cost = 0.5 * normals.squares(rows, p.data());
+  watch.worse(p, false);
+  int invalid = 0;
+  bool taken = false;
+  for (int iteration = 1; iteration <= static_cast<int>(plan.iterations); ++iteration) {
+    const auto step = damped_step(system, region.radius);
+    if (!step) {
+      if (++invalid > kMostInvalid || region.radius < TrustRegion::kSmallest) return iteration - 1;
+      region.radius /= 2;
+      continue;
+    }
+    invalid = 0;
+    std::vector<double> next = p;
+    Eigen::Map<Eigen::VectorXd> x(next.data(), size);
+    const Eigen::VectorXd moved = scale.cwiseProduct(step->y);
+    const double length = x.norm();
+    x += moved;
+    if (taken && moved.norm() <= kLeastChange * (length + kLeastChange)) return iteration - 1;
+    const double next_cost = 0.5 * normals.squares(rows, next.data());
+    if (std::abs(cost - next_cost) <= plan.relative_decrease * cost) return iteration - 1;
+    const double share = (cost - next_cost) / step->promised;
+    const bool good = share > kLeastShare && normals.linearise(rows, next.data());
+    if (good) {
+      p = next;
+      cost = next_cost;
+      system = scaled(normals, scale);
+      region.accept(share);
+      taken = true;
+    } else {
+      region.reject();
+    }
+    if (watch.worse(p, good) || region.radius < TrustRegion::kSmallest) return iteration;
+  }
+  return static_cast<int>(plan.iterations);
+}
 
 /// Hidden weights at random, so that sums have a deviation of about one half (tanh bends but does
 /// not saturate); the layer above by linear least squares for them, on at most a thousand rows.
@@ -102,40 +156,19 @@ std::vector<double> start_of(const TanhNetwork& network, const TrainingRows& row
   return p;
 }
 
-ceres::Solver::Options options_of(const TrainingPlan& plan, EarlyStop& watch) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  // Eigen's own: LAPACK's threads would change the bits.
-  options.dense_linear_algebra_library_type = ceres::EIGEN;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = static_cast<int>(plan.iterations);
-  options.function_tolerance = plan.relative_decrease;
-  options.gradient_tolerance = 0;
-  options.parameter_tolerance = 1e-12;
-  options.update_state_every_iteration = true;
-  options.callbacks.push_back(&watch);
-  return options;
-}
-
 }  // namespace
 
 Training train(const TanhNetwork& network,
                const TrainingRows& rows,
                const TrainingRows& held_out,
                const TrainingPlan& plan) {
-  const SilentGlog silent;
   Training training;
   training.held_out_square = std::numeric_limits<double>::infinity();
   Uniform draw(plan.seed);
+  NetworkNormals normals(network);
   for (std::size_t start = 0; start < plan.starts; ++start) {
-    std::vector<double> p = start_of(network, rows, draw);
-    ceres::Problem problem;
-    problem.AddResidualBlock(new Residuals(network, rows), nullptr, p.data());
-    EarlyStop watch(network, held_out, p, plan.patience);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options_of(plan, watch), &problem, &summary);
-    training.iterations += watch.iterations;
+    EarlyStop watch(normals, held_out, plan.patience);
+    training.iterations += descend(normals, rows, plan, start_of(network, rows, draw), watch);
     if (!(watch.best_square < training.held_out_square)) continue;
     training.held_out_square = watch.best_square;
     training.parameters = watch.best;

@@ -1,18 +1,15 @@
 #pragma once
-// Levenberg-Marquardt training of a tanh network on standardised data, from seeded starts.
-
+// Levenberg-Marquardt training of a tanh network on standardised data, from seeded starts: with J and e of
+// network_normals.hpp and S = 1/(1 + |columns of J|) at the start,
+//   (S J'J S + D) y = -S J'e,   D = clamp(diag(S J'J S), 1e-6, 1e32) / radius,   step S y;
+// the radius follows how much of the promised decrease came true [Madsen, Nielsen, Tingleff 2004, 3.2, as Ceres has it].
 #include <cstdint>
 #include <vector>
 
+#include "libchar/fusion/detail/network_normals.hpp"
 #include "libchar/fusion/detail/tanh_network.hpp"
 
 namespace libchar::fusion {
-
-/// Consecutive instants: `count` rows of inputs + 1 values, the target last.
-struct TrainingRows {
-  const double* rows = nullptr;
-  std::size_t count = 0;
-};
 
 struct TrainingPlan {
   std::size_t starts = 3;
@@ -28,7 +25,7 @@ struct Training {
   int iterations = 0;              ///< of all starts together
 };
 
-/// One thread; the same arguments give the same bits.
+/// On all cores; the same arguments give the same bits, however many those are.
 Training train(const TanhNetwork& network,
                const TrainingRows& rows,
                const TrainingRows& held_out,

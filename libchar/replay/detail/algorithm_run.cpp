@@ -119,7 +119,22 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
   const double seconds = accounted([&] { runner_->run(all, x_, variance_); });
-  ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
+  if (blocks_ % stride_ == 0) ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
+}
+
+// Long runs keep the clock and the tracks of every second block, every fourth…
+void AlgorithmRun::thin_notes() {
+  constexpr std::size_t kMostNotes = 1024;
+  const auto every_second = [](std::vector<double>& values) {
+    for (std::size_t k = 0; 2 * k < values.size(); ++k) values[k] = values[2 * k];
+    values.resize((values.size() + 1) / 2);
+  };
+  if (++blocks_ % stride_ != 0 || std::max(ns_.size(), track_times_.size()) < kMostNotes) return;
+  stride_ *= 2;
+  every_second(ns_);
+  every_second(track_times_);
+  for (auto* series : {&weight_samples_, &variance_samples_})
+    for (std::vector<double>& values : *series) every_second(values);
 }
 
 void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
@@ -162,8 +177,9 @@ void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen
     meters_[static_cast<std::size_t>(j)].push(error_);
     if (!allan_.empty()) allan_[static_cast<std::size_t>(j)].push(error_);
   }
-  if (frame_->tracks)
+  if (frame_->tracks && blocks_ % stride_ == 0)
     note_tracks(frame_->start_s + static_cast<double>(first + x_.cols()) / frame_->rate_hz);
+  thin_notes();
   x_ *= frame_->output_scale;
 }
 

@@ -69,6 +69,7 @@ class AlgorithmRun {
   bool some_left_out() const { return frame_->live != nullptr && !frame_->live->empty(); }
   void timed_run(const Eigen::MatrixXd& samples);
   void note_tracks(double time_s);
+  void thin_notes();
   std::vector<FoundFault> found_faults() const;
 
   const PlannedAlgorithm* planned_;
@@ -80,6 +81,7 @@ class AlgorithmRun {
   std::vector<ErrorMeter> meters_;
   std::vector<AllanPyramid> allan_;
   std::vector<double> ns_;
+  std::size_t blocks_ = 0, stride_ = 1;  // one block of so many is noted
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
   double learning_s_ = 0, available_ = 0, scored_ = 0;

@@ -9,13 +9,6 @@
 #include "libchar/fusion/why_not.hpp"
 
 namespace libchar {
-namespace {
-
-/// Every sensor left out costs a run over all the others.
-constexpr Eigen::Index kMostLeftOut = 32;
-
-}  // namespace
-
 BlindRun::BlindRun(const PlannedAlgorithm& planned,
                    const fusion::Array& array,
                    const std::vector<Eigen::Index>& live)
@@ -58,47 +51,83 @@ BlindRun::Part BlindRun::part(const std::vector<Eigen::Index>& channels) const {
   return out;
 }
 
-bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples) {
+/// Which columns of a block are run and which are scored.
+void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
+  run_.clear();
+  scored_.clear();
+  if (planned_->blind.whole) {
+    run_ = scored_ = {{0, count}};
+    return;
+  }
+  const auto add = [&](std::int64_t from, std::int64_t to, std::vector<Columns>& columns) {
+    const std::int64_t begin = std::max(from - first, std::int64_t{0}),
+                       end = std::min(to - first, static_cast<std::int64_t>(count));
+    if (begin < end) columns.push_back({begin, end - begin});
+  };
+  for (const Stretch& stretch : planned_->blind.stretches) {
+    add(stretch.from, stretch.to, run_);
+    add(stretch.scored_from, stretch.to, scored_);
+  }
+}
+
+bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd& x) {
   if (!part.runner) return false;
-  part.samples = samples(part.channels, Eigen::all);
-  part.x.resize(array_->inputs(), samples.cols());
-  part.variance.resize(part.x.rows(), part.x.cols());
-  part.runner->run(part.samples, part.x, part.variance);
-  steps_ += static_cast<std::uint64_t>(samples.cols());
+  x.resize(array_->inputs(), samples.cols());
+  variance_.resize(x.rows(), x.cols());
+  for (const Columns& columns : run_) {
+    part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::all);
+    part.runner->run(part_,
+                     x.middleCols(columns.from, columns.count),
+                     variance_.middleCols(columns.from, columns.count));
+    steps_ += static_cast<std::uint64_t>(columns.count);
+  }
   return true;
 }
 
-void BlindRun::run(const Eigen::MatrixXd& samples, Eigen::Index skip) {
-  const auto scored = [&] { return std::span(errors_).subspan(static_cast<std::size_t>(skip)); };
+void BlindRun::run(std::int64_t first, const Eigen::MatrixXd& samples, Eigen::Index skip) {
+  find_columns(first, samples.cols());
+  score_others(samples, skip);
+  score_halves(samples, skip);
+}
+
+void BlindRun::push_errors(Eigen::Index skip, ErrorMeter& meter) {
+  meter.push(std::span(errors_).subspan(static_cast<std::size_t>(skip)));
+}
+
+void BlindRun::score_others(const Eigen::MatrixXd& samples, Eigen::Index skip) {
   const auto m = static_cast<std::size_t>(samples.cols());
   squares_.assign(m, 0);
   counts_.assign(m, 0);
-  errors_.resize(m);
   for (std::size_t i = 0; i < others_.size(); ++i) {
-    if (!step(others_[i], samples)) continue;
+    if (!step(others_[i], samples, x_)) continue;
+    errors_.assign(m, kNone);
     const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t k = 0; k < m; ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      const double e = h_.row(row).dot(others_[i].x.col(column)) - samples(row, column);
-      errors_[k] = std::isfinite(e) ? e : kNone;
-      if (std::isfinite(e)) {
-        squares_[k] += e * e;
-        counts_[k] += 1;
+    for (const Columns& columns : scored_)
+      for (Eigen::Index k = columns.from; k < columns.from + columns.count; ++k) {
+        const double e = h_.row(row).dot(x_.col(k)) - samples(row, k);
+        if (!std::isfinite(e)) continue;
+        errors_[static_cast<std::size_t>(k)] = e;
+        squares_[static_cast<std::size_t>(k)] += e * e;
+        counts_[static_cast<std::size_t>(k)] += 1;
       }
-    }
-    meters_[i].push(scored());
+    push_errors(skip, meters_[i]);
   }
+  errors_.resize(m);
   for (std::size_t k = 0; k < m; ++k)
     errors_[k] = counts_[k] > 0 ? std::sqrt(squares_[k] / counts_[k]) : kNone;
-  all_.push(scored());
-  const bool even = step(halves_[0], samples), odd = step(halves_[1], samples);
+  push_errors(skip, all_);
+}
+
+void BlindRun::score_halves(const Eigen::MatrixXd& samples, Eigen::Index skip) {
+  const bool even = step(halves_[0], samples, x_), odd = step(halves_[1], samples, other_);
   if (!even || !odd) return;
-  for (std::size_t k = 0; k < m; ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const double e = 0.5 * (halves_[0].x.col(column) - halves_[1].x.col(column)).norm();
-    errors_[k] = std::isfinite(e) ? e : kNone;
-  }
-  split_.push(scored());
+  errors_.assign(static_cast<std::size_t>(samples.cols()), kNone);
+  for (const Columns& columns : scored_)
+    for (Eigen::Index k = columns.from; k < columns.from + columns.count; ++k) {
+      const double e = 0.5 * (x_.col(k) - other_.col(k)).norm();
+      if (std::isfinite(e)) errors_[static_cast<std::size_t>(k)] = e;
+    }
+  push_errors(skip, split_);
 }
 
 Meters BlindRun::meters() const {
@@ -112,6 +141,7 @@ BlindScore BlindRun::result(double rate_hz, const ScoreOptions& options) const {
   ScoreOptions without_interval = options;
   without_interval.intervals = false;
   BlindScore out;
+  out.share = planned_->blind.share;
   const ErrorScore all = score(all_, rate_hz, options);
   out.leave_one_out_rms = all.rmse;
   out.leave_one_out_ci95 = all.rmse_ci95;

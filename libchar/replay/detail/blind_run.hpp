@@ -4,6 +4,7 @@
 //                   of more than 32 sensors 32 are left out in turn, evenly chosen)
 //   split array     e   = (x(even sensors) - x(odd sensors)) / 2: with equal halves of independent
 //                   errors its RMS is that of the whole array's estimate
+// Beyond its budget (blind_share.hpp) it runs on stretches of the run, one after the other, and there are no errors in between.
 // What all sensors have in common (an error of the board, of the temperature) is in neither.
 
 #include <memory>
@@ -20,8 +21,8 @@ class BlindRun {
   BlindRun(const PlannedAlgorithm& planned,
            const fusion::Array& array,
            const std::vector<Eigen::Index>& live);
-  /// The first `skip` instants of the block are not scored.
-  void run(const Eigen::MatrixXd& samples, Eigen::Index skip);
+  /// The next block, from instant `first` of the run on; its first `skip` instants are not scored.
+  void run(std::int64_t first, const Eigen::MatrixXd& samples, Eigen::Index skip);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
   /// Leave-one-out errors of the sensors that were left out, one meter each: by these methods are compared.
   Meters meters() const;
@@ -31,10 +32,16 @@ class BlindRun {
   struct Part {
     std::vector<Eigen::Index> channels;
     std::unique_ptr<fusion::Runner> runner;  // none: cannot run on these channels
-    Eigen::MatrixXd samples, x, variance;
+  };
+  struct Columns {
+    Eigen::Index from = 0, count = 0;
   };
   Part part(const std::vector<Eigen::Index>& channels) const;
-  bool step(Part& part, const Eigen::MatrixXd& samples);
+  void find_columns(std::int64_t first, Eigen::Index count);
+  bool step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd& x);
+  void score_others(const Eigen::MatrixXd& samples, Eigen::Index skip);
+  void score_halves(const Eigen::MatrixXd& samples, Eigen::Index skip);
+  void push_errors(Eigen::Index skip, ErrorMeter& meter);
 
   const PlannedAlgorithm* planned_;
   const fusion::Array* array_;
@@ -43,6 +50,9 @@ class BlindRun {
   std::vector<Part> halves_;
   std::vector<ErrorMeter> meters_;
   ErrorMeter all_, split_;
+  // One part after the other works in them: with room for each, wide arrays would need megabytes an algorithm.
+  Eigen::MatrixXd part_, variance_, x_, other_;
+  std::vector<Columns> run_, scored_;  // of the block
   std::vector<double> errors_, squares_, counts_;
   std::uint64_t steps_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/replay/detail/partial_scores.hpp"
 
 namespace libchar {
 namespace {
@@ -153,12 +154,16 @@ void judge_best(ReplayResult& result,
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     AlgorithmResult& a = result.algorithms[k];
     if (k == best || meters[k].empty() || !std::isfinite(a.rmse)) continue;
-    a.ratio_to_best = rms_ratio_interval(meters[k], meters[best], scoring);
-    const Interval corrected = rms_ratio_interval(meters[k], meters[best], scoring, level);
+    CommonMeters pair;
+    if (on_stretches(a) || on_stretches(result.algorithms[best]))
+      pair = in_common(meters[k], meters[best]);
+    const Meters &ours = pair.a.empty() ? meters[k] : pair.a,
+                 &its = pair.b.empty() ? meters[best] : pair.b;
+    a.ratio_to_best = rms_ratio_interval(ours, its, scoring);
+    const Interval corrected = rms_ratio_interval(ours, its, scoring, level);
     const double smallest = result.algorithms[best].rmse;
     // Equal errors, zero among them, have no ratio to speak of.
-    const bool resolved =
-        !(corrected.low <= 1) || larger_throughout(meters[k], meters[best]) < level;
+    const bool resolved = !(corrected.low <= 1) || larger_throughout(ours, its) < level;
     a.as_good_as_best = a.rmse <= (1 + kPracticalTolerance) * smallest || !resolved;
   }
 }

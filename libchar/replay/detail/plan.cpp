@@ -10,6 +10,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/why_not.hpp"
+#include "libchar/replay/detail/plan_sentences.hpp"
 
 namespace libchar {
 namespace {
@@ -292,6 +293,27 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Array& array) {
   return out;
 }
 
+// What is shown where there is no reference, and what `no_skip` does where there is one.
+void keep_budget(const ReplayOptions& options, const fusion::Array& live, ReplayPlan& plan) {
+  if (!(options.budget_s > 0))
+    throw Error({ErrorKind::usage,
+                 "E0917",
+                 "",
+                 "the budget of an algorithm (`budget_s`) must be above zero",
+                 significant(options.budget_s, 6),
+                 "5 s is the default"});
+  for (PlannedAlgorithm& a : plan.algorithms)
+    if (a.runs() && !a.learns_before() && !a.learns_run()) {
+      a.blind = blind_share(
+          *a.entry, a.settings, live, plan.run_to - plan.run_from, plan.warm_up, options.budget_s);
+      if (a.blind.whole || !a.asked || live.reference_throughout) continue;
+      plan.warnings.add("leave_one_out_budget",
+                        "leave-one-out that costs more than its budget ran on a part of the "
+                        "evaluation or was left out (`budget_s`)",
+                        blind_share_text(a));
+    }
+}
+
 }  // namespace
 
 ReplayPlan make_plan(const Scene& scene,
@@ -325,6 +347,7 @@ ReplayPlan make_plan(const Scene& scene,
   plan.run_learning_pass =
       !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
   plan.without_reference = (!instants.info().has_reference || options.no_skip) && !scene.tilt;
+  if (plan.without_reference) keep_budget(options, live, plan);
   if (!any([](const auto&) { return true; }))
     throw Error(
         {ErrorKind::numeric,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/replay/detail/blind_share.hpp"
 #include "libchar/replay/detail/instants.hpp"
 #include "libchar/replay/detail/sensor_knowledge.hpp"
 #include "libchar/replay/replay.hpp"
@@ -16,8 +17,9 @@ struct PlannedAlgorithm {
   std::string label;
   const fusion::Entry* entry = nullptr;
   fusion::Settings settings;
-  std::string why;    ///< why it does not run, a sentence; empty: it runs
-  bool asked = true;  ///< false: run for `no_skip` alone, shown nowhere
+  std::string why;        ///< why it does not run, a sentence; empty: it runs
+  bool asked = true;      ///< false: run for `no_skip` alone, shown nowhere
+  BlindShare blind = {};  ///< how much of the run its scores without a reference are made of
   bool runs() const { return why.empty(); }
   bool learns_before() const { return entry->description->needs.reference; }
   bool learns_run() const { return entry->description->needs.reference_throughout; }

@@ -95,6 +95,18 @@ std::string align(const SceneAlign& align) {
 
 }  // namespace
 
+std::string blind_share_text(const PlannedAlgorithm& algorithm) {
+  const BlindShare& share = algorithm.blind;
+  return fmt::format("{}: {}, all of it would take about {} s",
+                     algorithm.label,
+                     share.stretches.empty()
+                         ? std::string("left out")
+                         : fmt::format("on {} stretches, {} % of the evaluation",
+                                       share.stretches.size(),
+                                       significant(100 * share.share, 2)),
+                     significant(share.cost_s, 2));
+}
+
 std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Scene& scene,
                                    const Instants& instants,
@@ -122,6 +134,9 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
         seconds(static_cast<double>(plan.array.fault_free_samples) / instants.info().rate_hz)));
   if (const std::string text = optimum(plan); !text.empty()) out.push_back(text);
   out.push_back("runs " + names_of(plan.algorithms, [](const auto&) { return true; }));
+  for (const PlannedAlgorithm& a : plan.algorithms)
+    if (a.asked && a.runs() && !a.blind.whole && !scene.reference)
+      out.push_back("leave-one-out of " + blind_share_text(a) + " (`budget_s`)");
   for (const PlannedAlgorithm& a : plan.algorithms)
     if (a.asked && !a.runs()) out.push_back("skips " + a.why);
   return out;

@@ -14,4 +14,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Instants& instants,
                                    const SensorKnowledge& knowledge);
 
+/// "kalman-takens: on 16 stretches, 11 % of the evaluation, all of it would take about 44 s".
+std::string blind_share_text(const PlannedAlgorithm& algorithm);
+
 }  // namespace libchar

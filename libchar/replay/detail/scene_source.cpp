@@ -157,6 +157,8 @@ void SceneSource::read_even(Progress& progress) {
 
 void SceneSource::scan(Progress& progress) {
   reading_ = scene_->reading;
+  // Half of the usual: blocks on their way are most of what a replay holds.
+  reading_.block_bytes = std::min<std::size_t>(reading_.block_bytes, std::size_t{1} << 20U);
   // New names stand for the columns in their order, so all of them must be read.
   if (reading_.names.empty()) {
     std::set<std::string> once;
