@@ -51,6 +51,10 @@ void EstimatesWriter::block(const std::vector<std::vector<double>>& columns) {
   writer_->write(out);
 }
 
+std::vector<std::string> EstimatesWriter::files() const {
+  return writer_ ? writer_->files() : std::vector<std::string>{};
+}
+
 std::vector<std::string> EstimatesWriter::finish() {
   writer_->finish();
   return writer_->files();

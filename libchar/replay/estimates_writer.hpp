@@ -24,6 +24,8 @@ class EstimatesWriter final : public EstimateSink {
              double start_s,
              std::uint64_t instants) override;
   void block(const std::vector<std::vector<double>>& columns) override;
+  /// The files that `finish` gives their names.
+  std::vector<std::string> files() const;
   /// The file gets its name now. Returns the files that were written; throws Error(output).
   std::vector<std::string> finish();
 

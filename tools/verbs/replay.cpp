@@ -183,11 +183,15 @@ void run_and_report(Session& session,
   session.terminal.warn(result.warnings, verb.source.path);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
   const ReplayView view = replay_view(result);
-  const Json document = replay_json(view);
-  const std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
-                                           {files[1], dump_json(document)},
-                                           {files[2], replay_markdown(view)}};
-  write_outputs(outputs, folder, inputs, verb.force, [&] {
+  Json document = replay_json(view);
+  std::vector<OutputFile> outputs = {
+      {files[0], replay_html(view)}, {files[1], ""}, {files[2], replay_markdown(view)}};
+  document["files"] = file_names(outputs);
+  if (estimates)
+    for (const std::string& file : estimates->files())
+      document["files"].push_back(fs::path(file).filename().string());
+  outputs[1].text = dump_json(document);
+  const auto removed = write_outputs(outputs, folder, inputs, verb.force, [&] {
     if (estimates)
       for (const std::string& file : estimates->finish()) files.push_back(file);
   });
@@ -195,6 +199,8 @@ void run_and_report(Session& session,
   print_text(replay_text(view));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
+  if (!removed.empty())
+    written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
   print(written + "\n");
 }
 
