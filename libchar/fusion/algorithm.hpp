@@ -22,6 +22,9 @@
 //   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
 //   void remarks(Warnings&) const;        what the reader of the result must know
+//   void exchange(LearntExchange&);
+//       hands out what finish_learning made, or takes it in instead of learning (learnt.hpp): what
+//       learns and lacks it cannot be applied to another log
 // and is known to the engine by one line in registry.cpp.
 
 #include <Eigen/Core>
@@ -35,6 +38,7 @@
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/fault_log.hpp"
+#include "libchar/fusion/learnt.hpp"
 #include "libchar/fusion/options.hpp"
 
 namespace libchar::fusion {
@@ -128,6 +132,10 @@ concept Skips = requires(A a, const Sample& y) {
 template <class A>
 concept FinishesLearning = requires(A a) {
   a.finish_learning();
+};
+template <class A>
+concept Exchanges = requires(A a, LearntExchange& with) {
+  a.exchange(with);
 };
 template <class A>
 concept HasWeights = requires(const A a) {

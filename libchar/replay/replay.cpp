@@ -17,8 +17,10 @@
 #include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
+#include "libchar/replay/detail/step_noise.hpp"
 
 namespace libchar {
 namespace {
@@ -74,6 +76,7 @@ class Replay {
     if (plan_.run_learning_pass) learn_on_run();
     for (AlgorithmRun& run : runs_) run.finish_learning();
     for (AlgorithmRun& run : optimum_) run.finish_learning();
+    note_learnt();
     run_all();
     ReplayResult result = collect();
     time_again(result);
@@ -181,10 +184,23 @@ class Replay {
     return healthy_;
   }
 
+  // What another log can be fused with.
+  void note_learnt() {
+    learnt_ = learnt_of(scene_,
+                        plan_,
+                        instants_,
+                        knowledge_,
+                        scene_.align && scene_.align->apply ? &*alignment_ : nullptr);
+    for (const AlgorithmRun& run : runs_)
+      if (run.planned().asked) learnt_.algorithms.push_back(run.hand_out());
+  }
+
   void run_all() {
     PassProgress passing(progress_, "replaying");
     ++passes_;
     if (workspace_.estimates != nullptr) begin_estimates();
+    const fusion::Array live = subset(plan_.array, plan_.live);
+    if (!scene_.tilt) steps_.emplace(live.h(), plan_.run_to - plan_.run_from);
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     instants_.pass(
         plan_.run_from,
@@ -202,6 +218,8 @@ class Replay {
           for (const auto& blind : blind_)
             if (blind) blind->run(samples, skip);
           judge_sensors(samples, healthy, truth, skip);
+          if (steps_ && plan_.live.empty()) steps_->push(samples);
+          if (steps_ && !plan_.live.empty()) steps_->push(samples(plan_.live, Eigen::all));
           if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
@@ -315,6 +333,8 @@ class Replay {
   ReplayPlan plan_;
   std::optional<SceneAlignment> alignment_;
   std::optional<AlignmentResult> aligned_;
+  LearntFusion learnt_;
+  std::optional<StepNoiseMeter> steps_;
   RunFrame frame_, optimum_frame_;
   fusion::Array array_on_run_;
   std::vector<AlgorithmRun> runs_, optimum_;
@@ -470,6 +490,9 @@ ReplayResult Replay::collect() {
   Meters single;
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
+  if (steps_) note_step_noise(steps_->result(), learnt_);
+  out.learnt = learnt_;
+  if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
     out.work.learnt += bound.learnt();

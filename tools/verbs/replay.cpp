@@ -20,6 +20,7 @@
 #include "libchar/log/write.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/estimates_writer.hpp"
+#include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/replay_view.hpp"
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
@@ -193,7 +194,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   const fs::path folder = verb.folder;
   const MadeFolder made(folder);
   std::vector<std::string> files;
-  for (const char* name : {"report.html", "report.json", "report.md"})
+  for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
     files.push_back((folder / name).string());
   const std::string tracks =
       verb.estimates.empty() ? "" : (folder / ("estimates." + verb.estimates)).string();
@@ -212,7 +213,8 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   const Json document = replay_json(view);
   const std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
                                            {files[1], dump_json(document)},
-                                           {files[2], replay_markdown(view)}};
+                                           {files[2], replay_markdown(view)},
+                                           {files[3], fusion_yaml(result.learnt)}};
   write_outputs(outputs, folder, inputs, verb.force, [&] {
     if (estimates)
       for (const std::string& file : estimates->finish()) files.push_back(file);
