@@ -25,6 +25,9 @@
 //   static double cost_ns(const Array&, const Settings&);
 //       of a step, nanoseconds of a core of 3 GHz, by one figure of precision: what scores would
 //       cost is counted with it, never measured. Without it 10 a channel and input.
+//   void exchange(LearntExchange&);
+//       hands out what finish_learning made, or takes it in instead of learning (learnt.hpp): what
+//       learns and lacks it cannot be applied to another log
 // and is known to the engine by one line in registry.cpp.
 
 #include <Eigen/Core>
@@ -38,6 +41,7 @@
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/fault_log.hpp"
+#include "libchar/fusion/learnt.hpp"
 #include "libchar/fusion/options.hpp"
 
 namespace libchar::fusion {
@@ -131,6 +135,10 @@ concept Skips = requires(A a, const Sample& y) {
 template <class A>
 concept FinishesLearning = requires(A a) {
   a.finish_learning();
+};
+template <class A>
+concept Exchanges = requires(A a, LearntExchange& with) {
+  a.exchange(with);
 };
 template <class A>
 concept HasWeights = requires(const A a) {

@@ -25,6 +25,9 @@ class Runner {
   /// truth is NaN carry nothing to learn, but their time has passed: leave none out.
   virtual void learn(const Block& samples, const Block& truth) = 0;
   virtual void finish_learning() = 0;
+  /// Hands out or takes in what was learnt; false: there is no way to. What learns nothing hands out
+  /// nothing. Throws Error(input) when what is taken in does not fit.
+  virtual bool exchange(LearntExchange& with) = 0;
   /// Estimates and their variances, a column for each column of samples.
   virtual void run(const Block& samples, BlockOut x, BlockOut variance) = 0;
   virtual std::optional<Eigen::MatrixXd> weights() const = 0;
@@ -81,6 +84,16 @@ class RunnerOf final : public Runner {
 
   void finish_learning() override {
     if constexpr (FinishesLearning<A>) algorithm_.finish_learning();
+  }
+
+  bool exchange([[maybe_unused]] LearntExchange& with) override {
+    if constexpr (Exchanges<A>) {
+      algorithm_.exchange(with);
+      with.finish();
+    } else if constexpr (!kLearns) {
+      with.finish();
+    }
+    return Exchanges<A> || !kLearns;
   }
 
   void run(const Block& samples, BlockOut x, BlockOut variance) override {

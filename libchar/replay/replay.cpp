@@ -1,6 +1,7 @@
 // The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
 // learns in the learning window, one in which the bounds learn on the evaluation, one that runs
 // everything on it block by block, algorithm after algorithm, so that all see the same machine.
+
 #include "libchar/replay/replay.hpp"
 
 #include <algorithm>
@@ -17,10 +18,12 @@
 #include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/partial_scores.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 #include "libchar/replay/detail/run_tracks.hpp"
+#include "libchar/replay/detail/step_noise.hpp"
 #include "libchar/replay/ranking.hpp"
 
 namespace libchar {
@@ -77,6 +80,7 @@ class Replay {
     if (plan_.run_learning_pass) learn_on_run();
     for (AlgorithmRun& run : runs_) run.finish_learning();
     for (AlgorithmRun& run : optimum_) run.finish_learning();
+    note_learnt();
     run_all();
     ReplayResult result = collect();
     time_again(result);
@@ -195,10 +199,23 @@ class Replay {
     return healthy_;
   }
 
+  // What another log can be fused with.
+  void note_learnt() {
+    learnt_ = learnt_of(scene_,
+                        plan_,
+                        instants_,
+                        knowledge_,
+                        scene_.align && scene_.align->apply ? &*alignment_ : nullptr);
+    for (const AlgorithmRun& run : runs_)
+      if (run.planned().asked) learnt_.algorithms.push_back(run.hand_out());
+  }
+
   void run_all() {
     PassProgress passing(progress_, "replaying");
     ++passes_;
     if (workspace_.estimates != nullptr) begin_estimates();
+    const fusion::Array live = subset(plan_.array, plan_.live);
+    if (!scene_.tilt) steps_.emplace(live.h(), plan_.run_to - plan_.run_from);
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     instants_.pass(
         plan_.run_from,
@@ -217,6 +234,8 @@ class Replay {
             if (blind) blind->run(done, samples, skip);
           judge_sensors(samples, healthy, truth, skip);
           tracker_.push(done, samples, truth, runs_);
+          if (steps_ && plan_.live.empty()) steps_->push(samples);
+          if (steps_ && !plan_.live.empty()) steps_->push(samples(plan_.live, Eigen::all));
           if (workspace_.estimates != nullptr) give_estimates(truth);
           if (blocks < kLeastTimed) kept_.push_back(samples);
         },
@@ -331,6 +350,8 @@ class Replay {
   ReplayPlan plan_;
   std::optional<SceneAlignment> alignment_;
   std::optional<AlignmentResult> aligned_;
+  LearntFusion learnt_;
+  std::optional<StepNoiseMeter> steps_;
   RunFrame frame_, optimum_frame_;
   fusion::Array array_on_run_;
   std::vector<AlgorithmRun> runs_, optimum_;
@@ -502,6 +523,9 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
   add_tracks(out);
+  if (steps_) note_step_noise(steps_->result(), learnt_);
+  out.learnt = learnt_;
+  if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
     out.work.learnt += bound.learnt();

@@ -14,6 +14,7 @@
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/error_meter.hpp"
+#include "libchar/replay/fusion_file.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {
@@ -189,6 +190,7 @@ struct ReplayResult {
   /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
   RunTracks tracks;
+  LearntFusion learnt;  ///< of the array and of every algorithm that ran: what `fuse` applies
   Warnings warnings;
   ReplayWork work;
   double seconds = 0;  ///< measured

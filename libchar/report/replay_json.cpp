@@ -228,16 +228,6 @@ Json answers_json(const AlgorithmResult& algorithm) {
   return out;
 }
 
-Json warnings_json(const Warnings& warnings) {
-  Json out = Json::array();
-  for (const Warning& w : warnings.list())
-    out.push_back({{"code", json_text(w.code)},
-                   {"message", json_text(w.message)},
-                   {"count", w.count},
-                   {"where", texts(w.places)}});
-  return out;
-}
-
 Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
   const AlgorithmResult& a = *view.result;
   // Without a reference there is no error to take the mean square of: see without_reference.

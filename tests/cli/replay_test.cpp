@@ -67,7 +67,7 @@ std::size_t files_in(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("replay: three files, a table, and no progress on stderr") {
+TEST_CASE("replay: four files, a table, and no progress on stderr") {
   const ReplayBench bench;
   const auto ran =
       bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minque,tilt-kalman"});
@@ -76,8 +76,8 @@ TEST_CASE("replay: three files, a table, and no progress on stderr") {
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, Contains("four: 4 sensors, 5000 instants at 100 Hz"));
   CHECK_THAT(ran.out, Contains("minque") && Contains("skipped tilt-kalman: needs"));
-  CHECK(files_in(bench.folder / "out") == 3);
-  for (const char* name : {"report.html", "report.json", "report.md"})
+  CHECK(files_in(bench.folder / "out") == 4);
+  for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
     CHECK_THAT(ran.out, Contains(bench.path(std::string("out/") + name)));
   const auto report = bench.report("out");
   CHECK(report["format"] == "replay-report");

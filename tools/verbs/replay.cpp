@@ -18,6 +18,7 @@
 #include "libchar/log/write.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/estimates_writer.hpp"
+#include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/replay_view.hpp"
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
@@ -167,7 +168,7 @@ void run_and_report(Session& session,
   const fs::path folder = verb.folder;
   const MadeFolder made(folder);
   std::vector<std::string> files;
-  for (const char* name : {"report.html", "report.json", "report.md"})
+  for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
     files.push_back((folder / name).string());
   const std::string tracks =
       verb.estimates.empty() ? "" : (folder / ("estimates." + verb.estimates)).string();
@@ -184,8 +185,10 @@ void run_and_report(Session& session,
   for (const LogInfo& log : result.logs) report_warnings(session, log);
   const ReplayView view = replay_view(result);
   Json document = replay_json(view);
-  std::vector<OutputFile> outputs = {
-      {files[0], replay_html(view)}, {files[1], ""}, {files[2], replay_markdown(view)}};
+  std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
+                                     {files[1], ""},
+                                     {files[2], replay_markdown(view)},
+                                     {files[3], fusion_yaml(result.learnt)}};
   document["files"] = file_names(outputs);
   if (estimates)
     for (const std::string& file : estimates->files())

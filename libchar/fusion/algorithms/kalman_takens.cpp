@@ -66,6 +66,32 @@ void KalmanTakensFilter::learn(double truth) {
   if (!std::isnan(truth)) widen_spread(truth);
 }
 
+/// The series without its gaps, and before which of its values they stand.
+void KalmanTakensFilter::exchange(LearntExchange& with) {
+  with.needs_same_rate("its stretches of the past");
+  std::vector<double> values, gaps;
+  for (std::size_t k = first_; k < last_; ++k)
+    if (std::isnan(series_[k]))
+      gaps.push_back(static_cast<double>(values.size()));
+    else
+      values.push_back(series_[k]);
+  with.list("series", values);
+  with.list("gaps_before", gaps);
+  with.number("mean", mean_);
+  with.number("spread", spread_);
+  with.number("instants", seen_);
+  if (!with.taking_in()) return;
+  first_ = last_ = 0;
+  std::size_t gap = 0;
+  for (std::size_t k = 0; k <= values.size(); ++k) {
+    if (gap < gaps.size() && gaps[gap] == static_cast<double>(k)) {
+      append(std::nan(""));
+      ++gap;
+    }
+    if (k < values.size()) append(values[k]);
+  }
+}
+
 std::size_t KalmanTakensFilter::learnt_stretches() const {
   std::size_t stretches = 0, length = 0;  // values without a gap so far
   for (std::size_t k = first_; k < last_; ++k) {

@@ -47,6 +47,7 @@ class KalmanTakensFilter {
   /// from_reference: the series is the reference of the learning window, else the channels' own past.
   KalmanTakensFilter(const Array& array, const Settings& settings, bool from_reference);
   void learn(double truth);
+  void exchange(LearntExchange& with);
   std::size_t learnt_stretches() const;
   std::size_t neighbours() const { return neighbours_; }
   Estimate step(const Sample& y);
@@ -109,6 +110,7 @@ struct KalmanTakensTaught {
   void skip(const Sample&) { filter_.learn(std::nan("")); }
   /// Throws Error(numeric): the learning window is too short for M neighbours.
   void finish_learning();
+  void exchange(LearntExchange& with) { filter_.exchange(with); }
   Estimate step(const Sample& y) { return filter_.step(y); }
   void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
 

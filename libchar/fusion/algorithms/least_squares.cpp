@@ -205,6 +205,20 @@ void LearntMean::take(const LearntWeights& learnt) {
   if ((learnt.gain.array() == 1).all() && std::abs(total_ - 1) < 1e-12) total_ = 1;
 }
 
+void LearntMean::exchange(LearntExchange& with, Eigen::Index channels) {
+  LearntWeights learnt = learnt_;
+  if (with.taking_in()) learnt.gain = learnt.bias = learnt.weights = Eigen::VectorXd(channels);
+  with.numbers("gains", learnt.gain);
+  with.numbers("biases", learnt.bias);
+  with.numbers("weights", learnt.weights);
+  with.number("constant", learnt.constant);
+  with.number("variance", learnt.variance);
+  if (!with.taking_in()) return;
+  if ((learnt.gain.array() == 0).any())
+    throw Error({ErrorKind::input, "E0866", "", "learnt.gains: a gain of zero", "", ""});
+  take(learnt);
+}
+
 Estimate LearntMean::step(const Sample& y) const {
   double a = 0;
   const double base = y[0];

@@ -84,6 +84,7 @@ class WeightLearner {
 class LearntMean {
  public:
   void take(const LearntWeights& learnt);
+  void exchange(LearntExchange& with, Eigen::Index channels);
   Estimate step(const Sample& y) const;
   const LearntWeights& learnt() const { return learnt_; }
 
@@ -99,15 +100,17 @@ class ReferenceWeightedMean {
  public:
   /// name: of the algorithm, in its remarks.
   ReferenceWeightedMean(const LeastSquaresForm& form, Eigen::Index channels, std::string_view name)
-      : form_(form), learner_(channels), name_(name) {}
+      : form_(form), channels_(channels), learner_(channels), name_(name) {}
   void learn(const Sample& y, const Sample& truth) { learner_.add(y, truth[0]); }
   void finish_learning() { mean_.take(learner_.weights(form_)); }
+  void exchange(LearntExchange& with) { mean_.exchange(with, channels_); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
   Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
   void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), name_, warnings); }
 
  private:
   LeastSquaresForm form_;
+  Eigen::Index channels_;
   WeightLearner learner_;
   LearntMean mean_;
   std::string_view name_;

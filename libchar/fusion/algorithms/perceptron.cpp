@@ -127,6 +127,26 @@ void Perceptron::finish_learning() {
   std::vector<std::size_t>().swap(when_);
 }
 
+/// A channel that stood still has an infinite deviation; handed out as 0.
+void Perceptron::exchange(LearntExchange& with) {
+  const std::size_t n = scales_.size();
+  std::vector<double> means(n), deviations(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    means[i] = scales_[i].mean;
+    deviations[i] = std::isfinite(scales_[i].deviation) ? scales_[i].deviation : 0;
+  }
+  if (with.taking_in()) parameters_.resize(network_.size());
+  with.numbers("parameters", parameters_);
+  with.numbers("means", means);
+  with.numbers("deviations", deviations);
+  with.number("target_mean", target_.mean);
+  with.number("target_deviation", target_.deviation);
+  with.number("variance", variance_);
+  for (std::size_t i = 0; i < n; ++i)
+    scales_[i] = {means[i],
+                  deviations[i] > 0 ? deviations[i] : std::numeric_limits<double>::infinity()};
+}
+
 Estimate Perceptron::step(const Sample& y) {
   if (parameters_.empty()) return Estimate::none(1);
   for (std::size_t i = 0; i < z_.size(); ++i)

@@ -61,6 +61,7 @@ struct Perceptron {
   /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave
   /// numbers.
   void finish_learning();
+  void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
   void remarks(Warnings& warnings) const;
 

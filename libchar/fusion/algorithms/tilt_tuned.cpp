@@ -45,6 +45,10 @@ std::array<double, N> best_decades(double low, double high, const F& f) {
   return best;
 }
 
+ComplementaryFilter complementary(double tau_s, double dt_s) {
+  return ComplementaryFilter(tau_s / (tau_s + dt_s), dt_s, false, kStart.standard);
+}
+
 }  // namespace
 
 void TiltWindow::add(const TiltSample& sample, double truth) {
@@ -83,14 +87,16 @@ double TiltWindow::gravity_variance() const {
 void TiltComplementaryTuned::finish_learning() {
   window_.gravity_variance();  // refuses a window without any
   const auto tau = [](double decades) { return std::pow(10, decades); };
-  const auto filter = [&](double decades) {
-    return ComplementaryFilter(tau(decades) / (tau(decades) + dt_), dt_, false, kStart.standard);
-  };
   const auto best = best_decades<1>(std::log10(dt_) - 1, 4, [&](const std::array<double, 1>& at) {
-    return window_.mean_square(filter(at[0]));
+    return window_.mean_square(complementary(tau(at[0]), dt_));
   });
   time_constant_ = tau(best[0]);
-  filter_ = filter(best[0]);
+  filter_ = complementary(time_constant_, dt_);
+}
+
+void TiltComplementaryTuned::exchange(LearntExchange& with) {
+  with.number("time_constant_s", time_constant_);
+  if (with.taking_in()) filter_ = complementary(time_constant_, dt_);
 }
 
 Estimate TiltComplementaryTuned::step(const Sample& y) {
@@ -112,6 +118,13 @@ void TiltKalmanTuned::finish_learning() {
   });
   noise_ = noise(best);
   filter_.emplace(noise_, dt_, kStartBiasVariance, false);
+}
+
+void TiltKalmanTuned::exchange(LearntExchange& with) {
+  with.number("angle_noise", noise_.angle);
+  with.number("bias_noise", noise_.bias);
+  with.number("gravity_variance", noise_.gravity);
+  if (with.taking_in()) filter_.emplace(noise_, dt_, kStartBiasVariance, false);
 }
 
 Estimate TiltKalmanTuned::step(const Sample& y) {

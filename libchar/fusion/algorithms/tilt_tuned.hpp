@@ -53,6 +53,7 @@ struct TiltComplementaryTuned {
   }
   void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
+  void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
   void remarks(Warnings& warnings) const;
 
@@ -76,6 +77,7 @@ struct TiltKalmanTuned {
   }
   void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
+  void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
   void remarks(Warnings& warnings) const;
 

@@ -114,6 +114,34 @@ void AlgorithmRun::finish_learning() {
   guarded([&] { runner_->finish_learning(); });
 }
 
+LearntAlgorithm AlgorithmRun::hand_out() const {
+  LearntAlgorithm out;
+  out.label = planned_->label;
+  out.name = planned_->entry->description->name;
+  for (std::size_t i = 0; i < planned_->settings.table().size(); ++i)
+    out.options.emplace_back(planned_->settings.table()[i].name, planned_->settings.values()[i]);
+  fusion::LearntExchange with;
+  if (!alive())
+    out.refused = failure_;
+  else if (planned_->learns_run())
+    out.refused =
+        out.label + " is a bound: it looks at the reference of the very run it is used on";
+  else if (!runner_->exchange(with))
+    out.refused = out.label + " has no way to hand out what it learnt";
+  std::size_t numbers = 0;
+  for (const fusion::LearntNumbers& part : with.learnt()) {
+    numbers += part.values.size();
+    if (out.refused.empty() && !std::all_of(part.values.begin(), part.values.end(), [](double v) {
+          return std::isfinite(v);
+        }))
+      out.refused = out.label + " learnt numbers that are not finite";
+  }
+  if (numbers > kMostLearnt)
+    out.refused = out.label + " learnt more numbers than a file holds: " + std::to_string(numbers);
+  if (out.refused.empty()) out.learnt = with.learnt();
+  return out;
+}
+
 void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
   Eigen::MatrixXd given;
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);

@@ -8,6 +8,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {
 
@@ -37,6 +38,8 @@ class AlgorithmRun {
 
   void learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth);
   void finish_learning();
+  /// What it learnt, for the file that applies it.
+  LearntAlgorithm hand_out() const;
   void run(const Eigen::MatrixXd& samples);
   /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block
   /// are warm-up.

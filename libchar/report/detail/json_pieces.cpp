@@ -48,6 +48,16 @@ Json json_frame(std::string_view format) {
   return {{"format", format}, {"version", 1}};
 }
 
+Json warnings_json(const Warnings& warnings) {
+  Json out = Json::array();
+  for (const Warning& w : warnings.list())
+    out.push_back({{"code", json_text(w.code)},
+                   {"message", json_text(w.message)},
+                   {"count", w.count},
+                   {"where", strings(w.places)}});
+  return out;
+}
+
 Json interval_json(const Interval& interval) {
   if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;
   return Json::array({json_number(interval.low), json_number(interval.high)});

@@ -1,0 +1,137 @@
+#include "libchar/replay/detail/step_noise.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text.hpp"
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::int64_t kStretchesOfNoise = 32;
+/// Pairs of instants in a stretch, at least.
+constexpr std::int64_t kPairsInStretch = 16;
+/// A median of normal values has this many times the standard error of their mean, and their deviation
+/// is this many times the median of what they are off.
+constexpr double kMedianError = 1.2533, kFromMedianOff = 1.4826;
+constexpr double kBeyondDoubt = 6;
+constexpr double kWorthSaying = 1.25;  // of deviations
+
+double median_of_stretches(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::optional<StepNoise> typical(const std::vector<double>& logs) {
+  StepNoise out;
+  out.log_variance = median_of_stretches(logs);
+  if (!std::isfinite(out.log_variance)) return std::nullopt;
+  std::vector<double> off;
+  for (const double value : logs) off.push_back(std::abs(value - out.log_variance));
+  const double deviation = kFromMedianOff * median_of_stretches(off);
+  out.error = kMedianError * deviation / std::sqrt(static_cast<double>(logs.size()));
+  if (!std::isfinite(out.error)) return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+StepNoiseMeter::StepNoiseMeter(const Eigen::MatrixXd& h, std::int64_t instants)
+    : plain_(h.cols() == 1 && (h.array() == 1).all()),
+      each_(std::max(instants / 2 / kStretchesOfNoise, kPairsInStretch)),
+      squares_(Eigen::VectorXd::Zero(h.rows())) {
+  const Eigen::Index n = h.rows();
+  const Eigen::MatrixXd q =
+      h.colPivHouseholderQr().householderQ() * Eigen::MatrixXd::Identity(n, h.cols());
+  residual_ = Eigen::MatrixXd::Identity(n, n) - q * q.transpose();
+  trace_ = residual_.trace();
+  const Eigen::MatrixXd information = residual_.cwiseProduct(residual_);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information);
+  if (n > 0 && parts.eigenvalues()[0] > 1e-9) inverse_ = information.inverse();
+}
+
+void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
+  for (Eigen::Index k = 0; k < samples.cols(); ++k, ++now_) {
+    const bool complete =
+        (samples.col(k).array().abs() <= fusion::kLargestSample).all();  // NaN fails
+    if (now_ % 2 == 0) {
+      has_last_ = complete;
+      if (complete) last_ = samples.col(k);
+      continue;
+    }
+    if (!complete || !has_last_) continue;
+    e_ = samples.col(k) - last_;
+    if (plain_)
+      e_.array() -= e_.mean();
+    else
+      e_ = (residual_ * e_).eval();
+    squares_ += 0.5 * e_.cwiseAbs2();
+    if (++pairs_ == each_) close();
+  }
+}
+
+Eigen::VectorXd StepNoiseMeter::solved(const Eigen::VectorXd& squares) const {
+  if (inverse_) return *inverse_ * squares;
+  return Eigen::VectorXd::Constant(squares.size(), squares.sum() / trace_);
+}
+
+void StepNoiseMeter::close() {
+  // Twice as many as were expected: two stretches become one of twice the length.
+  stretches_.push_back(solved(squares_ / static_cast<double>(pairs_)));
+  squares_.setZero();
+  pairs_ = 0;
+  if (std::ssize(stretches_) < 2 * kStretchesOfNoise) return;
+  for (std::size_t s = 0; s < kStretchesOfNoise; ++s)
+    stretches_[s] = 0.5 * (stretches_[2 * s] + stretches_[2 * s + 1]);
+  stretches_.resize(kStretchesOfNoise);
+  each_ *= 2;
+}
+
+std::vector<std::optional<StepNoise>> StepNoiseMeter::result() const {
+  if (std::ssize(stretches_) < kStretchesOfNoise / 2 || !(trace_ > 1e-9)) return {};
+  std::vector<std::optional<StepNoise>> out;
+  for (Eigen::Index i = 0; i < squares_.size(); ++i) {
+    std::vector<double> logs;
+    for (const Eigen::VectorXd& v : stretches_)
+      logs.push_back(v[i] > 0 ? std::log(v[i]) : -std::numeric_limits<double>::infinity());
+    out.push_back(typical(logs));
+  }
+  return out;
+}
+
+void warn_of_noise(const std::vector<std::string>& names,
+                   const std::vector<std::optional<StepNoise>>& learnt,
+                   const std::vector<std::optional<StepNoise>>& here,
+                   Warnings& warnings) {
+  std::vector<std::pair<std::size_t, double>> changes;  // ln of the ratio of deviations
+  std::size_t compared = 0;
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < std::min(learnt.size(), here.size()); ++i) {
+    if (!learnt[i] || !here[i]) continue;
+    const double change = here[i]->log_variance - learnt[i]->log_variance;
+    low = compared == 0 ? change / 2 : std::min(low, change / 2);
+    high = compared == 0 ? change / 2 : std::max(high, change / 2);
+    ++compared;
+    if (std::abs(change) > kBeyondDoubt * std::hypot(here[i]->error, learnt[i]->error) &&
+        std::abs(change) > 2 * std::log(kWorthSaying))
+      changes.emplace_back(i, change / 2);
+  }
+  const auto times = [](double log_ratio) { return significant(std::exp(log_ratio), 2); };
+  if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying))
+    return warnings.add("noise_changed_of_all",
+                        "from sample to sample all sensors are not as noisy as where this was "
+                        "learnt: weights still fit, standard deviations that were learnt do not",
+                        fmt::format("{} times", times(0.5 * (low + high))));
+  for (const auto& [i, change] : changes)
+    warnings.add("noise_changed",
+                 "from sample to sample sensors are not as noisy as where this was learnt: weights "
+                 "and standard deviations that were learnt do not fit",
+                 fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
+}
+
+}  // namespace libchar

@@ -1,0 +1,581 @@
+// The file becomes a scene without a reference, read, scaled and aligned by what a replay reads with, so
+// that the same log gives the same bits; the algorithm takes in what it learnt and runs.
+#include "libchar/replay/fuse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/fusion/registry.hpp"
+#include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/learnt_fusion.hpp"
+#include "libchar/replay/detail/step_noise.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kFusedBlock = 4096;
+
+[[noreturn]] void refuse_fuse(ErrorKind kind,
+                              const char* code,
+                              const std::string& where,
+                              const std::string& what,
+                              const std::string& got = "",
+                              const std::string& hint = "") {
+  throw Error({kind, code, where, what, got, hint});
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
+    out += (i > 0 ? ", " : "") + printable(names[i], 40);
+  return names.size() > kMost ? fmt::format("{} and {} more", out, names.size() - kMost) : out;
+}
+
+// The channels of a log without its samples.
+std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Progress& progress) {
+  struct Enough {};
+  struct Head final : BlockSink {
+    void begin(const LogInfo& so_far) override {
+      channels = so_far.channels;
+      throw Enough{};
+    }
+    void block(const SampleBlock&) override {}
+    std::vector<Channel> channels;
+  } head;
+  reading.hash = false;
+  try {
+    read_log(log, reading, head, progress);
+  } catch (const Enough&) {
+  }
+  return head.channels;
+}
+
+// Two spellings of one unit are one unit; nothing said is no contradiction.
+bool same_unit(const std::string& a, const std::string& b) {
+  if (a == b || a.empty() || b.empty()) return true;
+  const auto one = find_unit(a), other = find_unit(b);
+  return one && other && one->quantity == other->quantity && one->to_si == other->to_si;
+}
+
+const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const FuseOptions& options) {
+  const std::string& label = options.algorithm.empty() ? learnt.recommended : options.algorithm;
+  if (label.empty())
+    refuse_fuse(ErrorKind::usage,
+                "E0932",
+                learnt.file,
+                "the replay recommended no algorithm",
+                "",
+                "choose one with `algorithm`: " + listed(learnt.labels()));
+  const LearntAlgorithm* found = learnt.find(label);
+  if (found == nullptr) {
+    const auto near = nearest(label, learnt.labels());
+    refuse_fuse(ErrorKind::usage,
+                "E0932",
+                learnt.file,
+                "the replay ran no algorithm of this name",
+                label,
+                near ? "did you mean " + *near + "?" : "it ran " + listed(learnt.labels()));
+  }
+  if (!found->refused.empty())
+    refuse_fuse(ErrorKind::usage, "E0933", learnt.file, found->refused, label);
+  return *found;
+}
+
+class Fusing {
+ public:
+  Fusing(const std::string& log,
+         const LearntFusion& learnt,
+         const FuseOptions& options,
+         Progress& progress)
+      : log_(log),
+        learnt_(learnt),
+        options_(options),
+        progress_(progress),
+        algorithm_(algorithm_to_apply(learnt, options)) {
+    if (learnt.average_s)
+      refuse_fuse(ErrorKind::input,
+                  "E0934",
+                  learnt.file,
+                  "it was learnt on means over the intervals of a slow reference, which are not "
+                  "applied to a log yet",
+                  fmt::format("{} s", significant(*learnt.average_s, 6)));
+    find_entry();
+    find_channels();
+    describe_scene();
+    instants_ = std::make_unique<Instants>(scene_, progress_);
+    prepare_instants();
+    make_runner();
+  }
+
+  FuseResult run(FusedSink& sink);
+
+ private:
+  void find_entry();
+  void find_channels();
+  std::string channel_of(const LearntSensor& sensor) const;
+  void check_map() const;
+  void check_unit(const LearntSensor& sensor, const Channel& channel) const;
+  void without(const std::string& sensor);
+  void describe_scene();
+  void prepare_instants();
+  void make_runner();
+  void check_rate();
+  LogInfo columns() const;
+  void take(const Eigen::MatrixXd& samples, FusedSink& sink);
+  const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
+  void note_faults(std::int64_t end);
+  void fill_flags(const Eigen::MatrixXd& samples, std::size_t first);
+  void begin_check();
+  void check_noise();
+  void tell();
+
+  const std::string& log_;
+  const LearntFusion& learnt_;
+  const FuseOptions& options_;
+  Progress& progress_;
+  const LearntAlgorithm& algorithm_;
+  const fusion::Entry* entry_ = nullptr;
+  std::vector<std::size_t> present_;    // sensors of the file that the log has
+  std::vector<std::ptrdiff_t> row_;     // of each sensor of the file in the algorithm; -1: left out
+  std::vector<std::size_t> sensor_of_;  // of each row of the algorithm
+  Scene scene_;
+  std::unique_ptr<Instants> instants_;
+  SceneAlignment alignment_;
+  std::unique_ptr<fusion::Runner> runner_;
+  double output_scale_ = 1;
+  FuseResult result_;
+  Eigen::MatrixXd full_, x_, variance_;
+  std::vector<std::vector<double>> out_;
+  // Faults: what the log of the algorithm says of the sensors, up to where it was read.
+  std::size_t events_read_ = 0;
+  std::vector<char> out_now_;         // of each row
+  std::vector<std::ptrdiff_t> open_;  // of each row: its place in result_.faults, -1: none
+  std::int64_t done_ = 0;
+  // Is the noise that of where it was learnt?
+  std::vector<Eigen::Index> checked_;  // rows of the algorithm whose sensors are in the log
+  std::optional<StepNoiseMeter> steps_;
+};
+
+void Fusing::find_entry() {
+  entry_ = fusion::find_algorithm(algorithm_.name);
+  if (entry_ == nullptr)
+    refuse_fuse(ErrorKind::input,
+                "E0930",
+                fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column),
+                "this program has no algorithm of this name",
+                algorithm_.name,
+                "sensorchar replay lists what there is");
+}
+
+void Fusing::check_map() const {
+  for (const auto& [sensor, channel] : options_.map) {
+    std::vector<std::string> names;
+    for (const LearntSensor& known : learnt_.sensors) names.push_back(known.name);
+    if (std::find(names.begin(), names.end(), sensor) != names.end()) continue;
+    const auto near = nearest(sensor, names);
+    refuse_fuse(ErrorKind::usage,
+                "E0935",
+                "`map`",
+                fmt::format("{} has no sensor of this name", learnt_.file),
+                sensor,
+                near ? "did you mean " + *near + "?" : "it has " + listed(names));
+  }
+}
+
+std::string Fusing::channel_of(const LearntSensor& sensor) const {
+  for (const auto& [name, channel] : options_.map)
+    if (name == sensor.name) return channel;
+  return sensor.channel;
+}
+
+void Fusing::check_unit(const LearntSensor& sensor, const Channel& channel) const {
+  if (!same_unit(sensor.recorded_unit, channel.unit))
+    refuse_fuse(ErrorKind::input,
+                "E0936",
+                log_,
+                fmt::format("channel {} is in another unit than that of sensor {}, {}",
+                            printable(channel.name, 40),
+                            printable(sensor.name, 40),
+                            sensor.recorded_unit),
+                channel.unit,
+                "convert the log, or say with `units` what the channels are in");
+}
+
+// A sensor that the log does not have.
+void Fusing::without(const std::string& sensor) {
+  if (!entry_->description->needs.accepts_missing)
+    refuse_fuse(ErrorKind::input,
+                "E0937",
+                log_,
+                fmt::format("the log has no channel for this sensor, and {} cannot run without it",
+                            algorithm_.label),
+                sensor,
+                "name its column with `map`, or choose another algorithm");
+  result_.warnings.add(
+      "sensor_not_in_log", "the log does not have these sensors: fused without them", sensor);
+}
+
+void Fusing::find_channels() {
+  check_map();
+  const std::vector<Channel> channels = channels_of(log_, options_.reading, progress_);
+  std::vector<std::string> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  const auto find = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  const auto there = [&](const std::string& name) { return find(name) < std::ssize(names); };
+  const bool aligned = !learnt_.interpolation.empty();
+  for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
+    const LearntSensor& sensor = learnt_.sensors[i];
+    const std::string channel = channel_of(sensor);
+    result_.sensors.push_back({sensor.name, "", sensor.unit});
+    const bool axes = !aligned || std::all_of(sensor.cross.begin(), sensor.cross.end(), there);
+    if (there(channel) && axes) {
+      check_unit(sensor, channels[static_cast<std::size_t>(find(channel))]);
+      result_.sensors[i].channel = channel;
+      present_.push_back(i);
+    } else if (channel != sensor.channel) {
+      const auto near = nearest(channel, names);
+      refuse_fuse(ErrorKind::usage,
+                  "E0935",
+                  "`map`",
+                  fmt::format("{} has no channel of this name", log_),
+                  channel,
+                  near ? "did you mean " + *near + "?" : "it has " + listed(names));
+    }
+  }
+  if (present_.empty())
+    refuse_fuse(ErrorKind::input,
+                "E0937",
+                log_,
+                "the log has none of the channels that the sensors had where this was learnt",
+                listed(names),
+                "name them with `map`: SENSOR=CHANNEL; the sensors are " + listed([&] {
+                  std::vector<std::string> out;
+                  for (const LearntSensor& s : learnt_.sensors) out.push_back(s.name);
+                  return out;
+                }()));
+  for (std::size_t i = 0; i < learnt_.sensors.size(); ++i)
+    if (result_.sensors[i].channel.empty() && !learnt_.sensors[i].left_out)
+      without(learnt_.sensors[i].name);
+}
+
+void Fusing::describe_scene() {
+  scene_.file = log_;
+  scene_.recording = log_;
+  scene_.reading = options_.reading;
+  scene_.resample_hz = learnt_.resample_hz;
+  const bool tilt = !learnt_.tilt.gyroscope.empty();
+  if (tilt) scene_.tilt = SceneTilt{};
+  if (!learnt_.interpolation.empty()) scene_.align = SceneAlign{};
+  for (const std::size_t i : present_) {
+    const LearntSensor& from = learnt_.sensors[i];
+    SceneSensor sensor;
+    sensor.name = from.name;
+    sensor.channel = result_.sensors[i].channel;
+    sensor.h = from.h;
+    sensor.scale = from.scale;
+    sensor.unit =
+        from.unit.empty() && (std::abs(from.scale) == 1 || tilt) ? from.recorded_unit : from.unit;
+    sensor.cross = from.cross;
+    const std::size_t place = scene_.sensors.size();
+    if (tilt && from.name == learnt_.tilt.gyroscope) scene_.tilt->gyroscope = place;
+    if (tilt && from.name == learnt_.tilt.accelerometer_x) scene_.tilt->accelerometer_x = place;
+    if (tilt && from.name == learnt_.tilt.accelerometer_z) scene_.tilt->accelerometer_z = place;
+    scene_.sensors.push_back(std::move(sensor));
+  }
+  if (tilt && present_.size() < learnt_.sensors.size())
+    refuse_fuse(ErrorKind::input,
+                "E0937",
+                log_,
+                "a tilt needs its gyroscope and both accelerometer axes",
+                "",
+                "name their columns with `map`");
+}
+
+// How the rates compare, once the log's is known.
+void Fusing::check_rate() {
+  const double ratio = instants_->info().rate_hz / learnt_.rate_hz;
+  if (std::abs(ratio - 1) <= fusion::kSameRate) return;
+  if (entry_->description->needs.noise_models)
+    refuse_fuse(ErrorKind::input,
+                "E0867",
+                log_,
+                fmt::format("the log's rate is {} times that of the log where this was learnt: the "
+                            "noise of a sample, which {} weighs against the drifts, is not known "
+                            "there",
+                            significant(ratio, 4),
+                            algorithm_.label),
+                fmt::format("{} Hz", significant(instants_->info().rate_hz, 6)),
+                "learn on a log of this rate, or choose another algorithm");
+  result_.warnings.add("another_rate",
+                       "the log's rate is not that of the log where this was learnt: delays and "
+                       "times are kept, what counts samples (memories, noise of a sample) is not",
+                       fmt::format("{} Hz, learnt at {} Hz",
+                                   significant(instants_->info().rate_hz, 6),
+                                   significant(learnt_.rate_hz, 6)));
+}
+
+void Fusing::prepare_instants() {
+  check_rate();
+  std::vector<double> offsets;
+  for (const std::size_t i : present_) offsets.push_back(learnt_.sensors[i].offset);
+  instants_->set_offsets(std::move(offsets));
+  for (std::size_t k = 0; k < present_.size(); ++k)
+    result_.sensors[present_[k]].unit = instants_->info().units[k];
+  if (!learnt_.interpolation.empty()) {
+    alignment_ = alignment_of(learnt_, present_, instants_->info().rate_hz);
+    for (const fusion::ChannelAlignment& channel : alignment_.alignment.channels)
+      if (std::abs(channel.delay) > fusion::kMostDelay)
+        refuse_fuse(ErrorKind::input,
+                    "E0867",
+                    log_,
+                    fmt::format("at this rate a sensor's delay is more than {} samples",
+                                fusion::kMostDelay),
+                    significant(channel.delay, 4));
+    instants_->set_alignment(&alignment_);
+  }
+  if (const std::string& unit = learnt_.inputs[0].unit; scene_.tilt)
+    if (const auto known = find_unit(unit); known && known->quantity == Quantity::angle)
+      output_scale_ = 1 / known->to_si;
+}
+
+void Fusing::make_runner() {
+  fusion::Array array = array_of(learnt_);
+  const InstantsInfo& info = instants_->info();
+  array.rate_hz = info.rate_hz;
+  array.fault_free_samples = std::clamp<std::int64_t>(
+      std::llround(options_.fault_free_s.value_or(learnt_.fault_free_s) * info.rate_hz),
+      0,
+      info.count);
+  for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
+    row_.push_back(learnt_.sensors[i].left_out ? -1 : std::ssize(sensor_of_));
+    if (!learnt_.sensors[i].left_out) sensor_of_.push_back(i);
+  }
+  out_now_.assign(sensor_of_.size(), 0);
+  open_.assign(sensor_of_.size(), -1);
+  try {
+    fusion::Settings settings(entry_->options);
+    for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
+    runner_ = entry_->make(array, settings);
+    fusion::LearntExchange with(algorithm_.learnt, info.rate_hz / learnt_.rate_hz);
+    runner_->exchange(with);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.kind = ErrorKind::input;
+    problem.where = fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column);
+    throw Error(problem);
+  }
+  result_.watches_faults = runner_->faults() != nullptr;
+  if (result_.watches_faults && !options_.fault_free_s && learnt_.fault_free_s > 0)
+    result_.warnings.add("taken_fault_free",
+                         "the start of the log is taken to hold no fault, as that of the log where "
+                         "this was learnt; `fault_free_s` says how long it is here",
+                         fmt::format("{} s", significant(learnt_.fault_free_s, 6)));
+}
+
+LogInfo Fusing::columns() const {
+  const InstantsInfo& info = instants_->info();
+  LogInfo out;
+  out.samples = out.rows = static_cast<std::uint64_t>(info.count);
+  out.time = info.logs[0].time;
+  out.time.rate_hz = info.rate_hz;
+  for (const LearntInput& input : learnt_.inputs)
+    out.channels.push_back({input.name, input.unit, false});
+  for (const LearntInput& input : learnt_.inputs)
+    out.channels.push_back({input.name + " sd", input.unit, false});
+  for (const LearntSensor& sensor : learnt_.sensors)
+    out.channels.push_back({sensor.name + " used", "", true});
+  return out;
+}
+
+/// A row a sensor of the algorithm; those that the log has not are missing.
+const Eigen::MatrixXd& Fusing::given(const Eigen::MatrixXd& samples) {
+  if (present_.size() == learnt_.sensors.size() && sensor_of_.size() == present_.size())
+    return samples;
+  full_.setConstant(std::ssize(sensor_of_), samples.cols(), kMissing);
+  for (std::size_t k = 0; k < present_.size(); ++k)
+    if (const std::ptrdiff_t row = row_[present_[k]]; row >= 0)
+      full_.row(row) = samples.row(static_cast<Eigen::Index>(k));
+  return full_;
+}
+
+/// One flag a sensor and instant of the block, from the events of the algorithm.
+void Fusing::fill_flags(const Eigen::MatrixXd& samples, std::size_t first) {
+  const fusion::FaultLog* const log = runner_->faults();
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    if (log != nullptr) note_faults(done_ + k + 1);
+    for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
+      const std::ptrdiff_t row = row_[i];
+      FusedSensor& sensor = result_.sensors[i];
+      double flag = kMissing;
+      if (row < 0 || !fusion::usable(samples(row, k))) {
+        ++sensor.missing;
+      } else if (out_now_[static_cast<std::size_t>(row)] != 0) {
+        flag = 0;
+      } else {
+        flag = 1;
+      }
+      if (row >= 0 && out_now_[static_cast<std::size_t>(row)] != 0) ++sensor.out;
+      out_[first + i][static_cast<std::size_t>(k)] = flag;
+    }
+  }
+}
+
+/// Events of the instants before `end`. What scatters only stays in use, with less weight.
+void Fusing::note_faults(std::int64_t end) {
+  const auto events = runner_->faults()->events();
+  const double rate_hz = instants_->info().rate_hz;
+  for (; events_read_ < events.size() && events[events_read_].sample < end; ++events_read_) {
+    const fusion::FaultEvent& event = events[events_read_];
+    const auto row = static_cast<std::size_t>(event.channel);
+    const double time_s = static_cast<double>(event.sample) / rate_hz;
+    out_now_[row] = event.faulty && event.rule != fusion::FaultRule::noise ? 1 : 0;
+    if (event.faulty && open_[row] < 0) {
+      open_[row] = std::ssize(result_.faults);
+      result_.faults.push_back(
+          {sensor_of_[row], std::string(fusion::name(event.rule)), time_s, {}});
+    } else if (!event.faulty && open_[row] >= 0) {
+      result_.faults[static_cast<std::size_t>(open_[row])].to_s = time_s;
+      open_[row] = -1;
+    }
+  }
+}
+
+void Fusing::take(const Eigen::MatrixXd& samples, FusedSink& sink) {
+  const Eigen::MatrixXd& all = given(samples);
+  const auto inputs = static_cast<Eigen::Index>(learnt_.inputs.size());
+  const auto r = static_cast<std::size_t>(inputs);
+  const auto rows = static_cast<std::size_t>(all.cols());
+  x_.resize(inputs, all.cols());
+  variance_.resize(inputs, all.cols());
+  runner_->run(all, x_, variance_);
+  x_ *= output_scale_;
+  for (std::vector<double>& column : out_) column.resize(rows);
+  for (Eigen::Index j = 0; j < inputs; ++j)
+    for (std::size_t k = 0; k < rows; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      const double x = x_(j, at), sd = std::sqrt(variance_(j, at)) * output_scale_;
+      out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
+      out_[r + static_cast<std::size_t>(j)][k] =
+          std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
+    }
+  for (std::size_t k = 0; k < rows; ++k) {
+    result_.estimates += std::isfinite(out_[0][k]) ? 1 : 0;
+    result_.deviations += std::isfinite(out_[r][k]) ? 1 : 0;
+  }
+  fill_flags(all, 2 * r);
+  if (steps_ && checked_.size() == sensor_of_.size()) steps_->push(all);
+  if (steps_ && checked_.size() < sensor_of_.size()) steps_->push(all(checked_, Eigen::all));
+  done_ += all.cols();
+  const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
+  sink.block(columns);
+}
+
+void Fusing::begin_check() {
+  if (scene_.tilt) return;
+  for (const std::size_t i : present_)
+    if (row_[i] >= 0) checked_.push_back(row_[i]);
+  const Eigen::MatrixXd h = array_of(learnt_).h();
+  steps_.emplace(h(checked_, Eigen::all), instants_->info().count);
+  // The sum of two sensors' noises is comparable only where the same two are there.
+  if (!steps_->identifiable() && checked_.size() < sensor_of_.size()) steps_.reset();
+}
+
+void Fusing::check_noise() {
+  if (!steps_) return;
+  std::vector<std::string> names;
+  std::vector<std::optional<StepNoise>> learnt;
+  for (const Eigen::Index row : checked_) {
+    const LearntSensor& sensor = learnt_.sensors[sensor_of_[static_cast<std::size_t>(row)]];
+    names.push_back(sensor.name);
+    learnt.emplace_back();
+    if (sensor.step_noise && sensor.step_noise_error)
+      learnt.back() = {2 * std::log(*sensor.step_noise), *sensor.step_noise_error};
+  }
+  warn_of_noise(names, learnt, steps_->result(), result_.warnings);
+}
+
+void Fusing::tell() {
+  check_noise();
+  runner_->remarks(result_.warnings);
+  const fusion::FaultLog* const log = runner_->faults();
+  if (log != nullptr && log->dropped() > 0)
+    result_.warnings.add("faults_not_kept",
+                         "more faults than are kept: flags of sensors behind the last one are not "
+                         "complete",
+                         "",
+                         log->dropped());
+}
+
+FuseResult Fusing::run(FusedSink& sink) {
+  const InstantsInfo& info = instants_->info();
+  result_.log = info.logs[0];
+  result_.file = learnt_.file;
+  result_.file_sha256 = learnt_.sha256;
+  result_.algorithm = algorithm_;
+  result_.rate_hz = info.rate_hz;
+  result_.instants = static_cast<std::uint64_t>(info.count);
+  result_.inputs = learnt_.inputs;
+  out_.resize(2 * learnt_.inputs.size() + learnt_.sensors.size());
+  begin_check();
+  sink.begin(columns());
+  struct Named final : Progress {
+    explicit Named(Progress& to) : next(to) {}
+    void update(double fraction, std::string_view) override { next.update(fraction, "fusing"); }
+    Progress& next;
+  } named(progress_);
+  instants_->pass(
+      0,
+      info.count,
+      options_.block > 0 ? options_.block : kFusedBlock,
+      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
+        take(samples, sink);
+      },
+      named);
+  tell();
+  return std::move(result_);
+}
+
+}  // namespace
+
+FuseResult fuse(const std::string& log,
+                const LearntFusion& learnt,
+                FusedSink& sink,
+                const FuseOptions& options,
+                Progress& progress) {
+  if (read_once(log))
+    refuse_fuse(ErrorKind::usage,
+                "E0934",
+                log,
+                "a log is read twice, for its rate and for its samples: it must be a file",
+                "",
+                "write what the pipe holds to a file first");
+  if (!options.reading.channels.empty())
+    refuse_fuse(ErrorKind::usage,
+                "E0934",
+                "`channels`",
+                "the file names the channels that are read",
+                "",
+                "where they have other names say so with `map`: SENSOR=CHANNEL");
+  return Fusing(log, learnt, options, progress).run(sink);
+}
+
+void FusedWriter::begin(const LogInfo& columns) {
+  LogInfo info = columns;
+  info.file = path_;
+  writer_ = open_log_writer(path_, info, writing_);
+}
+
+std::vector<std::string> FusedWriter::finish() {
+  writer_->finish();
+  return writer_->files();
+}
+
+}  // namespace libchar

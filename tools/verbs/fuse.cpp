@@ -1,0 +1,106 @@
+// fuse LOG --with RUN_OR_FILE -o FILE: a log fused with what a replay learnt, streaming.
+
+#include "libchar/replay/fuse.hpp"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/report/fuse_report.hpp"
+#include "reading_options.hpp"
+#include "verb.hpp"
+#include "writing_options.hpp"
+
+namespace sensorchar {
+namespace {
+
+struct FuseVerb {
+  std::string log, with, output;
+  std::vector<std::string> map;
+  libchar::FuseOptions options;
+  WritingOptions writing;
+  bool json = false;
+};
+
+// "gyro1=wx": a sensor of the file and its channel in the log.
+void add_map(const FuseVerb& verb, libchar::FuseOptions& options) {
+  for (const std::string& text : verb.map) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw libchar::Error({libchar::ErrorKind::usage,
+                            "E0935",
+                            "--map",
+                            "expected SENSOR=CHANNEL",
+                            text,
+                            "--map gyro1=wx"});
+    options.map.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+}
+
+void run_fuse(Session& session, FuseVerb& verb) {
+  add_map(verb, verb.options);
+  const libchar::LearntFusion learnt = libchar::read_fusion_file(verb.with);
+  for (const std::string& input : {verb.log, learnt.file})
+    for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
+  libchar::FusedWriter writer(verb.output, write_options(verb.writing));
+  const libchar::FuseResult result =
+      libchar::fuse(verb.log, learnt, writer, verb.options, session.terminal);
+  session.terminal.clear();
+  report_warnings(session, result.log);
+  session.terminal.warn(result.warnings, verb.log);
+  // With --strict nothing is written from a log that has warnings.
+  if (session.strict && !result.log.warnings.empty()) return;
+  session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
+  const std::vector<std::string> files = writer.finish();
+  for (const std::string& loss : writer.losses()) session.terminal.note("not kept: " + loss);
+  print(verb.json ? libchar::dump_json(libchar::fuse_json(result, session.command, files))
+                  : libchar::fuse_text(result, files));
+}
+
+std::function<void()> fuse_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<FuseVerb>();
+  options.add_text("LOG", verb->log, "log to fuse").required();
+  options
+      .add_text("--with", verb->with, "folder of a replay, or the fusion.yaml in it (docs/fuse.md)")
+      .required()
+      .value_name("RUN");
+  options
+      .add_text("-o,--output",
+                verb->output,
+                "file to write; its suffix says the format (" + libchar::written_suffixes() + ")")
+      .required()
+      .value_name("FILE");
+  options
+      .add_text("--algorithm",
+                verb->options.algorithm,
+                "what to fuse by, as the replay's report names it (default: what it recommends)")
+      .value_name("NAME");
+  options
+      .add_texts("--map",
+                 verb->map,
+                 "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("SENSOR=CHANNEL,…");
+  options.add_duration("--fault-free",
+                       verb->options.fault_free_s,
+                       "so long no sensor fails at the start of this log (default: as long as in "
+                       "the replay)");
+  add_writing_options(options, verb->writing, "t[s] or t[ns]");
+  options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
+  options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  add_reading_options(options, session, verb->options.reading);
+  return [&session, verb] { run_fuse(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_fuse() {
+  return {9,
+          "fuse",
+          "A log fused with what a replay learnt: estimates, their deviations, a flag a sensor",
+          fuse_options};
+}
+
+}  // namespace sensorchar
