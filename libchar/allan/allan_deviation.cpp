@@ -46,7 +46,7 @@ struct Starts {
 
 /// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
 /// it sums.
-Starts starts_in(const Stretch& stretch, const DeviationRow& f, std::uint64_t m) {
+Starts starts_in(const IndexRange& stretch, const DeviationRow& f, std::uint64_t m) {
   const std::uint64_t stride = f.overlapping ? 1 : m;
   const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
   const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
@@ -113,7 +113,7 @@ std::vector<Starts> ranges_of(const AnchoredPhase& phase,
   if (f.reflected)  // centred on the inner points of the record within its continuation
     return {{reach + 1 - m, phase.points - reach - 1 - m, 1}};
   std::vector<Starts> ranges;
-  for (const Stretch& s : phase.stretches) {
+  for (const IndexRange& s : phase.stretches) {
     const Starts r = starts_in(s, f, m);
     if (r.count() > 0) ranges.push_back(r);
   }
@@ -151,8 +151,8 @@ AllanPoint point_of(const Totals& total,
                ""});
 }
 
-Stretch longest(std::span<const double> record) {
-  Stretch best;
+IndexRange longest(std::span<const double> record) {
+  IndexRange best;
   std::uint64_t begin = 0;
   for (std::uint64_t i = 0; i <= record.size(); ++i)
     if (i == record.size() || !std::isfinite(record[i])) {
@@ -164,7 +164,7 @@ Stretch longest(std::span<const double> record) {
 
 /// Total deviation of the longest gap-free stretch only: reflection has no meaning at a gap.
 std::span<const double> without_gaps(std::span<const double> record, AllanCurve& curve) {
-  const Stretch s = longest(record);
+  const IndexRange s = longest(record);
   if (s.end - s.begin == record.size()) return record;
   curve.notes.push_back("total deviation of the longest stretch without gaps only, samples " +
                         std::to_string(s.begin) + " to " + std::to_string(s.end) + " of " +

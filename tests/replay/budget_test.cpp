@@ -148,7 +148,7 @@ TEST_CASE("budget: stretches lie in order, within the run, on whole cells of the
         const auto cell = static_cast<std::int64_t>(
             ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
         std::int64_t before = 0, instants = 0;
-        for (const Stretch& s : share.stretches) {
+        for (const BlindStretch& s : share.stretches) {
           CHECK(s.from >= before);
           CHECK(s.scored_from - s.from >= (s.to - s.from) / 5);
           CHECK((s.scored_from - warm_up) % cell == 0);

@@ -16,7 +16,7 @@ DoubleDouble operator+(DoubleDouble a, DoubleDouble b);
 DoubleDouble operator*(DoubleDouble a, double k);
 
 /// Half-open range of indices.
-struct Stretch {
+struct IndexRange {
   std::uint64_t begin = 0, end = 0;
 };
 
@@ -35,7 +35,7 @@ struct AnchoredPhase {
   bool summed = false;                           ///< local2 and W are there
   std::vector<double> local, local2;
   std::vector<DoubleDouble> anchor, base, base2;  ///< A_b, X_b, W_b
-  std::vector<Stretch> stretches;                 ///< of phase points between missing samples
+  std::vector<IndexRange> stretches;              ///< of phase points between missing samples
   std::uint64_t missing = 0;
 };
 

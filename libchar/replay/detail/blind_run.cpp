@@ -64,7 +64,7 @@ void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
                        end = std::min(to - first, static_cast<std::int64_t>(count));
     if (begin < end) columns.push_back({begin, end - begin});
   };
-  for (const Stretch& stretch : planned_->blind.stretches) {
+  for (const BlindStretch& stretch : planned_->blind.stretches) {
     add(stretch.from, stretch.to, run_);
     add(stretch.scored_from, stretch.to, scored_);
   }

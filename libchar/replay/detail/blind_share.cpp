@@ -53,7 +53,7 @@ BlindShare blind_share(const fusion::Entry& entry,
   // Whole cells: where a meter has samples, another has them at the same instants.
   for (std::int64_t k = 0; k < kBlindStretches; ++k) {
     const std::int64_t first = (2 * k + 1) * cells / (2 * kBlindStretches) - scored / 2;
-    Stretch stretch;
+    BlindStretch stretch;
     stretch.scored_from = warm_up + first * cell;
     stretch.to = stretch.scored_from + scored * cell;
     stretch.from = std::max<std::int64_t>(out.stretches.empty() ? 0 : out.stretches.back().to,

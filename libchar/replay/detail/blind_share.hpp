@@ -12,7 +12,7 @@
 namespace libchar {
 
 /// Instants of the run, the first is 0.
-struct Stretch {
+struct BlindStretch {
   std::int64_t from = 0;         ///< the algorithm runs from here on
   std::int64_t scored_from = 0;  ///< and is scored from here on: it has found into the stretch
   std::int64_t to = 0;           ///< one behind the last
@@ -20,9 +20,9 @@ struct Stretch {
 
 struct BlindShare {
   bool whole = true;
-  std::vector<Stretch> stretches;  ///< when not whole; empty: left out
-  double cost_s = 0;               ///< of the whole run
-  double share = 1;                ///< of the run's instants that are scored
+  std::vector<BlindStretch> stretches;  ///< when not whole; empty: left out
+  double cost_s = 0;                    ///< of the whole run
+  double share = 1;                     ///< of the run's instants that are scored
 };
 
 /// An algorithm that is run on other channels for scores: without each of them, on every second and on the others.
