@@ -35,7 +35,7 @@ struct ReplayOptions {
   bool no_skip = false;  ///< do all work, whether an output needs it or not: same numbers
   /// processor time that leave-one-out of one algorithm may take, by the declared cost of its steps; beyond it runs on
   /// stretches of the evaluation, or not at all. Infinite: no limit
-  double budget_s = 5;
+  double budget_s = 10;
   std::size_t block = 0;  ///< instants at once; 0: by length. Results do not depend on it
 };
 

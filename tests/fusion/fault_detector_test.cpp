@@ -82,6 +82,53 @@ TEST_CASE("cumulative sums: three instants by hand") {
   CHECK(bank.step(sample) == 0);
 }
 
+TEST_CASE("cumulative sums: every row of six sensors against one at a time") {
+  CusumBank bank(6);
+  CusumSample sample(bank.padded());
+  test::Gaussian gauss(8);
+  struct Row {
+    double size;
+    CusumInput input;
+    double sum = 0;
+  };
+  std::vector<std::vector<Row>> rows(6);
+  for (auto& own : rows) {
+    for (const double t : {0.35, 0.7, 1.4, 2.8})
+      for (const double sign : {1.0, -1.0})
+        for (const CusumInput input : {CusumInput::bias, CusumInput::gain})
+          own.push_back({sign * t, input});
+    for (const double k : {1.3, 1.7, 2.6, 5.0}) own.push_back({k, CusumInput::noise});
+  }
+  for (int step = 0; step < 500; ++step) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const bool here = (step + static_cast<int>(i)) % 7 != 0;
+      const double z = here ? 1.3 * gauss() : 0, u = here ? gauss() : 0, w = here ? 1 : 0;
+      sample.z[i] = z;
+      sample.present[i] = w;
+      sample.uz[i] = u * z;
+      sample.uu[i] = u * u;
+      sample.zz[i] = z * z;
+      for (Row& row : rows[i]) {
+        const double t = row.size;
+        const double by = row.input == CusumInput::bias ? t * z - t * t / 2 * w
+                          : row.input == CusumInput::gain
+                              ? t * u * z - t * t / 2 * u * u
+                              : (1 - 1 / (t * t)) / 2 * z * z - std::log(t) * w;
+        row.sum = std::max(0.0, row.sum + by);
+      }
+    }
+    const double top = bank.step(sample);
+    double largest = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto best = std::max_element(
+          rows[i].begin(), rows[i].end(), [](const Row& a, const Row& b) { return a.sum < b.sum; });
+      CHECK(bank.top(i) == Approx(best->sum).epsilon(1e-12).margin(1e-12));
+      largest = std::max(largest, best->sum);
+    }
+    CHECK(top == Approx(largest).epsilon(1e-12).margin(1e-12));
+  }
+}
+
 TEST_CASE("isolation: the largest consistent set, or none") {
   FaultIsolation isolation(Eigen::MatrixXd::Ones(6, 1), 6);
   const int all[] = {0, 1, 2, 3, 4, 5};

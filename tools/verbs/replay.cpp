@@ -243,7 +243,7 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                        verb->budget_s,
                        "processor time that leave-one-out of one algorithm may take, counted by "
                        "its declared cost; beyond, "
-                       "it runs on stretches or not at all (default: 5 s)");
+                       "it runs on stretches or not at all (default: 10 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
       .add_text("--estimates",

@@ -26,7 +26,8 @@ std::array<CusumRow, CusumBank::kRows> cusum_rows() {
 
 const std::array<CusumRow, CusumBank::kRows> kCusumRows = cusum_rows();
 
-/// All rows of four sensors: what they saw and their largest sums stay in registers.
+/// All rows of four sensors: what they saw and their largest sums stay in registers. Rows of both signs of a size share
+/// their products: S + (-t z - c) = S - (t z + c) to the last bit.
 LIBCHAR_WIDE_LANES void cusum_rows_step(double* __restrict sums,
                                         double* __restrict top,
                                         const double* const* a,
@@ -36,15 +37,27 @@ LIBCHAR_WIDE_LANES void cusum_rows_step(double* __restrict sums,
   for (std::size_t i = 0; i < padded; i += 4) {
     Four largest = zero;
     const CusumRow* row = kCusumRows.data();
-    for (int input = 0; input < 3; ++input) {
+    for (int input = 0; input < 2; ++input) {
       const Four evidence = LIBCHAR_FOUR(a[input] + i), against = LIBCHAR_FOUR(b[input] + i);
-      for (const CusumRow* const end = row + CusumBank::rows(input); row < end; ++row) {
-        const Four s = LIBCHAR_FOUR(sums) + (evidence * row->slope - against * row->cost);
-        const Four kept = s > zero ? s : zero;
-        LIBCHAR_FOUR_TO(sums) = kept;
-        largest = kept > largest ? kept : largest;
-        sums += 4;
+      for (const CusumRow* const end = row + CusumBank::rows(input); row < end; row += 2) {
+        const Four grows = evidence * row->slope, falls = against * row->cost;
+        const Four up = LIBCHAR_FOUR(sums) + (grows - falls);
+        const Four down = LIBCHAR_FOUR(sums + 4) - (grows + falls);
+        const Four high = up > zero ? up : zero, low = down > zero ? down : zero;
+        LIBCHAR_FOUR_TO(sums) = high;
+        LIBCHAR_FOUR_TO(sums + 4) = low;
+        const Four top_of_both = high > low ? high : low;
+        largest = top_of_both > largest ? top_of_both : largest;
+        sums += 8;
       }
+    }
+    const Four evidence = LIBCHAR_FOUR(a[2] + i), against = LIBCHAR_FOUR(b[2] + i);
+    for (const CusumRow* const end = row + CusumBank::rows(2); row < end; ++row) {
+      const Four s = LIBCHAR_FOUR(sums) + (evidence * row->slope - against * row->cost);
+      const Four kept = s > zero ? s : zero;
+      LIBCHAR_FOUR_TO(sums) = kept;
+      largest = kept > largest ? kept : largest;
+      sums += 4;
     }
     LIBCHAR_FOUR_TO(top + i) = largest;
   }

@@ -5,6 +5,10 @@
 
 #include "libchar/core/lanes.hpp"
 
+#if defined(LIBCHAR_X86_64)
+#include <emmintrin.h>
+#endif
+
 namespace libchar::fusion {
 namespace {
 
@@ -20,184 +24,118 @@ constexpr double kPriorGain = 0.05, kPriorDelay = 1;
 /// Blocks that the long-run variances remember.
 constexpr double kBlockMemory = 64;
 
-/// Arrays are padded to fours: loops need no rest.
-constexpr std::size_t whole_fours(std::size_t n) {
-  return n / 4 * 4;
-}
+// Four sensors at once: what stands of a kind in the group at q.
+#define LIBCHAR_GROUP(kind) LIBCHAR_FOUR(q + 4 * FaultBaseline::kind)
+#define LIBCHAR_GROUP_TO(kind) LIBCHAR_FOUR_TO(q + 4 * FaultBaseline::kind)
 
-struct MeanOf {
-  double *x, *dx, *mean_f, *last_f, *had_f, *square_x, *square_dx, *y;
-};
-struct Coefficients {
-  double *bias, *gain, *delay, *bias_var, *gain_var, *delay_var;
-  const double *bias_floor, *gain_floor, *delay_floor;
-};
-
-LIBCHAR_WIDE_LANES void predict_all(const MeanOf& m,
-                                    const Coefficients& c,
-                                    const double* f_in,
-                                    const double* here_in,
-                                    std::size_t padded) {
-  const std::size_t n = whole_fours(padded);
-  double* __restrict const x = m.x;
-  double* __restrict const dx = m.dx;
-  double* __restrict const mean_f = m.mean_f;
-  double* __restrict const last_f = m.last_f;
-  double* __restrict const had_f = m.had_f;
-  double* __restrict const square_x = m.square_x;
-  double* __restrict const square_dx = m.square_dx;
-  double* __restrict const y = m.y;
-  const double* __restrict const f = f_in;
-  const double* __restrict const here = here_in;
-  const double* __restrict const b = c.bias;
-  const double* __restrict const g = c.gain;
-  const double* __restrict const d = c.delay;
+/// f, here and y to x, dx, y less its slow mean, and the means of f.
+LIBCHAR_WIDE_LANES void predict_all(double* q, double* y, std::size_t padded) {
   const double a = 1 / FaultBaseline::kMeanMemory;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double centred = here[i] * (f[i] - mean_f[i]);
-    const double step = here[i] * had_f[i] * (f[i] - last_f[i]);
-    x[i] = centred;
-    dx[i] = step;
-    y[i] -= b[i] + g[i] * centred + d[i] * step;
-    mean_f[i] += a * centred;
-    square_x[i] += here[i] * a * (centred * centred - square_x[i]);
-    square_dx[i] += here[i] * a * (step * step - square_dx[i]);
-    last_f[i] = f[i];
-    had_f[i] = here[i];
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four here = LIBCHAR_GROUP(kHere), f = LIBCHAR_GROUP(kF);
+    const Four mean_f = LIBCHAR_GROUP(kMeanF), square_x = LIBCHAR_GROUP(kSquareX);
+    const Four square_dx = LIBCHAR_GROUP(kSquareDx);
+    const Four centred = here * (f - mean_f);
+    const Four step = here * LIBCHAR_GROUP(kHadF) * (f - LIBCHAR_GROUP(kLastF));
+    LIBCHAR_GROUP_TO(kX) = centred;
+    LIBCHAR_GROUP_TO(kDx) = step;
+    LIBCHAR_FOUR_TO(y + i) =
+        LIBCHAR_FOUR(y + i) -
+        (LIBCHAR_GROUP(kBias) + LIBCHAR_GROUP(kGain) * centred + LIBCHAR_GROUP(kDelay) * step);
+    LIBCHAR_GROUP_TO(kMeanF) = mean_f + a * centred;
+    LIBCHAR_GROUP_TO(kSquareX) = square_x + here * a * (centred * centred - square_x);
+    LIBCHAR_GROUP_TO(kSquareDx) = square_dx + here * a * (step * step - square_dx);
+    LIBCHAR_GROUP_TO(kLastF) = f;
+    LIBCHAR_GROUP_TO(kHadF) = here;
   }
 }
 
-struct Standardised {
-  double *z, *root, *sum_z, *sum_xz, *sum_xx, *sum_zz, *sum_n, *count, *recent;
-  double *out_z, *out_present, *out_uz, *out_uu, *out_zz;
+/// The square roots of four numbers that are not negative. (The compiler keeps a way to errno open and takes them one by one.)
+inline void take_roots(double* four) {
+#if defined(LIBCHAR_X86_64)
+  _mm_storeu_pd(four, _mm_sqrt_pd(_mm_loadu_pd(four)));
+  _mm_storeu_pd(four + 2, _mm_sqrt_pd(_mm_loadu_pd(four + 2)));
+#else
+  for (int i = 0; i < 4; ++i) four[i] = std::sqrt(four[i]);
+#endif
+}
+
+/// Where the bank reads.
+struct Evidence {
+  double *z, *present, *uz, *uu, *zz;
 };
-struct Expected {
-  const double *e, *s, *start_margin, *bias_var, *gain_var, *delay_var, *x, *dx, *here, *armed,
-      *unit_x;
-  const double *scale_bias, *scale_gain, *scale_noise;
-  double inverse_excess;
-};
 
-LIBCHAR_WIDE_LANES void standardise_all(const Expected& in,
-                                        const Standardised& out,
-                                        std::size_t padded) {
-  const std::size_t n = whole_fours(padded);
-  double* __restrict const z = out.z;
-  double* __restrict const root = out.root;
-  const double* __restrict const e = in.e;
-  const double* __restrict const s = in.s;
-  const double* __restrict const start_margin = in.start_margin;
-  const double* __restrict const b = in.bias_var;
-  const double* __restrict const g = in.gain_var;
-  const double* __restrict const d = in.delay_var;
-  const double* __restrict const x = in.x;
-  const double* __restrict const dx = in.dx;
-  const double* __restrict const here = in.here;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double variance =
-        s[i] * start_margin[i] + b[i] + g[i] * (x[i] * x[i]) + d[i] * (dx[i] * dx[i]);
-    const double one_over = std::sqrt(1 / variance);
-    const double standard = here[i] * e[i] * one_over;
-    const double low = standard < -kMostDeviations ? -kMostDeviations : standard;
-    root[i] = one_over;
-    z[i] = low > kMostDeviations ? kMostDeviations : low;
-  }
-}
-
-LIBCHAR_WIDE_LANES void evidence_all(const Expected& in,
-                                     const Standardised& out,
-                                     std::size_t padded) {
-  const std::size_t n = whole_fours(padded);
-  const double* __restrict const z = out.z;
-  const double* __restrict const x = in.x;
-  const double* __restrict const here = in.here;
-  const double* __restrict const armed = in.armed;
-  const double* __restrict const unit_x = in.unit_x;
-  const double* __restrict const scale_bias = in.scale_bias;
-  const double* __restrict const scale_gain = in.scale_gain;
-  const double* __restrict const scale_noise = in.scale_noise;
-  double* __restrict const out_z = out.out_z;
-  double* __restrict const present = out.out_present;
-  double* __restrict const uz = out.out_uz;
-  double* __restrict const uu = out.out_uu;
-  double* __restrict const zz = out.out_zz;
-  const double inverse_excess = in.inverse_excess, root = std::sqrt(inverse_excess);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double now = here[i] * armed[i], u = x[i] * unit_x[i] * now;
-    out_z[i] = now * z[i] * scale_bias[i] * root;
-    present[i] = now;
-    uz[i] = u * z[i] * scale_gain[i] * root;
-    uu[i] = u * u;
-    zz[i] = now * ((z[i] * z[i] * inverse_excess - 1) * scale_noise[i] + 1);
-  }
-}
-
-LIBCHAR_WIDE_LANES void sums_all(const Expected& in, const Standardised& out, std::size_t padded) {
-  const std::size_t n = whole_fours(padded);
-  const double* __restrict const z = out.z;
-  const double* __restrict const x = in.x;
-  const double* __restrict const here = in.here;
-  double* __restrict const sum_z = out.sum_z;
-  double* __restrict const sum_xz = out.sum_xz;
-  double* __restrict const sum_xx = out.sum_xx;
-  double* __restrict const sum_zz = out.sum_zz;
-  double* __restrict const sum_n = out.sum_n;
-  double* __restrict const count = out.count;
-  double* __restrict const recent = out.recent;
-  const double a = 1 / FaultBaseline::kRecent;
-  for (std::size_t i = 0; i < n; ++i) {
-    sum_z[i] += z[i];
-    sum_xz[i] += x[i] * z[i];
-    sum_xx[i] += x[i] * x[i];
-    sum_zz[i] += z[i] * z[i];
-    sum_n[i] += here[i];
-    count[i] += here[i];
-    const double square = z[i] * z[i] < kMostRecent ? z[i] * z[i] : kMostRecent;
-    recent[i] += here[i] * a * (square - recent[i]);
+/// e and s to z, the sums of the block, and the evidence of the bank.
+LIBCHAR_WIDE_LANES void standardise_all(double* q,
+                                        const Evidence& out,
+                                        std::size_t padded,
+                                        double inverse_excess) {
+  const double a = 1 / FaultBaseline::kRecent, root = std::sqrt(inverse_excess);
+  const Four least = {-kMostDeviations, -kMostDeviations, -kMostDeviations, -kMostDeviations};
+  const Four most = -least;
+  const Four most_recent = {kMostRecent, kMostRecent, kMostRecent, kMostRecent};
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four x = LIBCHAR_GROUP(kX), dx = LIBCHAR_GROUP(kDx), here = LIBCHAR_GROUP(kHere);
+    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) +
+                          LIBCHAR_GROUP(kBiasVar) + LIBCHAR_GROUP(kGainVar) * (x * x) +
+                          LIBCHAR_GROUP(kDelayVar) * (dx * dx);
+    double* const one_over = q + 4 * FaultBaseline::kRoot;
+    LIBCHAR_FOUR_TO(one_over) = 1 / variance;
+    take_roots(one_over);
+    const Four standard = here * LIBCHAR_GROUP(kE) * LIBCHAR_FOUR(one_over);
+    const Four low = standard < least ? least : standard;
+    const Four z = low > most ? most : low;
+    LIBCHAR_GROUP_TO(kZ) = z;
+    const Four now = here * LIBCHAR_GROUP(kArmed), u = x * LIBCHAR_GROUP(kUnitX) * now;
+    LIBCHAR_FOUR_TO(out.z + i) = now * z * LIBCHAR_GROUP(kScaleBias) * root;
+    LIBCHAR_FOUR_TO(out.present + i) = now;
+    LIBCHAR_FOUR_TO(out.uz + i) = u * z * LIBCHAR_GROUP(kScaleGain) * root;
+    LIBCHAR_FOUR_TO(out.uu + i) = u * u;
+    LIBCHAR_FOUR_TO(out.zz + i) =
+        now * ((z * z * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
+    LIBCHAR_GROUP_TO(kSumZ) = LIBCHAR_GROUP(kSumZ) + z;
+    LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * z;
+    LIBCHAR_GROUP_TO(kSumXx) = LIBCHAR_GROUP(kSumXx) + x * x;
+    LIBCHAR_GROUP_TO(kSumZz) = LIBCHAR_GROUP(kSumZz) + z * z;
+    LIBCHAR_GROUP_TO(kSumN) = LIBCHAR_GROUP(kSumN) + here;
+    LIBCHAR_GROUP_TO(kCount) = LIBCHAR_GROUP(kCount) + here;
+    const Four square = z * z < most_recent ? z * z : most_recent,
+               recent = LIBCHAR_GROUP(kRecentSquare);
+    LIBCHAR_GROUP_TO(kRecentSquare) = recent + here * a * (square - recent);
   }
 }
 
 /// B <- max(B (1 - k), floor), b <- b + k e: with t = z / sqrt(S), k e = B t.
-LIBCHAR_WIDE_LANES void learn_all(const Coefficients& c,
-                                  const double* z_in,
-                                  const double* root_in,
-                                  const double* x_in,
-                                  const double* dx_in,
-                                  const double* learns_in,
+LIBCHAR_WIDE_LANES void learn_all(double* q,
+                                  const double* tops,
+                                  double frozen,
                                   std::size_t padded) {
-  const std::size_t n = whole_fours(padded);
-  double* __restrict const bias = c.bias;
-  double* __restrict const gain = c.gain;
-  double* __restrict const delay = c.delay;
-  double* __restrict const bias_var = c.bias_var;
-  double* __restrict const gain_var = c.gain_var;
-  double* __restrict const delay_var = c.delay_var;
-  const double* __restrict const bias_floor = c.bias_floor;
-  const double* __restrict const gain_floor = c.gain_floor;
-  const double* __restrict const delay_floor = c.delay_floor;
-  const double* __restrict const z = z_in;
-  const double* __restrict const root = root_in;
-  const double* __restrict const x = x_in;
-  const double* __restrict const dx = dx_in;
-  const double* __restrict const learns = learns_in;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double low = z[i] < -kClip ? -kClip : z[i];
-    const double t = (low > kClip ? kClip : low) * root[i];
-    const double over = root[i] * root[i];
-    const double kb = learns[i] * bias_var[i];
-    const double kg = learns[i] * x[i] * gain_var[i];
-    const double kd = learns[i] * dx[i] * delay_var[i];
-    bias[i] += kb * t;
-    gain[i] += kg * t;
-    delay[i] += kd * t;
-    const double b = bias_var[i] - kb * kb * over;
-    const double g = gain_var[i] - kg * kg * over;
-    const double d = delay_var[i] - kd * kd * over;
-    bias_var[i] = b > bias_floor[i] ? b : bias_floor[i];
-    gain_var[i] = g > gain_floor[i] ? g : gain_floor[i];
-    delay_var[i] = d > delay_floor[i] ? d : delay_floor[i];
+  const Four least = {-kClip, -kClip, -kClip, -kClip}, most = -least, none = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four z = LIBCHAR_GROUP(kZ), root = LIBCHAR_GROUP(kRoot), x = LIBCHAR_GROUP(kX);
+    const Four bias_var = LIBCHAR_GROUP(kBiasVar), gain_var = LIBCHAR_GROUP(kGainVar);
+    const Four delay_var = LIBCHAR_GROUP(kDelayVar);
+    const Four learns = LIBCHAR_FOUR(tops + i) <= frozen ? LIBCHAR_GROUP(kHere) : none;
+    const Four low = z < least ? least : z;
+    const Four t = (low > most ? most : low) * root;
+    const Four over = root * root;
+    const Four kb = learns * bias_var;
+    const Four kg = learns * x * gain_var;
+    const Four kd = learns * LIBCHAR_GROUP(kDx) * delay_var;
+    LIBCHAR_GROUP_TO(kBias) = LIBCHAR_GROUP(kBias) + kb * t;
+    LIBCHAR_GROUP_TO(kGain) = LIBCHAR_GROUP(kGain) + kg * t;
+    LIBCHAR_GROUP_TO(kDelay) = LIBCHAR_GROUP(kDelay) + kd * t;
+    const Four b = bias_var - kb * kb * over, b_floor = LIBCHAR_GROUP(kBiasFloor);
+    const Four g = gain_var - kg * kg * over, g_floor = LIBCHAR_GROUP(kGainFloor);
+    const Four d = delay_var - kd * kd * over, d_floor = LIBCHAR_GROUP(kDelayFloor);
+    LIBCHAR_GROUP_TO(kBiasVar) = b > b_floor ? b : b_floor;
+    LIBCHAR_GROUP_TO(kGainVar) = g > g_floor ? g : g_floor;
+    LIBCHAR_GROUP_TO(kDelayVar) = d > d_floor ? d : d_floor;
   }
 }
+
+#undef LIBCHAR_GROUP
+#undef LIBCHAR_GROUP_TO
 
 double believed(double ratio, double blocks, bool trusted) {
   // What the scatter of so few blocks alone would show is not believed.
@@ -208,103 +146,76 @@ double believed(double ratio, double blocks, bool trusted) {
 
 }  // namespace
 
-FaultBaseline::FaultBaseline(std::size_t sensors) : n(sensors), padded(CusumBank::padded(sensors)) {
-  for (std::vector<double>* v :
-       {&here,       &armed,      &learns,      &f,         &mean_f, &last_f, &had_f,
-        &x,          &dx,         &square_x,    &square_dx, &bias,   &gain,   &delay,
-        &bias_floor, &gain_floor, &delay_floor, &y,         &e,      &z,      &count,
-        &unit_x,     &sum_z,      &sum_xz,      &sum_xx,    &sum_zz, &sum_n,  &blocks})
-    v->assign(padded, 0);
-  for (std::vector<double>* v : {&bias_var,
-                                 &s,
-                                 &root,
-                                 &start_margin,
-                                 &recent,
-                                 &long_bias,
-                                 &long_gain,
-                                 &long_noise,
-                                 &scale_bias,
-                                 &scale_gain,
-                                 &scale_noise})
-    v->assign(padded, 1);
-  gain_var.assign(padded, kPriorGain * kPriorGain);
-  delay_var.assign(padded, kPriorDelay * kPriorDelay);
+FaultBaseline::FaultBaseline(std::size_t sensors)
+    : n(sensors),
+      padded(CusumBank::padded(sensors)),
+      block(padded / 4 * kStride, 0.0),
+      here(column(kHere)),
+      armed(column(kArmed)),
+      f(column(kF)),
+      mean_f(column(kMeanF)),
+      last_f(column(kLastF)),
+      had_f(column(kHadF)),
+      x(column(kX)),
+      square_x(column(kSquareX)),
+      square_dx(column(kSquareDx)),
+      bias(column(kBias)),
+      gain(column(kGain)),
+      delay(column(kDelay)),
+      bias_var(column(kBiasVar)),
+      gain_var(column(kGainVar)),
+      delay_var(column(kDelayVar)),
+      bias_floor(column(kBiasFloor)),
+      gain_floor(column(kGainFloor)),
+      delay_floor(column(kDelayFloor)),
+      e(column(kE)),
+      s(column(kS)),
+      z(column(kZ)),
+      count(column(kCount)),
+      unit_x(column(kUnitX)),
+      start_margin(column(kStartMargin)),
+      scale_bias(column(kScaleBias)),
+      scale_gain(column(kScaleGain)),
+      scale_noise(column(kScaleNoise)),
+      sum_z(column(kSumZ)),
+      sum_xz(column(kSumXz)),
+      sum_xx(column(kSumXx)),
+      sum_zz(column(kSumZz)),
+      sum_n(column(kSumN)),
+      recent(column(kRecentSquare)),
+      y(padded, 0.0),
+      long_bias(padded, 1.0),
+      long_gain(padded, 1.0),
+      long_noise(padded, 1.0),
+      blocks(padded, 0.0) {
+  for (SensorColumn* one :
+       {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
+    one->fill(1);
+  gain_var.fill(kPriorGain * kPriorGain);
+  delay_var.fill(kPriorDelay * kPriorDelay);
+}
+
+SensorColumn FaultBaseline::column(Kind kind) {
+  return {block.data() + 4 * kind, kStride, padded};
 }
 
 void FaultBaseline::predict() {
-  predict_all({x.data(),
-               dx.data(),
-               mean_f.data(),
-               last_f.data(),
-               had_f.data(),
-               square_x.data(),
-               square_dx.data(),
-               y.data()},
-              {bias.data(),
-               gain.data(),
-               delay.data(),
-               nullptr,
-               nullptr,
-               nullptr,
-               nullptr,
-               nullptr,
-               nullptr},
-              f.data(),
-              here.data(),
-              padded);
+  predict_all(block.data(), y.data(), padded);
 }
 
 void FaultBaseline::standardise(CusumSample& sample) {
-  const Expected in{e.data(),
-                    s.data(),
-                    start_margin.data(),
-                    bias_var.data(),
-                    gain_var.data(),
-                    delay_var.data(),
-                    x.data(),
-                    dx.data(),
-                    here.data(),
-                    armed.data(),
-                    unit_x.data(),
-                    scale_bias.data(),
-                    scale_gain.data(),
-                    scale_noise.data(),
-                    1 / excess};
-  const Standardised out{z.data(),
-                         root.data(),
-                         sum_z.data(),
-                         sum_xz.data(),
-                         sum_xx.data(),
-                         sum_zz.data(),
-                         sum_n.data(),
-                         count.data(),
-                         recent.data(),
-                         sample.z.data(),
-                         sample.present.data(),
-                         sample.uz.data(),
-                         sample.uu.data(),
-                         sample.zz.data()};
-  standardise_all(in, out, padded);
-  evidence_all(in, out, padded);
-  sums_all(in, out, padded);
+  standardise_all(block.data(),
+                  {sample.z.data(),
+                   sample.present.data(),
+                   sample.uz.data(),
+                   sample.uu.data(),
+                   sample.zz.data()},
+                  padded,
+                  1 / excess);
 }
 
-void FaultBaseline::learn() {
-  learn_all({bias.data(),
-             gain.data(),
-             delay.data(),
-             bias_var.data(),
-             gain_var.data(),
-             delay_var.data(),
-             bias_floor.data(),
-             gain_floor.data(),
-             delay_floor.data()},
-            z.data(),
-            root.data(),
-            x.data(),
-            dx.data(),
-            learns.data(),
-            padded);
+void FaultBaseline::learn(const std::vector<double>& tops, double frozen) {
+  learn_all(block.data(), tops.data(), frozen, padded);
 }
 
 void FaultBaseline::find_excess(const int* index, int m, std::vector<double>& scratch) {
@@ -356,17 +267,15 @@ void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, dou
 }
 
 void FaultBaseline::clear_block() {
-  for (std::vector<double>* v : {&sum_z, &sum_xz, &sum_xx, &sum_zz, &sum_n})
-    std::fill(v->begin(), v->end(), 0.0);
+  for (SensorColumn* v : {&sum_z, &sum_xz, &sum_xx, &sum_zz, &sum_n}) v->fill(0);
 }
 
 void FaultBaseline::forget_blocks(bool trusted) {
   const double ratio = trusted ? 1 : kUntoldRatio;
   for (std::vector<double>* v : {&long_bias, &long_gain, &long_noise})
     std::fill(v->begin(), v->end(), ratio);
-  for (std::vector<double>* v : {&scale_bias, &scale_gain})
-    std::fill(v->begin(), v->end(), 1 / std::sqrt(ratio));
-  std::fill(scale_noise.begin(), scale_noise.end(), 1 / ratio);
+  for (SensorColumn* v : {&scale_bias, &scale_gain}) v->fill(1 / std::sqrt(ratio));
+  scale_noise.fill(1 / ratio);
   std::fill(blocks.begin(), blocks.end(), trusted ? 0.0 : kUntoldBlocks);
   clear_block();
 }

@@ -25,32 +25,94 @@
 
 namespace libchar::fusion {
 
+/// Values of one kind, a sensor each. Four sensors stand beside each other, kind after kind: one pass over
+/// a group finds all that it needs at fixed distances.
+class SensorColumn {
+ public:
+  SensorColumn(double* first, std::size_t stride, std::size_t padded)
+      : first_(first), stride_(stride), padded_(padded) {}
+  double& operator[](std::size_t i) { return first_[i / 4 * stride_ + i % 4]; }
+  double operator[](std::size_t i) const { return first_[i / 4 * stride_ + i % 4]; }
+  void fill(double value) {
+    for (std::size_t i = 0; i < padded_; ++i) (*this)[i] = value;
+  }
+  void take(const SensorColumn& other) {
+    for (std::size_t i = 0; i < padded_; ++i) (*this)[i] = other[i];
+  }
+
+ private:
+  double* first_;
+  std::size_t stride_, padded_;
+};
+
 struct FaultBaseline {
   explicit FaultBaseline(std::size_t sensors);
+  FaultBaseline(const FaultBaseline&) = delete;  // columns point into `block`
+  FaultBaseline& operator=(const FaultBaseline&) = delete;
+
+  enum Kind : std::size_t {
+    kHere,
+    kArmed,
+    kF,
+    kMeanF,
+    kLastF,
+    kHadF,
+    kX,
+    kDx,
+    kSquareX,
+    kSquareDx,
+    kBias,
+    kGain,
+    kDelay,
+    kBiasVar,
+    kGainVar,
+    kDelayVar,
+    kBiasFloor,
+    kGainFloor,
+    kDelayFloor,
+    kE,
+    kS,
+    kRoot,
+    kZ,
+    kCount,
+    kUnitX,
+    kStartMargin,
+    kScaleBias,
+    kScaleGain,
+    kScaleNoise,
+    kSumZ,
+    kSumXz,
+    kSumXx,
+    kSumZz,
+    kSumN,
+    kRecentSquare,
+    kKinds
+  };
+  static constexpr std::size_t kStride = 4 * kKinds;  ///< from a group of four sensors to the next
 
   std::size_t n, padded;
-  // By sensor, padded with zeros.
-  std::vector<double> here;                 ///< 1: takes part in this instant
-  std::vector<double> armed;                ///< 1: and may be judged
-  std::vector<double> learns;               ///< 1: and its mean may follow
-  std::vector<double> f;                    ///< what the others and it say its sample should be
-  std::vector<double> mean_f, last_f;       ///< slow mean, and that of the last instant
-  std::vector<double> had_f;                ///< 1: the last instant had one
-  std::vector<double> x, dx;                ///< of this instant
-  std::vector<double> square_x, square_dx;  ///< slow mean squares
-  std::vector<double> bias, gain, delay, bias_var, gain_var, delay_var;
-  std::vector<double> bias_floor, gain_floor, delay_floor;
-  std::vector<double> y;              ///< sample, then less its slow mean
-  std::vector<double> e, s, root, z;  ///< residual and its variance, 1 / sqrt(S), e / sqrt(S)
-  std::vector<double> count;          ///< of own samples
-  std::vector<double> unit_x;         ///< 1 / deviation of x
-  std::vector<double> start_margin;   ///< variances are taken for so many times larger
-  std::vector<double> long_bias, long_gain, long_noise;      ///< long-run variance ratios
-  std::vector<double> scale_bias, scale_gain, scale_noise;   ///< 1 / sqrt of those believed
-  std::vector<double> sum_z, sum_xz, sum_xx, sum_zz, sum_n;  ///< of the block
+  std::vector<double> block;  ///< all columns; the sensors beyond n are zero
+  // By sensor.
+  SensorColumn here;                 ///< 1: takes part in this instant
+  SensorColumn armed;                ///< 1: and may be judged
+  SensorColumn f;                    ///< what the others and it say its sample should be
+  SensorColumn mean_f, last_f;       ///< slow mean, and that of the last instant
+  SensorColumn had_f;                ///< 1: the last instant had one
+  SensorColumn x;                    ///< f less its slow mean
+  SensorColumn square_x, square_dx;  ///< slow mean squares of x and of the last step of f
+  SensorColumn bias, gain, delay, bias_var, gain_var, delay_var;
+  SensorColumn bias_floor, gain_floor, delay_floor;
+  SensorColumn e, s, z;       ///< residual and its variance, e / sqrt(S)
+  SensorColumn count;         ///< of own samples
+  SensorColumn unit_x;        ///< 1 / deviation of x
+  SensorColumn start_margin;  ///< variances are taken for so many times larger
+  SensorColumn scale_bias, scale_gain, scale_noise;   ///< 1 / sqrt of the long-run ratios believed
+  SensorColumn sum_z, sum_xz, sum_xx, sum_zz, sum_n;  ///< of the block
+  SensorColumn recent;                                ///< mean of z^2 over the last kRecent samples
+  std::vector<double> y;                              ///< sample, then less its slow mean
+  std::vector<double> long_bias, long_gain, long_noise;  ///< long-run variance ratios
   std::vector<double> blocks;
-  std::vector<double> recent;  ///< mean of z^2 over the last kRecent samples
-  double excess = 1;           ///< median of those, where it is clearly above one
+  double excess = 1;  ///< median of `recent`, where it is clearly above one
 
   /// Memory in samples; x and dx have shorter ones.
   static constexpr double kMemory = 20000, kMeanMemory = 1000;
@@ -61,8 +123,8 @@ struct FaultBaseline {
   void predict();
   /// e, s → z and the input of the bank.
   void standardise(CusumSample& sample);
-  /// b, g, d follow z.
-  void learn();
+  /// b, g, d follow z, of those whose evidence (`tops`, padded) is not above `frozen`.
+  void learn(const std::vector<double>& tops, double frozen);
   /// `excess` from the m sensors in use; scratch has room for them.
   void find_excess(const int* index, int m, std::vector<double>& scratch);
   /// What changes slowly: floors, units, by how much variances at the start are widened.
@@ -74,6 +136,9 @@ struct FaultBaseline {
   /// `trusted`: they are one until shown otherwise. Otherwise they are taken for large until shown otherwise:
   /// only gross faults are judged at first.
   void forget_blocks(bool trusted);
+
+ private:
+  SensorColumn column(Kind kind);
 };
 
 }  // namespace libchar::fusion

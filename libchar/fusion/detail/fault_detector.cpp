@@ -131,7 +131,7 @@ template <class Variances>
 void FaultDetector::step_with(Variances& variances, const double* y) {
   const bool enough = use(y);
   if (m_ <= inputs_ || !residuals(variances, y)) {
-    std::fill(base_.had_f.begin(), base_.had_f.end(), 0.0);
+    base_.had_f.fill(0);
     return;
   }
   if (!enough) {
@@ -150,9 +150,7 @@ void FaultDetector::step_with(Variances& variances, const double* y) {
   // What a failing sensor has done to the residuals of this instant is not to be learnt.
   if (since_change_ == before) {
     const double frozen = threshold_ / 2;
-    for (std::size_t i = 0; i < base_.n; ++i)
-      base_.learns[i] = bank_.top(i) <= frozen ? base_.here[i] : 0;
-    base_.learn();
+    base_.learn(bank_.all_tops(), frozen);
     if (top <= frozen) variances.update();
     if (count_noisy_ > 0) follow_noisy();
   }
@@ -178,12 +176,15 @@ bool FaultDetector::residuals(Variances& variances, const double* y) {
   const double x = variances.fuse(y, index_.data(), m_);
   if (!(std::abs(x) <= kLargestSample)) return false;
   if (!general_)
-    std::fill(base_.f.begin(), base_.f.end(), x);
+    base_.f.fill(x);
   else
     for (std::size_t i = 0; i < base_.n; ++i)
       base_.f[i] =
           base_.here[i] != 0 ? y[i] - variances.residuals()[i] : -variances.innovation(i, 0);
-  if (fresh_) base_.mean_f = base_.last_f = base_.f;
+  if (fresh_) {
+    base_.mean_f.take(base_.f);
+    base_.last_f.take(base_.f);
+  }
   fresh_ = false;
   if (count_out_ > 0)
     for (std::size_t i = 0; i < base_.n; ++i) out_step_[i] = base_.f[i] - base_.last_f[i];
@@ -330,7 +331,8 @@ void FaultDetector::meet_newcomers(Variances& variances, const double* y) {
     // Its variance is known from few samples, and the weights of all hang on it: nobody is judged before
     // all have been seen with it.
     variances.restart(kNewcomerSamples);
-    for (double& count : base_.count) count = std::min(count, kNewcomerSamples);
+    for (std::size_t k = 0; k < base_.n; ++k)
+      base_.count[k] = std::min(base_.count[k], kNewcomerSamples);
     base_.count[i] = kNewcomerSamples;
     base_.mean_f[i] = base_.f[i];
     known_[i] = 1;

@@ -37,12 +37,10 @@ class RepeatWatch {
     if (y == last_[i]) {
       s.run += 1;
       repeated(s, y, x, deviation);
+      s.suspect = s.evidence != 0 || s.end_evidence != 0 || s.ends;
       return s.state != State::moving;
     }
-    // A run that was taken for a fault says less: it may have been one.
-    const double most = std::max(2 * s.longest, kFirstRun);
-    s.longest = std::max(s.longest, s.state == State::stuck ? std::min(s.run, most) : s.run);
-    s.run = 0;
+    if (s.run > 0) end_run(s);
     const double by = std::abs(y - last_[i]);
     if (last_[i] != kNone) {
       s.step = by < s.step ? by : s.step;
@@ -54,9 +52,7 @@ class RepeatWatch {
     s.came_by = by;
     s.x_there = x;
     last_[i] = y;
-    if (y > s.high || y < s.low || s.evidence != 0 || s.end_evidence != 0 || s.ends ||
-        before != State::moving)
-      moved(s, y);
+    if (y > s.high || y < s.low || s.suspect) moved(s, y);
     return s.state != State::moving || before != State::moving;
   }
   State state(std::size_t i) const { return all_[i].state; }
@@ -85,14 +81,23 @@ class RepeatWatch {
     double far_held = 0.5, far_moves = 1;  // repetitions after a step of many steps
     double run = 0, longest = 0;           // repetitions in a row: now, and at most so far
     bool was_unexpected = false, counted = false;
-    bool ends = false;  // an end of its range is known
+    bool ends = false;     // an end of its range is known
+    bool suspect = false;  // that, or repetitions have proved something: its next move is looked at
     State state = State::moving;
   };
+
+  static void end_run(Sensor& s) {
+    // A run that was taken for a fault says less: it may have been one.
+    const double most = std::max(2 * s.longest, kFirstRun);
+    s.longest = std::max(s.longest, s.state == State::stuck ? std::min(s.run, most) : s.run);
+    s.run = 0;
+  }
 
   static void moved(Sensor& s, double y) {
     s.low = y < s.low ? y : s.low;
     s.high = y > s.high ? y : s.high;
     s.evidence = s.end_evidence = 0;
+    s.suspect = s.ends;
     s.was_unexpected = false;
     // Beyond its end: that was none.
     if (y > s.high_end) s.high_end = kNone;

@@ -301,7 +301,7 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
                  "",
                  "the budget of an algorithm (`budget_s`) must be above zero",
                  significant(options.budget_s, 6),
-                 "5 s is the default"});
+                 "10 s is the default"});
   for (PlannedAlgorithm& a : plan.algorithms)
     if (a.runs() && !a.learns_before() && !a.learns_run()) {
       a.blind = blind_share(
