@@ -125,6 +125,7 @@ class Fusing {
   void describe_scene();
   void prepare_instants();
   void make_runner();
+  double fault_free_s() const;
   void check_rate();
   LogInfo columns() const;
   void take(const Eigen::MatrixXd& samples, FusedSink& sink);
@@ -350,10 +351,16 @@ void Fusing::make_runner() {
   fusion::Array array = array_of(learnt_);
   const InstantsInfo& info = instants_->info();
   array.rate_hz = info.rate_hz;
-  array.fault_free_samples = std::clamp<std::int64_t>(
-      std::llround(options_.fault_free_s.value_or(learnt_.fault_free_s) * info.rate_hz),
-      0,
-      info.count);
+  array.fault_free_samples =
+      std::clamp<std::int64_t>(std::llround(fault_free_s() * info.rate_hz), 0, info.count);
+  if (entry_->description->needs.fault_free_start && array.fault_free_samples == 0)
+    refuse_fuse(ErrorKind::usage,
+                "E0934",
+                "`fault_free_s`",
+                fmt::format("{} learns its thresholds at the start of a log, where no sensor fails",
+                            algorithm_.label),
+                "",
+                "say how long that is in this log, or choose another algorithm");
   for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
     row_.push_back(learnt_.sensors[i].left_out ? -1 : std::ssize(sensor_of_));
     if (!learnt_.sensors[i].left_out) sensor_of_.push_back(i);
@@ -373,11 +380,17 @@ void Fusing::make_runner() {
     throw Error(problem);
   }
   result_.watches_faults = runner_->faults() != nullptr;
-  if (result_.watches_faults && !options_.fault_free_s && learnt_.fault_free_s > 0)
-    result_.warnings.add("taken_fault_free",
-                         "the start of the log is taken to hold no fault, as that of the log where "
-                         "this was learnt; `fault_free_s` says how long it is here",
-                         fmt::format("{} s", significant(learnt_.fault_free_s, 6)));
+}
+
+// What is known of the log that was learnt from is not known of another one.
+double Fusing::fault_free_s() const {
+  if (options_.fault_free_s) return *options_.fault_free_s;
+  const std::string& sha256 = instants_->info().logs[0].sha256;
+  const bool same = !sha256.empty() && !options_.reading.from_s &&
+                    std::any_of(learnt_.learnt_from.begin(),
+                                learnt_.learnt_from.end(),
+                                [&](const LearntFrom& from) { return from.sha256 == sha256; });
+  return same ? learnt_.fault_free_s : 0;
 }
 
 LogInfo Fusing::columns() const {

@@ -241,6 +241,20 @@ TEST_CASE("fuse: a new log, its deviations and flags") {
   CHECK(fused.deviations > 5900);
 }
 
+TEST_CASE("fuse: where another log is healthy nobody knows unless it is said") {
+  const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\nfault_free_s: 10\n");
+  bench.bench.put("new.csv", four_sensors({.seed = 12}));
+  const auto watched = [&](const FuseOptions& options, const std::string& log) {
+    Kept kept;
+    return bench.fuse_log(kept, options, log).warnings.find("faults_not_watched") == nullptr;
+  };
+  CHECK(watched(by("minque-published"), "log.csv"));
+  CHECK_FALSE(watched(by("minque-published"), "new.csv"));
+  FuseOptions known = by("minque-published");
+  known.fault_free_s = 10;
+  CHECK(watched(known, "new.csv"));
+}
+
 TEST_CASE("fuse: a sensor that the log does not have") {
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\n");
   bench.bench.put("less.csv",

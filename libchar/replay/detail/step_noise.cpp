@@ -124,14 +124,15 @@ void warn_of_noise(const std::vector<std::string>& names,
   const auto times = [](double log_ratio) { return significant(std::exp(log_ratio), 2); };
   if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying))
     return warnings.add("noise_changed_of_all",
-                        "from sample to sample all sensors are not as noisy as where this was "
-                        "learnt: weights still fit, standard deviations that were learnt do not",
+                        "all sensors scatter from sample to sample as they did not where this was "
+                        "learnt: weights of there fit, standard deviations do not",
                         fmt::format("{} times", times(0.5 * (low + high))));
   for (const auto& [i, change] : changes)
-    warnings.add("noise_changed",
-                 "from sample to sample sensors are not as noisy as where this was learnt: weights "
-                 "and standard deviations that were learnt do not fit",
-                 fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
+    warnings.add(
+        "noise_changed",
+        "sensors scatter from sample to sample as they did not where this was learnt: weights "
+        "and standard deviations of there may not fit",
+        fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
 }
 
 }  // namespace libchar
