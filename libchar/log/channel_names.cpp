@@ -46,7 +46,8 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path,
   head.channels.clear();
   head.units.clear();  // one a channel that is chosen: not known yet
   head.hash = false;
-  const std::vector<std::string> all = names_in_head(path, head);
+  const std::vector<std::string> all =
+      options.names.empty() ? names_in_head(path, head) : options.names;
   std::vector<std::vector<std::string>> out;
   std::set<std::string> taken(except.begin(), except.end());
   for (const std::string& word : words) out.push_back(chosen_by(word, path, head, all));

@@ -46,7 +46,18 @@ struct SceneReference {
   ReadOptions reading;                   ///< of that log
   double lag_s = 0;                      ///< the sensors lag the reference by this
   bool estimate_lag = false;
+  double offset = 0;             ///< it reads so much more than the sensors; in its own unit
+  bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
 };
+
+/// What all sensors and the reference go through alike, before anything is learnt or fused.
+struct ScenePreparation {
+  std::string detrend = "none";  ///< of kDetrends: what is subtracted from each, of the whole recording
+  double from_hz = 0;            ///< corner of a high-pass; 0: no filter
+  double to_hz = 0;              ///< corner of a low-pass behind it; 0: none
+  bool filters() const { return from_hz > 0; }
+};
+inline constexpr std::string_view kDetrends[] = {"none", "mean", "line"};
 
 /// What is taken out of the sensors before they are fused.
 struct SceneAlign {
@@ -92,6 +103,7 @@ struct Scene {
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::optional<SceneAlign> align;
+  ScenePreparation preparation;
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets
   std::vector<std::string> files;          ///< every file that was named and found, resolved
   Warnings warnings;

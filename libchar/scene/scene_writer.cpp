@@ -130,7 +130,9 @@ Entry sensors_entry(const Scene& scene) {
 }
 
 Entry reference_entry(const SceneReference& r, const std::string& scene) {
-  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag) return {"reference", r.channels};
+  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 &&
+      !r.estimate_offset)
+    return {"reference", r.channels};
   Entries below = {{"channels", r.channels}};
   append(below, entries_of(reference_fields(), r));
   if (r.recording) below.push_back(recording_entry(*r.recording, r.reading, scene));
@@ -138,6 +140,10 @@ Entry reference_entry(const SceneReference& r, const std::string& scene) {
     below.push_back(word_entry("lag_s", "estimate"));
   else if (r.lag_s != 0)
     below.push_back({"lag_s", r.lag_s});
+  if (r.estimate_offset)
+    below.push_back(word_entry("offset", "estimate"));
+  else if (r.offset != 0)
+    below.push_back({"offset", r.offset});
   return part_entry("reference", std::move(below));
 }
 
@@ -163,6 +169,16 @@ Entry align_entry(const SceneAlign& align) {
     below.push_back(word_entry("learn", align.learn));
   append(below, entries_of(align_fields(), align));
   return part_entry("align", std::move(below));
+}
+
+Entries preparation_entries(const ScenePreparation& p) {
+  Entries out;
+  if (p.detrend != "none") out.push_back(word_entry("detrend", p.detrend));
+  if (p.to_hz > 0)
+    out.push_back({"band_hz", std::vector<double>{p.from_hz, p.to_hz}});
+  else if (p.filters())
+    out.push_back({"high_pass_hz", p.from_hz});
+  return out;
 }
 
 Entry faults_entry(const std::vector<SensorFault>& faults, const Scene& scene) {
@@ -214,6 +230,7 @@ Entries scene_entries(const Scene& scene) {
   if (scene.evaluation) out.push_back(window_entry("evaluation", *scene.evaluation));
   if (scene.rest) out.push_back(window_entry("rest", *scene.rest));
   if (scene.warm_up_s) out.push_back({"warm_up_s", *scene.warm_up_s});
+  append(out, preparation_entries(scene.preparation));
   if (scene.align) out.push_back(align_entry(*scene.align));
   if (scene.fault_free_s) out.push_back({"fault_free_s", *scene.fault_free_s});
   if (!scene.faults.empty()) out.push_back(faults_entry(scene.faults, scene));

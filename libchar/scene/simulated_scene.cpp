@@ -64,6 +64,7 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.warm_up_s = original.warm_up_s;
   scene.tilt = original.tilt;
   scene.align = original.align;
+  scene.preparation = original.preparation;
   scene.algorithms = original.algorithms;
   scene.file = recording.scene_file;
   scene.name = std::filesystem::path(recording.file).stem().string();

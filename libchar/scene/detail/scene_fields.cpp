@@ -60,6 +60,21 @@ const Fields<Scene>& scene_fields() {
                        {.meaning = "delays, biases, gains and misalignments are learnt and taken "
                                    "out before fusion (below)",
                         .otherwise = "the sensors are fused as recorded"}),
+      elsewhere<Scene>("detrend",
+                       "none, mean, line",
+                       {.meaning = "what is subtracted from each sensor and the reference: its "
+                                   "mean, or its line of least "
+                                   "squares, over the whole recording",
+                        .otherwise = "none"}),
+      elsewhere<Scene>("high_pass_hz",
+                       "Hz",
+                       {.meaning = "all sensors and the reference go through one high-pass (below)",
+                        .otherwise = "none"}),
+      elsewhere<Scene>(
+          "band_hz",
+          "[low, high]",
+          {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
+           .otherwise = "none"}),
       elsewhere<Scene>("fault_free_s",
                        "s",
                        {.meaning = "so long no sensor fails, from the start of the evaluation",
@@ -142,6 +157,12 @@ const Fields<SceneReference>& reference_fields() {
           "lag_s",
           "s, or estimate",
           {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
+      elsewhere<SceneReference>("delay", "s, or estimate", {.meaning = "another word for `lag_s`"}),
+      elsewhere<SceneReference>("offset",
+                                "number, or estimate",
+                                {.meaning = "the reference reads so much more than the sensors, in "
+                                            "its own unit; it is subtracted from it (below)",
+                                 .otherwise = "0"}),
   };
   return rows;
 }

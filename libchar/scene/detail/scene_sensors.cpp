@@ -62,8 +62,8 @@ class SensorsReader {
     if (list.size() > kMostSensors) refuse_number(list.size());
     match_patterns(list);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      matched_ =
-          i < channels_.size() && is_pattern(channel_word(list[i])) ? &channels_[i] : nullptr;
+      const auto found = channels_.find(channel_word(list[i]));
+      matched_ = found == channels_.end() ? nullptr : &found->second;
       sensor(list[i], fmt::format("sensors[{}]", i));
     }
     check_names();
@@ -90,22 +90,27 @@ class SensorsReader {
 
   // Of a recording, and where nobody wrote one, the recording is not looked at.
   void match_patterns(const std::vector<Document>& list) {
-    std::vector<std::string> words;
-    for (const Document& entry : list) words.push_back(channel_word(entry));
-    if (scene_.simulate || std::none_of(words.begin(), words.end(), is_pattern)) return;
-    if (std::count(words.begin(), words.end(), "") > 0) return;  // refused in its turn
+    if (scene_.simulate) return;
+    std::vector<std::string> patterns, named = reference_words(top_);
+    for (const Document& entry : list) {
+      const std::string word = channel_word(entry);
+      (is_pattern(word) ? patterns : named).push_back(word);
+    }
+    if (patterns.empty()) return;
     try {
-      channels_ = channel_names(scene_.recording, scene_.reading, words, reference_words(top_));
+      const auto found = channel_names(scene_.recording, scene_.reading, patterns, named);
+      for (std::size_t k = 0; k < patterns.size(); ++k) channels_.emplace(patterns[k], found[k]);
     } catch (const Error& error) {
-      const auto word = std::find(words.begin(), words.end(), error.problem().got);
-      if (error.problem().kind != ErrorKind::usage || word == words.end()) throw;
-      const auto i = static_cast<std::size_t>(word - words.begin());
-      refuse_scene_value("E0738",
-                         top_,
-                         list[i],
-                         fmt::format("sensors[{}]", i),
-                         fmt::format("{} in {}", error.problem().what, scene_.recording),
-                         error.problem().hint);
+      if (error.problem().kind != ErrorKind::usage) throw;
+      for (std::size_t i = 0; i < list.size(); ++i)
+        if (channel_word(list[i]) == error.problem().got)
+          refuse_scene_value("E0738",
+                             top_,
+                             list[i],
+                             fmt::format("sensors[{}]", i),
+                             fmt::format("{} in {}", error.problem().what, scene_.recording),
+                             error.problem().hint);
+      throw;
     }
   }
 
@@ -213,8 +218,8 @@ class SensorsReader {
   Scene& scene_;
   SensorIndex index_;
   std::map<std::string, SensorModel> models_;
-  std::vector<std::vector<std::string>> channels_;     // of each entry; empty: there is no pattern
-  const std::vector<std::string>* matched_ = nullptr;  // of an entry with a pattern
+  std::map<std::string, std::vector<std::string>> channels_;  // that patterns stand for
+  const std::vector<std::string>* matched_ = nullptr;         // of an entry with a pattern
 };
 
 }  // namespace

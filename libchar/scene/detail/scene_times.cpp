@@ -70,6 +70,32 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   return align;
 }
 
+// [low, high], or a high-pass alone.
+ScenePreparation preparation_of(const MapReader& top, const Scene& scene) {
+  ScenePreparation out;
+  if (top.has("detrend"))
+    out.detrend = top.word("detrend", {std::begin(kDetrends), std::end(kDetrends)});
+  if (top.has("band_hz") && top.has("high_pass_hz"))
+    refuse_scene(
+        "E0735", top, "high_pass_hz", "band_hz has a high-pass already", "give one of them");
+  if (top.has("high_pass_hz")) out.from_hz = top.number("high_pass_hz", kPositive);
+  if (top.has("band_hz")) {
+    const auto& corners = top.list("band_hz");
+    if (corners.size() != 2 || corners[0].kind != Document::Kind::number ||
+        corners[1].kind != Document::Kind::number || !(corners[0].number > 0) ||
+        !(corners[0].number < corners[1].number))
+      refuse_scene("E0750", top, "band_hz", "expected [low, high] in Hz, 0 < low < high");
+    out.from_hz = corners[0].number;
+    out.to_hz = corners[1].number;
+  }
+  const char* key = out.to_hz > 0 ? "band_hz" : out.filters() ? "high_pass_hz" : "detrend";
+  if (scene.tilt && (out.filters() || out.detrend != "none"))
+    refuse_scene("E0750", top, key, "the filters of a tilt need gravity, which this takes out");
+  if (out.filters() && scene.reference && scene.reference->estimate_offset)
+    refuse_scene("E0750", top, key, "it leaves no offset of the reference to estimate");
+  return out;
+}
+
 // Either every sensor names as many other axes, or none does.
 void check_cross(const MapReader& top, const SensorIndex& index, const Scene& scene) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
@@ -141,6 +167,7 @@ void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& sce
   scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
   scene.faults = faults_of(top, scene, index);
   check_cross(top, index, scene);
+  scene.preparation = preparation_of(top, scene);
   if (top.has("align")) scene.align = align_of(top, scene);
   if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
 }
