@@ -52,9 +52,10 @@ struct SceneReference {
 
 /// What all sensors and the reference go through alike, before anything is learnt or fused.
 struct ScenePreparation {
-  std::string detrend = "none";  ///< of kDetrends: what is subtracted from each, of the whole recording
-  double from_hz = 0;            ///< corner of a high-pass; 0: no filter
-  double to_hz = 0;              ///< corner of a low-pass behind it; 0: none
+  std::string detrend =
+      "none";          ///< of kDetrends: what is subtracted from each, of the whole recording
+  double from_hz = 0;  ///< corner of a high-pass; 0: no filter
+  double to_hz = 0;    ///< corner of a low-pass behind it; 0: none
   bool filters() const { return from_hz > 0; }
 };
 inline constexpr std::string_view kDetrends[] = {"none", "mean", "line"};

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
+#include "libchar/scene/preparation_check.hpp"
 
 namespace libchar {
 namespace {
@@ -71,29 +73,21 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
 }
 
 // [low, high], or a high-pass alone.
-ScenePreparation preparation_of(const MapReader& top, const Scene& scene) {
-  ScenePreparation out;
+void read_preparation(const MapReader& top, Scene& scene) {
+  ScenePreparation& out = scene.preparation;
   if (top.has("detrend"))
     out.detrend = top.word("detrend", {std::begin(kDetrends), std::end(kDetrends)});
   if (top.has("band_hz") && top.has("high_pass_hz"))
     refuse_scene(
         "E0735", top, "high_pass_hz", "band_hz has a high-pass already", "give one of them");
   if (top.has("high_pass_hz")) out.from_hz = top.number("high_pass_hz", kPositive);
-  if (top.has("band_hz")) {
-    const auto& corners = top.list("band_hz");
-    if (corners.size() != 2 || corners[0].kind != Document::Kind::number ||
-        corners[1].kind != Document::Kind::number || !(corners[0].number > 0) ||
-        !(corners[0].number < corners[1].number))
-      refuse_scene("E0750", top, "band_hz", "expected [low, high] in Hz, 0 < low < high");
-    out.from_hz = corners[0].number;
-    out.to_hz = corners[1].number;
-  }
-  const char* key = out.to_hz > 0 ? "band_hz" : out.filters() ? "high_pass_hz" : "detrend";
-  if (scene.tilt && (out.filters() || out.detrend != "none"))
-    refuse_scene("E0750", top, key, "the filters of a tilt need gravity, which this takes out");
-  if (out.filters() && scene.reference && scene.reference->estimate_offset)
-    refuse_scene("E0750", top, key, "it leaves no offset of the reference to estimate");
-  return out;
+  if (top.has("band_hz")) std::tie(out.from_hz, out.to_hz) = top.interval("band_hz");
+  const char* key = out.to_hz != 0          ? "band_hz"
+                    : out.filters()         ? "high_pass_hz"
+                    : out.detrend != "none" ? "detrend"
+                                            : "reference";
+  if (const std::string why = why_not_prepared(scene); !why.empty())
+    refuse_scene("E0750", top, key, why);
 }
 
 // Either every sensor names as many other axes, or none does.
@@ -167,7 +161,7 @@ void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& sce
   scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
   scene.faults = faults_of(top, scene, index);
   check_cross(top, index, scene);
-  scene.preparation = preparation_of(top, scene);
+  read_preparation(top, scene);
   if (top.has("align")) scene.align = align_of(top, scene);
   if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
 }
