@@ -22,6 +22,40 @@ Row<T> elsewhere(std::string_view key, std::string_view kind, const FieldText& t
   return custom<T, read_elsewhere<T>, written_elsewhere<T>>(key, kind, text);
 }
 
+Row<Scene> detrend_row() {
+  return elsewhere<Scene>("detrend",
+                          "none, mean, line",
+                          {.meaning = "what is subtracted from each sensor and the reference: its "
+                                      "mean, or its line of least "
+                                      "squares, over the whole recording",
+                           .otherwise = "none"});
+}
+
+Row<Scene> high_pass_hz_row() {
+  return elsewhere<Scene>(
+      "high_pass_hz",
+      "Hz",
+      {.meaning = "all sensors and the reference go through one high-pass (below)",
+       .otherwise = "none"});
+}
+
+Row<Scene> band_hz_row() {
+  return elsewhere<Scene>(
+      "band_hz",
+      "[low, high]",
+      {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
+       .otherwise = "none"});
+}
+
+Row<Scene> align_row() {
+  return elsewhere<Scene>(
+      "align",
+      "map",
+      {.meaning = "delays, biases, gains and misalignments are learnt and taken "
+                  "out before fusion (below)",
+       .otherwise = "the sensors are fused as recorded"});
+}
+
 }  // namespace
 
 const Fields<Scene>& scene_fields() {
@@ -55,26 +89,10 @@ const Fields<Scene>& scene_fields() {
                        "[from, to]",
                        {.meaning = "the true inputs are zero there: each sensor's mean is "
                                    "subtracted, and its noise measured"}),
-      elsewhere<Scene>("align",
-                       "map",
-                       {.meaning = "delays, biases, gains and misalignments are learnt and taken "
-                                   "out before fusion (below)",
-                        .otherwise = "the sensors are fused as recorded"}),
-      elsewhere<Scene>("detrend",
-                       "none, mean, line",
-                       {.meaning = "what is subtracted from each sensor and the reference: its "
-                                   "mean, or its line of least "
-                                   "squares, over the whole recording",
-                        .otherwise = "none"}),
-      elsewhere<Scene>("high_pass_hz",
-                       "Hz",
-                       {.meaning = "all sensors and the reference go through one high-pass (below)",
-                        .otherwise = "none"}),
-      elsewhere<Scene>(
-          "band_hz",
-          "[low, high]",
-          {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
-           .otherwise = "none"}),
+      align_row(),
+      detrend_row(),
+      high_pass_hz_row(),
+      band_hz_row(),
       elsewhere<Scene>("fault_free_s",
                        "s",
                        {.meaning = "so long no sensor fails, from the start of the evaluation",
@@ -157,7 +175,7 @@ const Fields<SceneReference>& reference_fields() {
           "lag_s",
           "s, or estimate",
           {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
-      elsewhere<SceneReference>("delay", "s, or estimate", {.meaning = "another word for `lag_s`"}),
+      elsewhere<SceneReference>("delay", "s, or estimate", {.meaning = "another word for lag_s"}),
       elsewhere<SceneReference>("offset",
                                 "number, or estimate",
                                 {.meaning = "the reference reads so much more than the sensors, in "
