@@ -38,7 +38,9 @@ TEST_CASE("band filter: Butterworth coefficients of scipy.signal.butter(2, …)"
   CHECK(low.a2 == Approx(0.19581571265583306).epsilon(1e-14));
 }
 
-TEST_CASE("band filter: a band as scipy.signal.sosfilt runs it, begun in the first sample's steady state") {
+TEST_CASE(
+    "band filter: a band as scipy.signal.sosfilt runs it, begun in the first sample's steady "
+    "state") {
   const BandFilter filter = band_filter(0.5, 12, 100);
   std::vector<double> x;
   for (int k = 0; k < 60; ++k) x.push_back(5 + std::sin(0.37 * k) + std::fmod(0.01 * k * k, 3));
@@ -53,7 +55,8 @@ TEST_CASE("band filter: a band as scipy.signal.sosfilt runs it, begun in the fir
   CHECK(filter.settling == 330);
 }
 
-TEST_CASE("band filter: a step is below a thousandth once it has settled, an offset leaves nothing") {
+TEST_CASE(
+    "band filter: a step is below a thousandth once it has settled, an offset leaves nothing") {
   for (const double corner_hz : {0.01, 0.5, 20.0}) {
     const BandFilter filter = band_filter(corner_hz, 0, 100);
     std::vector<double> x(static_cast<std::size_t>(3 * filter.settling), 1e6);
@@ -68,7 +71,8 @@ TEST_CASE("band filter: a step is below a thousandth once it has settled, an off
   }
 }
 
-TEST_CASE("band filter: short gaps are bridged, long ones begin anew and are missing until settled") {
+TEST_CASE(
+    "band filter: short gaps are bridged, long ones begin anew and are missing until settled") {
   const BandFilter filter = band_filter(0.1, 0, 100);
   REQUIRE(filter.settling == 1650);
   REQUIRE(filter.bridged == 16);
@@ -116,4 +120,177 @@ TEST_CASE("trends: means and lines of least squares, missing samples left out") 
   CHECK(lines[1].at(17) == Approx(4).epsilon(1e-14));
   CHECK(lines[2].at(5) == 0);
   CHECK(meter.lines(false)[0].at(0) == Approx(1e9 + 0.25 * 99.5).epsilon(1e-15));
+}
+
+namespace {
+
+// Two sensors of a wave at 0.5 Hz on a slow drift, and the reference, which reads half a unit more; 40 s at 50 Hz.
+std::string drifting_log() {
+  std::string text = "t[s],a[m],b[m],ref[m]\n";
+  std::uint32_t state = 7;
+  const auto noise = [&] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(state >> 8U) / 16777216.0 - 0.5;
+  };
+  for (int k = 0; k < 2000; ++k) {
+    const double t = 0.02 * k, x = std::sin(std::numbers::pi * t);
+    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f}\n",
+                        t,
+                        x + 3 + 0.1 * t + 0.1 * noise(),
+                        x - 2 + 0.1 * noise(),
+                        x + 0.5);
+  }
+  return text;
+}
+
+const std::string kDriftScene =
+    "format: scene\nversion: 1\nrecording: drift.csv\nsensors: [a, b]\n";
+
+Eigen::MatrixXd rows_of(const Instants& instants,
+                        std::int64_t from,
+                        std::int64_t to,
+                        std::size_t size) {
+  Eigen::MatrixXd out(3, to - from);
+  instants.pass(
+      from,
+      to,
+      size,
+      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        out.block(0, first - from, 2, samples.cols()) = samples;
+        out.block(2, first - from, 1, truth.cols()) = truth;
+      },
+      no_progress());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "preparation: one filter for sensors and reference, the same from wherever a pass begins") {
+  const test::SceneBench bench;
+  bench.put("drift.csv", drifting_log());
+  const Scene scene = bench.read(kDriftScene + "reference: ref\nhigh_pass_hz: 0.1\n");
+  Instants instants(scene, no_progress());
+  CHECK(instants.settled() == 825);
+  const Eigen::MatrixXd whole = rows_of(instants, 0, 2000, 4096);
+  for (const std::size_t size : {1, 100, 333})
+    CHECK(rows_of(instants, 700, 1500, size) == whole.middleCols(700, 800));
+  const auto settled = whole.rightCols(1175);
+  // What is left is the wave, and no offset.
+  CHECK(std::abs(settled.row(0).mean()) < 0.3);
+  CHECK((settled.row(1) - settled.row(2)).array().abs().maxCoeff() < 0.07);
+  CHECK(settled.row(2).array().abs().maxCoeff() > 0.9);
+  // Offsets are taken off behind it.
+  instants.set_offsets({1, 0});
+  CHECK((rows_of(instants, 900, 1000, 64).row(0) - whole.row(0).segment(900, 100))
+            .array()
+            .abs()
+            .maxCoeff() == Approx(1).epsilon(1e-12));
+}
+
+TEST_CASE("preparation: each row without its own mean or line") {
+  const test::SceneBench bench;
+  bench.put("drift.csv", drifting_log());
+  const Scene means_scene = bench.read(kDriftScene + "reference: ref\ndetrend: mean\n");
+  const Instants means(means_scene, no_progress());
+  const Eigen::MatrixXd of_means = rows_of(means, 0, 2000, 512);
+  CHECK(std::abs(of_means.row(0).mean()) < 1e-9);
+  CHECK((of_means.row(0) - of_means.row(2)).array().abs().maxCoeff() > 1.9);
+  const Scene lines_scene = bench.read(kDriftScene + "reference: ref\ndetrend: line\n");
+  const Instants lines(lines_scene, no_progress());
+  const Eigen::MatrixXd of_lines = rows_of(lines, 0, 2000, 512);
+  for (Eigen::Index row = 0; row < 3; ++row) CHECK(std::abs(of_lines.row(row).mean()) < 1e-9);
+  // The drift of 4 in 40 s is gone.
+  CHECK((of_lines.row(0) - of_lines.row(2)).array().abs().maxCoeff() < 0.07);
+}
+
+TEST_CASE("preparation: what cannot be is refused") {
+  const test::SceneBench bench;
+  bench.put("drift.csv", drifting_log());
+  const auto refused = [&](const std::string& more) { return bench.refusal(kDriftScene + more); };
+  CHECK_THAT(refused("band_hz: [2, 1]\n"), Contains("band_hz"));
+  CHECK_THAT(refused("band_hz: [0, 1]\n"), Contains("E0750"));
+  CHECK_THAT(refused("band_hz: [-3, -1]\n"), Contains("E0750"));
+  CHECK_THAT(refused("band_hz: [1, 2]\nhigh_pass_hz: 1\n"), Contains("E0735"));
+  CHECK_THAT(refused("detrend: slope\n"), Contains("line"));
+  CHECK_THAT(refused("high_pass_hz: 0\n"), Contains("high_pass_hz"));
+  CHECK_THAT(refused("reference: {channels: ref, offset: estimate}\nhigh_pass_hz: 1\n"),
+             Contains("E0750") && Contains("offset"));
+  CHECK_THAT(refused("reference: {channels: ref, offset: much}\n"), Contains("or estimate"));
+  CHECK_THAT(refused("reference: {channels: ref, lag_s: 1, delay: 1}\n"), Contains("E0735"));
+  const Scene fast = bench.read(kDriftScene + "band_hz: [1, 25]\n");
+  try {
+    const Instants none(fast, no_progress());
+    FAIL("25 Hz of 50 Hz");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Contains("E0912") && Contains("25 Hz"));
+  }
+}
+
+TEST_CASE("replay: the reference's offset is found, subtracted, and said") {
+  const test::SceneBench bench;
+  std::string text = "t[s],a[m],b[m],ref[m]\n";
+  for (int k = 0; k < 4000; ++k) {
+    const double x = std::sin(0.01 * k), e = 0.1 * std::sin(12.9898 * k * k + 78.233);
+    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f}\n", 0.01 * k, x + e, x - e / 3, x + 0.5);
+  }
+  bench.put("drift.csv", text);
+  ReplayOptions options;
+  options.algorithms = {{"mean", {}, 0, 0}};
+  const auto run = [&](const std::string& more) {
+    return replay(bench.read(kDriftScene + more), options);
+  };
+  const ReplayResult plain = run("reference: ref\nlearning: [0, 20]\n");
+  const ReplayResult found =
+      run("reference: {channels: ref, offset: estimate}\nlearning: [0, 20]\n");
+  REQUIRE(found.reference_offset);
+  CHECK(found.reference_offset->value == Approx(0.5).margin(0.01));
+  CHECK(found.reference_offset->ci95.low < 0.5);
+  CHECK(found.reference_offset->ci95.high > 0.5);
+  CHECK(found.reference_offset->in_learning);
+  CHECK(found.reference_offset->window.to_s == 20);
+  CHECK(plain.algorithms[0].rmse > 0.49);
+  CHECK(found.algorithms[0].rmse < 0.06);
+  // A number says the same; without a learning window it is found on what is scored.
+  const ReplayResult given = run("reference: {channels: ref, offset: 0.5}\nlearning: [0, 20]\n");
+  CHECK(given.algorithms[0].rmse == Approx(found.algorithms[0].rmse).epsilon(0.05));
+  const ReplayResult scored = run("reference: {channels: ref, offset: estimate, delay: 0}\n");
+  CHECK_FALSE(scored.reference_offset->in_learning);
+  CHECK(std::abs(scored.algorithms[0].inputs[0].error.bias) < 1e-6);
+}
+
+TEST_CASE("replay: behind a filter levels are those behind it, and the start is not scored") {
+  const test::SceneBench bench;
+  bench.put("drift.csv", drifting_log());
+  const std::string models =
+      "format: scene\nversion: 1\nrecording: drift.csv\nsensors:\n"
+      "  - {name: a, model: {unit: m, white_noise: {value: 0.1}, density: two-sided}, noise: 0.2}\n"
+      "  - {name: b, model: {unit: m, white_noise: {value: 0.1}, density: two-sided}, noise: 0.2}\n"
+      "reference: ref\n";
+  ReplayOptions options;
+  options.algorithms = {{"mean", {}, 0, 0}, {"virtual-sensor", {}, 0, 0}};
+  const ReplayResult whole = replay(bench.read(models), options);
+  CHECK(*whole.sensors[0].noise_variance == Approx(0.04).epsilon(1e-12));
+  CHECK(whole.algorithms[1].ran);
+  const ReplayResult band = replay(bench.read(models + "band_hz: [0.2, 5]\n"), options);
+  CHECK(*band.sensors[0].noise_variance ==
+        Approx(0.04 * band_filter(0.2, 5, 50).noise_gain).epsilon(1e-9));
+  CHECK_FALSE(band.algorithms[1].ran);
+  CHECK(band.algorithms[0].inputs[0].error.samples == 2000 - 413);
+  CHECK(band.algorithms[0].rmse < 0.1 * whole.algorithms[0].rmse);
+}
+
+TEST_CASE("instants: parts of a slow reference's intervals at the ends are said") {
+  const test::SceneBench bench;
+  std::string log = "t[s],a[m],b[m]\n", slow = "t[s],ref[m]\n";
+  for (int k = 0; k < 2000; ++k) log += fmt::format("{:.2f},1,2\n", 1000.5 + 0.02 * k);
+  for (int k = 0; k < 60; ++k) slow += fmt::format("{},1\n", 990 + k);
+  bench.put("drift.csv", log);
+  bench.put("slow.csv", slow);
+  const Scene scene = bench.read(kDriftScene + "reference: {channels: ref, recording: slow.csv}\n");
+  const Instants instants(scene, no_progress());
+  CHECK(instants.info().count == 39);
+  CHECK_THAT(
+      instants.info().reference_use,
+      Contains("the first 0.5 s and the last 0.5 s of the recording") && Contains("not used"));
 }
