@@ -95,11 +95,10 @@ Entries ordered(Entries entries, const std::vector<std::string>& keys) {
   return entries;
 }
 
-Entry simulation_entry(const Scene& scene) {
-  const ArraySimulation& s = *scene.simulate;
+Entry simulation_entry(const ArraySimulation& s, const std::string& file) {
   const auto signal = [&](std::string key, const SignalSpec& spec, const std::string& name) {
     return part_entry(
-        std::move(key), signal_entries(spec, name, s.truth_names, scene.file), Entry::Form::flow);
+        std::move(key), signal_entries(spec, name, s.truth_names, file), Entry::Form::flow);
   };
   Entries below = entries_of(simulation_fields(), s);
   below.push_back({"samples", s.samples});
@@ -196,6 +195,8 @@ Entry simulated_entry(const Scene& scene) {
   Entries below = entries_of(simulated_fields(), *scene.simulated);
   if (!scene.simulated->faults.empty())
     below.push_back(faults_entry(scene.simulated->faults, scene));
+  if (scene.simulated->simulation)
+    below.push_back(simulation_entry(*scene.simulated->simulation, scene.file));
   Entry entry = part_entry("simulated", std::move(below));
   entry.comment = "what the recording is known to hold; not injected again";
   return entry;
@@ -221,7 +222,7 @@ Entries scene_entries(const Scene& scene) {
   Entries out = head(scene);
   out.push_back(
       scene.simulate
-          ? simulation_entry(scene)
+          ? simulation_entry(*scene.simulate, scene.file)
           : recording_entry(scene.recording, scene.reading, scene.file, scene.resample_hz));
   out.push_back(sensors_entry(scene));
   if (scene.reference) out.push_back(reference_entry(*scene.reference, scene.file));

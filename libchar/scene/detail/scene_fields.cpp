@@ -104,10 +104,12 @@ const Fields<Scene>& scene_fields() {
                       "scored",
            .otherwise = "0"}),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
-      elsewhere<Scene>("simulated",
-                       "map",
-                       {.meaning = "written by `simulate`: `{seed, oversampling, faults}` that the "
-                                   "recording holds already; nothing of it is injected again"}),
+      elsewhere<Scene>(
+          "simulated",
+          "map",
+          {.meaning = "written by `simulate`: `{seed, oversampling, faults, simulate…}` that the "
+                      "recording holds already; nothing of it is injected again, and "
+                      "`simulate` makes the log again from it"}),
       elsewhere<Scene>("algorithms",
                        "list",
                        {.meaning = "names, or maps `{name: NAME, OPTION: NUMBER…}`",
@@ -350,6 +352,15 @@ const Fields<SimulatedFrom>& simulated_fields() {
       field<&SimulatedFrom::oversampling>("oversampling",
                                           {.meaning = "likewise", .otherwise = "1"}),
       elsewhere<SimulatedFrom>("faults", "list", {.meaning = "that its samples hold"}),
+      elsewhere<SimulatedFrom>("simulate", "map", {.meaning = "the rest of the simulation"}),
+      field<&SimulatedFrom::rows>("rows",
+                                  {.meaning = "weights of the true inputs, sensor after sensor",
+                                   .otherwise = "the sensors' h"}),
+      field<&SimulatedFrom::truth_columns>(
+          "truth_columns", {.meaning = "the log has the true inputs", .otherwise = "true"}),
+      field<&SimulatedFrom::deterministic>(
+          "deterministic", {.meaning = "steps, warm-ups and ramps", .otherwise = "false"}),
+      field<&SimulatedFrom::command>("command", {.meaning = "for people"}),
   };
   return rows;
 }
