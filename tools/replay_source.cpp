@@ -10,6 +10,7 @@
 #include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/fault_text.hpp"
+#include "libchar/scene/preparation_check.hpp"
 #include "libchar/scene/recorded_scene.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "reading_options.hpp"
@@ -81,6 +82,54 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
     refuse_source("--align", "there is no such window", where, "--" + where + " FROM..TO says one");
   align.learn = !where.empty() ? where : scene.learning ? "learning" : "run";
   return align;
+}
+
+// What is said replaces the scene's own; a band is a filter of its own.
+void set_preparation(const ReplaySource& source, Scene& scene) {
+  ScenePreparation& p = scene.preparation;
+  if (!source.detrend.empty()) p.detrend = source.detrend;
+  if (source.high_pass_hz) {
+    p.from_hz = *source.high_pass_hz;
+    p.to_hz = 0;
+  }
+  if (!source.band.empty()) {
+    const std::size_t dots = source.band.find("..");
+    if (dots == std::string::npos)
+      refuse_source("--band", "expected LOW..HIGH in Hz", source.band, "0.1..20");
+    p.from_hz = parse_rate_hz(source.band.substr(0, dots));
+    p.to_hz = parse_rate_hz(source.band.substr(dots + 2));
+  }
+  const char* option = !source.band.empty()      ? "--band"
+                       : source.high_pass_hz     ? "--high-pass"
+                       : !source.detrend.empty() ? "--detrend"
+                                                 : "--reference-offset";
+  if (const std::string why = why_not_prepared(scene); !why.empty()) refuse_source(option, why);
+}
+
+// A number, or estimate.
+void set_of_reference(const std::string& words,
+                      const std::string& option,
+                      const Scene& scene,
+                      double& value,
+                      bool& estimate) {
+  if (words.empty()) return;
+  if (scene.simulate) refuse_source(option, "a simulation knows its truth", words);
+  const auto number = parse_double(words);
+  estimate = words == "estimate";
+  if (!number && !estimate) refuse_source(option, "expected a number, or estimate", words);
+  value = number.value_or(0);
+}
+
+void set_reference(const ReplaySource& source, Scene& scene) {
+  if (scene.reference) {
+    SceneReference& r = *scene.reference;
+    set_of_reference(source.reference_lag, "--reference-lag", scene, r.lag_s, r.estimate_lag);
+    set_of_reference(
+        source.reference_offset, "--reference-offset", scene, r.offset, r.estimate_offset);
+  } else if (!source.reference_lag.empty() || !source.reference_offset.empty()) {
+    refuse_source(source.reference_lag.empty() ? "--reference-offset" : "--reference-lag",
+                  "there is no reference");
+  }
 }
 
 // A scene says itself what its data are.
@@ -183,6 +232,36 @@ void add_window(VerbOptions& options,
   options.add_text(name, value, help).value_name("FROM..TO");
 }
 
+void add_preparation_options(VerbOptions& options, ReplaySource& source) {
+  options.add_choice("--detrend",
+                     source.detrend,
+                     {"none", "mean", "line"},
+                     "subtract this from each sensor and the reference, of the whole recording "
+                     "(default: the scene's)");
+  const Option high_pass =
+      options.add_rate("--high-pass",
+                       source.high_pass_hz,
+                       "one high-pass for all sensors and the reference (default: the scene's)");
+  options
+      .add_text("--band",
+                source.band,
+                "instead: from one frequency to another, in Hz (default: the scene's)")
+      .value_name("LOW..HIGH")
+      .excludes(high_pass);
+  options
+      .add_text("--reference-lag",
+                source.reference_lag,
+                "the sensors lag the reference by so many seconds, or estimate (default: the "
+                "scene's)")
+      .value_name("S|estimate");
+  options
+      .add_text("--reference-offset",
+                source.reference_offset,
+                "the reference reads so much more than the sensors, or estimate (default: the "
+                "scene's)")
+      .value_name("NUMBER|estimate");
+}
+
 }  // namespace
 
 void add_replay_source(VerbOptions& options, Session& session, ReplaySource& source) {
@@ -211,6 +290,7 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
           "take these out of the sensors first: all, or some of delay,bias,gain,misalignment; "
           "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
+  add_preparation_options(options, source);
   options.add_duration("--warm-up",
                        source.warm_up_s,
                        "so long at its start the evaluation is run and not scored (default: the "
@@ -235,6 +315,8 @@ Scene read_replay_source(const ReplaySource& source, const std::string& scene_fi
     if (scene.tilt) refuse_source("--align", "the sensors of a tilt measure different quantities");
     scene.align = align_from_words(source.align, scene);
   }
+  set_reference(source, scene);
+  set_preparation(source, scene);
   set_faults(source, scene);
   return scene;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // What a replay takes its samples from: a scene file, or a recording and what the command line says of it.
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,8 @@ struct ReplaySource {
   std::vector<std::string> sensors, reference, models;
   std::string reference_log, models_folder;
   // of either, over what the scene says
-  std::string learning, evaluation, rest, align;
+  std::string learning, evaluation, rest, align, detrend, band, reference_lag, reference_offset;
+  std::optional<double> high_pass_hz;
   std::optional<double> warm_up_s;
   std::vector<std::string> faults;
   bool no_faults = false;

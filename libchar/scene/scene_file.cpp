@@ -25,7 +25,9 @@ namespace {
 class SceneReader {
  public:
   SceneReader(const Document& document, const std::string& path, const SceneReadOptions& options)
-      : top_(document, path, "", keys_of(scene_fields())), folder_{path, options.allow_outside} {}
+      : top_(document, path, "", keys_of(scene_fields())),
+        folder_{path, options.allow_outside},
+        again_(options.again) {}
 
   Scene read() {
     scene_.file = folder_.scene;
@@ -35,7 +37,7 @@ class SceneReader {
     samples();
     const SensorIndex index = read_scene_sensors(top_, folder_, scene_);
     read_scene_reference(top_, folder_, index, scene_);
-    read_scene_times(top_, index, scene_);
+    read_scene_times(top_, folder_for_again(), index, scene_);
     if (top_.has("algorithms")) algorithms();
     finish_simulation();
     return std::move(scene_);
@@ -50,8 +52,16 @@ class SceneReader {
                    "a scene has either a recording or a simulation",
                    "recording: FILE, or simulate: {rate_hz, duration_s, truth}");
     if (top_.has("recording"))
-      scene_.recording = scene_recording_of(top_, "recording", folder_, scene_.reading, scene_);
+      scene_.recording =
+          scene_recording_of(top_, "recording", folder_for_again(), scene_.reading, scene_);
     if (top_.has("simulate")) scene_.simulate = scene_simulation_of(top_, folder_, scene_);
+  }
+
+  // A log that is made again may be gone.
+  SceneFolder folder_for_again() const {
+    SceneFolder folder = folder_;
+    folder.may_be_absent = again_;
+    return folder;
   }
 
   void algorithms() {
@@ -106,6 +116,7 @@ class SceneReader {
 
   MapReader top_;
   SceneFolder folder_;
+  bool again_;
   Scene scene_;
 };
 

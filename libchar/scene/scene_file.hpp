@@ -10,6 +10,8 @@ namespace libchar {
 
 struct SceneReadOptions {
   bool allow_outside = false;  ///< files outside the scene's folder may be named
+  /// The scene is to make its log again: the log may be gone, and logs of its true inputs are read.
+  bool again = false;
 };
 
 /// Reads `format: scene`, `version: 1`, YAML or JSON (docs/scenes.md). Paths are relative to the
