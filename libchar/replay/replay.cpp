@@ -162,8 +162,18 @@ class Replay {
     for (const PlannedAlgorithm& algorithm : plan_.optimum)
       optimum_.emplace_back(algorithm, optimum_frame_);
     sensors_.resize(scene_.sensors.size());
-    tracker_ =
-        RunTracker(frame_, plan_.run_to - plan_.run_from, runs_.size(), sensors_are_comparable());
+    tracker_ = RunTracker(frame_,
+                          plan_.run_to - plan_.run_from,
+                          runs_.size(),
+                          sensors_are_comparable(),
+                          fault_starts());
+  }
+
+  std::vector<std::int64_t> fault_starts() const {
+    std::vector<std::int64_t> out;
+    for (const SensorFault& fault : instants_.source().known_faults())
+      out.push_back(instants_.instant_at(fault.from_s) - plan_.run_from);
+    return out;
   }
 
   // They see one input in one unit.

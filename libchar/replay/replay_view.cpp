@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/fault_log.hpp"
@@ -186,8 +187,8 @@ ReplayFigures figures_of(const ReplayResult& r) {
   out.sensors = sensors_can_be_drawn(r.sensors);
   out.ranking = any([](const auto& a) { return a.rmse > 0; });
   out.availability = any([](const auto& a) { return a.availability < kNearlyAlways; });
-  out.run = !r.tracks.inputs.empty();
-  out.deviations = !r.tracks.deviations.empty();
+  out.run = !r.tracks.whole.inputs.empty();
+  out.deviations = !r.tracks.whole.deviations.empty();
   out.time_matters =
       any([&](const auto& a) { return 1e-9 * a.ns_per_sample * r.rate_hz > kCoreThatMatters; });
   return out;
@@ -232,11 +233,15 @@ constexpr std::size_t kMostDeviations = 40000;
 RunView run_view(const ReplayResult& r, double end_s) {
   RunView out;
   if (r.tracks.algorithm) out.method = r.algorithms[*r.tracks.algorithm].label;
-  if (r.best_sensor && !r.tracks.sensor.empty()) out.sensor = r.sensors[*r.best_sensor].name;
-  const Timeline& all = r.tracks.deviations;
+  if (r.best_sensor && !r.tracks.whole.sensor.empty()) out.sensor = r.sensors[*r.best_sensor].name;
+  const Timeline& all = r.tracks.whole.deviations;
   const std::size_t numbers = all.time_s.size() * (1 + 2 * all.low.size());
   out.deviations = merged_bins(all, (numbers + kMostDeviations - 1) / kMostDeviations);
   out.marks = marks_of(r, end_s);
+  for (const CloseUp& one : r.tracks.close_ups)
+    out.close_ups.push_back(one.fault && *one.fault < r.faults.size()
+                                ? fault_label(r, r.faults[*one.fault])
+                                : duration_text(one.from_s));
   return out;
 }
 

@@ -40,6 +40,7 @@ struct RunMark {
 struct RunView {
   std::string method, sensor;  ///< whose; "": none
   Timeline deviations;         ///< of sensors from their median, thinned to what a page can hold
+  std::vector<std::string> close_ups;  ///< names of the result's close-ups
   std::vector<RunMark> marks;
 };
 

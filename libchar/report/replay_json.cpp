@@ -98,39 +98,52 @@ Json drawn_to(const std::vector<double>& values, int digits) {
   return out;
 }
 
-// One series of a run: its times stand once beside all of them.
+// One series of a run: its times stand once beside all of them. Where each stretch is one instant,
+// smallest and largest are the same.
 Json track_json(const Timeline& track) {
   if (track.empty()) return nullptr;
   const int digits = digits_of(track);
   Json low = Json::array(), high = Json::array();
   for (const auto& series : track.low) low.push_back(drawn_to(series, digits));
   for (const auto& series : track.high) high.push_back(drawn_to(series, digits));
+  if (low == high) return {{"value", std::move(low)}};
   return {{"low", std::move(low)}, {"high", std::move(high)}};
 }
 
-Json run_json(const ReplayView& view) {
-  const RunTracks& tracks = view.result->tracks;
-  if (!view.figures.run) return nullptr;
+Json stretch_json(const RunStretch& run, const Timeline& deviations) {
   Json inputs = Json::array();
-  for (const InputTracks& input : tracks.inputs)
+  for (const InputTracks& input : run.inputs)
     inputs.push_back({{"reference", track_json(input.reference)},
                       {"estimate", track_json(input.estimate)},
                       {"error", track_json(input.error)}});
+  Json apart = track_json(deviations);
+  if (!apart.is_null()) apart["time_s"] = drawn_to(deviations.time_s, 10);
+  return {{"time_s", drawn_to(run.inputs[0].estimate.time_s, 10)},
+          {"inputs", std::move(inputs)},
+          {"sensor_value", track_json(run.sensor)},
+          {"sensor_error", track_json(run.sensor_error)},
+          {"deviations", std::move(apart)}};
+}
+
+Json run_json(const ReplayView& view) {
+  if (!view.figures.run) return nullptr;
+  const RunTracks& tracks = view.result->tracks;
   const auto text_or_null = [](const std::string& text) {
     return text.empty() ? Json(nullptr) : Json(json_text(text));
   };
-  Json deviations = nullptr;
-  if (view.figures.deviations) {
-    deviations = track_json(view.run.deviations);
-    deviations["time_s"] = drawn_to(view.run.deviations.time_s, 10);
+  Json out = stretch_json(tracks.whole, view.run.deviations);
+  out["method"] = text_or_null(view.run.method);
+  out["sensor"] = text_or_null(view.run.sensor);
+  out["close_ups"] = Json::array();
+  for (std::size_t i = 0; i < tracks.close_ups.size(); ++i) {
+    const CloseUp& one = tracks.close_ups[i];
+    Json close = stretch_json(one.run, one.run.deviations);
+    close["label"] = json_text(view.run.close_ups[i]);
+    close["from_s"] = json_number(one.from_s);
+    close["to_s"] = json_number(one.to_s);
+    out["close_ups"].push_back(std::move(close));
   }
-  return {{"method", text_or_null(view.run.method)},
-          {"sensor", text_or_null(view.run.sensor)},
-          {"time_s", drawn_to(tracks.inputs[0].estimate.time_s, 10)},
-          {"inputs", std::move(inputs)},
-          {"sensor_value", track_json(tracks.sensor)},
-          {"sensor_error", track_json(tracks.sensor_error)},
-          {"deviations", std::move(deviations)}};
+  return out;
 }
 
 Json marks_json(const ReplayView& view) {

@@ -22,16 +22,18 @@
   const style = (palette, k) => ({ colour: palette[k % palette.length], dash: DASHES[k % DASHES.length] });
   const sensorStyle = (i) => style(colours().sensors, i);
   const methodStyle = (k) => style(colours().methods, k);
-  const styleOf = (a) => methodStyle(order.indexOf(a));
+  // Those that are drawn at first come first, so that their colours differ.
+  const best = order.find((a) => a.label === report.best), free = order.find((a) => !a.bound && !a.description.learns_from_reference), plain = order.find((a) => a.name === "mean");
+  const important = Array.from(new Set([best, free, plain].concat(order.filter((a) => a.bound)).filter(Boolean))), byColour = important.concat(order.filter((a) => !important.includes(a)));
+  const rankOf = (a) => byColour.indexOf(a);
+  const styleOf = (a) => methodStyle(rankOf(a));
   const rgba = (colour, alpha) => "rgba(" + [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)).join(",") + "," + alpha + ")";
   const faint = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, "0");
 
   const shown = new Set();
   function showDefaults() {
     shown.clear();
-    const best = order.find((a) => a.label === report.best);
-    const free = order.find((a) => !a.bound && !a.description.learns_from_reference);
-    [best, free, order.find((a) => a.name === "mean")].concat(order.filter((a) => a.bound)).forEach((a) => { if (a) shown.add(a); });
+    important.forEach((a) => shown.add(a));
     if (!shown.size) order.slice(0, 3).forEach((a) => shown.add(a));
   }
   showDefaults();
@@ -351,7 +353,7 @@
     order.filter((a) => shown.has(a)).forEach((a) => {
       const curve = a.inputs[input] && a.inputs[input].allan;
       if (!curve) return;
-      const k = order.indexOf(a), look = methodStyle(k), data = [];
+      const k = rankOf(a), look = methodStyle(k), data = [];
       curve.tau_s.forEach((x, i) => { if (positive(x) && positive(curve.deviation[i])) data.push({ x, y: curve.deviation[i] }); });
       sets.push({ label: a.label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: look.dash, pointStyle: MARKS[k % MARKS.length], pointRadius: 3.5, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [a.label, "τ = " + numberText(p.x) + " s", numberText(p.y, 5) + " " + u] });
     });
@@ -374,11 +376,10 @@
       { label: "sensor", data: measured, showLine: false, marks: true, intervals: "upright", borderColor: c.dim, pointBorderColor: inks(measured), pointBackgroundColor: inks(measured), pointRadius: 5, pointHoverRadius: 7, fill: false, order: 1, tip },
       { label: "noise it was said to have", data: told, showLine: false, marks: true, borderColor: c.dim, pointBorderColor: inks(told), pointBackgroundColor: c.paper, backgroundColor: c.paper, pointStyle: "rectRot", pointRadius: 6, pointBorderWidth: 1.6, fill: false, order: 2, tip },
     ].filter((set) => set.data.length);
-    const best = order.find((a) => a.label === report.best), mean = order.find((a) => a.name === "mean");
     const level = (name, y, look) => sets.push(Object.assign(flat(name, y, look, () => [name, "RMSE " + numberText(y, 5) + " " + u]), { data: [{ x: -0.5, y }, { x: last, y }], order: 5 }));
     if (report.inputs.length === 1 && report.inputs[0].unit === all[0].unit && report.score === "rmse") {
       if (best && positive(best.rmse)) level("fused by " + best.label, best.rmse, styleOf(best));
-      if (mean && mean !== best && positive(mean.rmse)) level("fused by mean", mean.rmse, styleOf(mean));
+      if (plain && plain !== best && positive(plain.rmse)) level("fused by mean", plain.rmse, styleOf(plain));
     }
     const [yMin, yMax] = padded(sets.flatMap((set) => set.data.map((p) => p.y)).concat(low, high), 1.2);
     const x = linearAxis("sensor", -0.5, last);
@@ -421,7 +422,9 @@
 
   // ---- the run: reference, best method, best single sensor ----
   const run = report.run;
-  const trackOf = (one) => (one ? { time_s: run.time_s, low: one.low, high: one.high } : null);
+  const trackOf = (part, one) => (one ? { time_s: part.time_s, low: one.low || one.value, high: one.high || one.value } : null);
+  // Where the stretch is within a close-up, every instant is known.
+  const partInView = () => run.close_ups.find((c) => c.from_s / TIME <= stretch[0] + 1e-9 * whole[1] && c.to_s / TIME >= stretch[1] - 1e-9 * whole[1]) || run;
   const named = (name) => report.sensors.findIndex((s) => s.name === name);
   // Known faults in the colour of their sensor, what is not scored in grey; names where there is room, in up to three lines.
   const stretchMarks = {
@@ -497,7 +500,7 @@
   const sensorLook = () => Object.assign(sensorStyle(named(run.sensor)), { dash: [] });
   const methodLook = () => Object.assign(styleOf(labelled.get(run.method)), { dash: [] });
   function signalChart(input, axis, u) {
-    const one = run.inputs[input], reference = trackOf(one.reference), estimate = trackOf(one.estimate), sensor = input === 0 ? trackOf(run.sensor_value) : null;
+    const part = partInView(), one = part.inputs[input], reference = trackOf(part, one.reference), estimate = trackOf(part, one.estimate), sensor = input === 0 ? trackOf(part, part.sensor_value) : null;
     const sets = runSets([
       ["fused by " + run.method, estimate, methodLook()],
       ["reference", reference, { colour: colours().ink, dash: [4, 3] }],
@@ -506,7 +509,7 @@
     return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [reference, estimate], [sensor], 0.5), [stretchMarks, dragging]);
   }
   function errorChart(input, axis, u) {
-    const error = trackOf(run.inputs[input].error), sensor = input === 0 ? trackOf(run.sensor_error) : null;
+    const part = partInView(), error = trackOf(part, part.inputs[input].error), sensor = input === 0 ? trackOf(part, part.sensor_error) : null;
     const sets = runSets([
       ["error of " + run.method, error, methodLook()],
       ["error of " + run.sensor, sensor, sensor ? sensorLook() : null],
@@ -514,13 +517,18 @@
     return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [error], [sensor], 2), [stretchMarks, dragging]);
   }
   function deviationsChart(index, axis, u) {
-    const track = run.deviations, sets = [];
+    const part = partInView(), track = trackOf(part.deviations, part.deviations), sets = [];
     drawnSensors(null, false).forEach((i) => sets.push(...bandLine(report.sensors[i].name, track, i, sensorStyle(i), false, timeTip(u))));
     return chart(sets, timeAxis(), linearAxis(withUnit(axis, u), undefined, undefined), [stretchMarks, dragging]);
   }
 
   // ---- the ranking ----
   const ROW = 23, FARTHEST = 30;
+  // A long name in two lines, where there is no room for one.
+  function inTwo(name) {
+    const middle = name.length / 2, cuts = Array.from(name.matchAll(/-/g), (m) => m.index).sort((a, b) => Math.abs(a - middle) - Math.abs(b - middle));
+    return name.length < 16 || !cuts.length ? shortened(name, 690, 17) : [name.slice(0, cuts[0] + 1), name.slice(cuts[0] + 1)].map((half) => shortened(half, 690, 17));
+  }
   // Rows of those that are as good as the best.
   const equals = {
     id: "equals",
@@ -549,7 +557,8 @@
   const intervalOf = (a) => (report.score === "rmse" ? a.rmse_ci95 : a.without_reference && a.without_reference.predictive_ci95);
   function rankingChart(index, axis, u, figure) {
     const c = colours(), scored = order.filter((a) => positive(score(a))), rows = scored.filter((a) => !a.bound).concat(scored.filter((a) => a.bound));
-    figure.querySelector(".canvas").style.height = 96 + ROW * rows.length + "px";
+    const narrow = chartWidth(figure) < 560;
+    figure.querySelector(".canvas").style.height = 96 + (narrow ? 1.3 : 1) * ROW * rows.length + "px";
     const least = minMax(rows.map(score))[0], sensor = report.sensors.find((s) => s.name === report.best_sensor), optimum = report.score === "rmse" && report.inputs.length === 1 ? optimumOf(0) : null;
     const data = rows.map((a, y) => {
       const beyond = score(a) > FARTHEST * least, ci = intervalOf(a);
@@ -564,9 +573,9 @@
       pointStyle: data.map((p) => (p.beyond ? "triangle" : "circle")), pointRotation: data.map((p) => (p.beyond ? 90 : 0)), pointRadius: data.map((p) => (p.a.label === report.best ? 6.5 : 4.5)), pointBorderWidth: 1.8, pointHoverRadius: 7, fill: false, order: 1, tip,
     }].concat(upright("best possible: optimum of this scene", optimum, c.ink, [1, 4]), sensor ? upright("best single sensor: " + sensor.name, sensor.rmse, sensorStyle(named(sensor.name)).colour, [6, 4]) : [],
       [{ label: "as good as the best", data: [], swatch: c.shade }]);
-    const y = linearAxis("", -0.5, rows.length - 0.5), wide = chartWidth(figure);
+    const y = linearAxis("", -0.5, rows.length - 0.5);
     y.reverse = true;
-    y.ticks = { color: c.ink, autoSkip: false, font: { size: 12 }, callback: (v) => (rows[v] ? shortened(rows[v].label, wide, 28) : "") };
+    y.ticks = { color: c.ink, autoSkip: false, font: { size: narrow ? 11 : 12 }, callback: (v) => (rows[v] ? (narrow ? inTwo(rows[v].label) : shortened(rows[v].label, 690, 28)) : "") };
     y.afterBuildTicks = (a) => { a.ticks = rows.map((row, i) => ({ value: i })); };
     y.grid = { color: c.fine, borderColor: c.border };
     const config = chart(sets, valueAxis(withUnit(axis, u), low / room, high * room), y, [equals, intervalBars]);
@@ -693,6 +702,7 @@
     follow();
     moved.push(follow);
     bar.append(withLabel("From", from), withLabel("to", to), said, button("whole run", () => look(whole.slice())));
+    if (place.closest("#run")) run.close_ups.forEach((c) => bar.append(Object.assign(button(c.label, () => look([c.from_s / TIME, c.to_s / TIME])), { title: "every instant from " + numberText(c.from_s / TIME, 6) + " " + timeUnit + " on", className: "closer" })));
     place.append(bar);
   }
   // Whose weights, variances and findings; every such choice on the page is the same one.

@@ -73,6 +73,22 @@ TEST_CASE("envelope: blocks of any size give the same") {
     CHECK(enveloped(values, 100, block).high == whole.high);
 }
 
+TEST_CASE(
+    "close-ups: at the faults and where scoring begins, apart from each other, within the run") {
+  const auto places = close_up_places(100000, 500, {600, 50000, 99990, -5, 50100, 200000}, 10);
+  REQUIRE(places.size() == 3);  // 600 and 50100 are too near to others, two are outside
+  CHECK(places[0].from == 500);
+  CHECK_FALSE(places[0].fault);
+  CHECK(places[1].from == 49900);
+  CHECK(places[1].fault == 1);
+  CHECK(places[2].from == 99600);
+  CHECK(places[2].count == 400);
+  CHECK(close_up_places(1000, 0, {500}, 10).empty());        // has every instant anyhow
+  CHECK(close_up_places(100000, 0, {500}, 100000).empty());  // too much to keep
+  CHECK(close_up_places(100000, 0, {}, 200)[1].from == 50000);
+  CHECK(close_up_places(100000, 0, {}, 200)[0].count == 125);
+}
+
 TEST_CASE("replay: keeps the run of the best method and of the best single sensor") {
   const test::SceneBench bench;
   bench.put("three.csv", log_of(5000, true));
@@ -82,8 +98,8 @@ TEST_CASE("replay: keeps the run of the best method and of the best single senso
   REQUIRE(r.algorithms[*r.best].label == "median");
   CHECK(r.tracks.algorithm == r.best);
   CHECK(r.scored_from_s == 2);
-  REQUIRE(r.tracks.inputs.size() == 1);
-  const InputTracks& input = r.tracks.inputs[0];
+  REQUIRE(r.tracks.whole.inputs.size() == 1);
+  const InputTracks& input = r.tracks.whole.inputs[0];
   REQUIRE(input.error.low[0].size() == 1000);  // stretches of 5
   // The sensor b, where it is there; else the middle of a and c.
   const double e = 1e-6;
@@ -97,28 +113,39 @@ TEST_CASE("replay: keeps the run of the best method and of the best single senso
     }
     REQUIRE(input.error.low[0][bin] == Approx(low).margin(2 * e));
     REQUIRE(input.error.high[0][bin] == Approx(high).margin(2 * e));
-    REQUIRE(r.tracks.sensor_error.low[0][bin] == Approx(sensor_low).margin(2 * e));
+    REQUIRE(r.tracks.whole.sensor_error.low[0][bin] == Approx(sensor_low).margin(2 * e));
   }
   CHECK(input.reference.high[0][31] == Approx(std::sin(1.57)).margin(1e-3));
   CHECK(r.sensors[*r.best_sensor].name == "b");
-  CHECK(r.tracks.deviations.empty());
+  // Every instant where scoring begins, and in the middle.
+  REQUIRE(r.tracks.close_ups.size() == 2);
+  const CloseUp& start = r.tracks.close_ups[0];
+  CHECK(start.from_s == Approx(2));
+  CHECK(start.to_s == Approx(5.99));
+  CHECK(r.tracks.close_ups[1].from_s == Approx(25));
+  const std::vector<double>& errors = start.run.inputs[0].error.low[0];
+  REQUIRE(errors.size() == 400);
+  CHECK(start.run.inputs[0].error.high[0] == errors);
+  for (std::size_t k = 200; k < 600; ++k)
+    REQUIRE(errors[k - 200] == Approx(k % 11 == 3 || k % 7 == 0 ? -0.25 : 0).margin(2 * e));
+  CHECK(r.tracks.whole.deviations.empty());
 }
 
 TEST_CASE("replay: without a reference the distance of each sensor from the median is kept") {
   const test::SceneBench bench;
   bench.put("three.csv", log_of(3000, false));
   const ReplayResult r = replay(bench.read(scene_of("algorithms: [mean, median]\n")));
-  REQUIRE(r.tracks.deviations.low.size() == 3);
-  CHECK(r.tracks.inputs[0].reference.empty());
-  CHECK(r.tracks.inputs[0].error.empty());
-  CHECK_FALSE(r.tracks.inputs[0].estimate.empty());
-  CHECK(r.tracks.sensor.empty());
+  REQUIRE(r.tracks.whole.deviations.low.size() == 3);
+  CHECK(r.tracks.whole.inputs[0].reference.empty());
+  CHECK(r.tracks.whole.inputs[0].error.empty());
+  CHECK_FALSE(r.tracks.whole.inputs[0].estimate.empty());
+  CHECK(r.tracks.whole.sensor.empty());
   // Stretches of 3. In the second one b is missing once: the median is the middle of a and c then.
-  CHECK(r.tracks.deviations.low[0][0] == Approx(0.5).margin(1e-5));
-  CHECK(r.tracks.deviations.high[0][0] == Approx(0.75).margin(1e-5));
-  CHECK(r.tracks.deviations.high[0][1] == Approx(0.75).margin(1e-5));
-  CHECK(r.tracks.deviations.high[1][0] == Approx(0).margin(1e-5));
-  CHECK(r.tracks.deviations.low[2][0] == Approx(-1).margin(1e-5));
+  CHECK(r.tracks.whole.deviations.low[0][0] == Approx(0.5).margin(1e-5));
+  CHECK(r.tracks.whole.deviations.high[0][0] == Approx(0.75).margin(1e-5));
+  CHECK(r.tracks.whole.deviations.high[0][1] == Approx(0.75).margin(1e-5));
+  CHECK(r.tracks.whole.deviations.high[1][0] == Approx(0).margin(1e-5));
+  CHECK(r.tracks.whole.deviations.low[2][0] == Approx(-1).margin(1e-5));
 }
 
 TEST_CASE("replay: the run that is kept does not depend on the block size") {
@@ -130,7 +157,13 @@ TEST_CASE("replay: the run that is kept does not depend on the block size") {
     ReplayOptions options;
     options.block = block;
     const ReplayResult other = replay(scene, options);
-    CHECK(other.tracks.inputs[0].error.low == standard.tracks.inputs[0].error.low);
-    CHECK(other.tracks.sensor.high == standard.tracks.sensor.high);
+    CHECK(other.tracks.whole.inputs[0].error.low == standard.tracks.whole.inputs[0].error.low);
+    CHECK(other.tracks.whole.sensor.high == standard.tracks.whole.sensor.high);
+    REQUIRE(other.tracks.close_ups.size() == 2);
+    const std::vector<double>&a = other.tracks.close_ups[1].run.sensor.high[0],
+          &b = standard.tracks.close_ups[1].run.sensor.high[0];
+    CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+      return x == y || (std::isnan(x) && std::isnan(y));
+    }));
   }
 }

@@ -119,7 +119,7 @@ TEST_CASE("replay html: 200 sensors without a reference stay below 3 MB") {
   ReplayResult r = test::synthetic_replay(200);
   std::mt19937_64 random(3);
   r.has_reference = false;
-  r.tracks.deviations = test::synthetic_track(200, 2000, 0.05, 100, random);
+  r.tracks.whole.deviations = test::synthetic_track(200, 2000, 0.05, 100, random);
   CHECK(replay_html(r).size() < 3'000'000);
 }
 

@@ -84,17 +84,27 @@ AlgorithmResult synthetic_algorithm(const ReplayResult& r,
   return a;
 }
 
-// As a replay keeps it: 1000 stretches of each.
+// As a replay keeps it: 1000 stretches, or every instant of a short one.
+RunStretch synthetic_stretch(const ReplayResult& r,
+                             std::size_t bins,
+                             double duration_s,
+                             std::mt19937_64& random) {
+  RunStretch out;
+  for (std::size_t j = 0; j < r.inputs.size(); ++j)
+    out.inputs.push_back({synthetic_track(1, bins, 1, duration_s, random),
+                          synthetic_track(1, bins, 1, duration_s, random),
+                          synthetic_track(1, bins, 0.03, duration_s, random)});
+  if (r.inputs.size() > 1) return out;
+  out.sensor = synthetic_track(1, bins, 1, duration_s, random);
+  out.sensor_error = synthetic_track(1, bins, 0.05, duration_s, random);
+  return out;
+}
+
 RunTracks synthetic_run(const ReplayResult& r, std::mt19937_64& random) {
   RunTracks out;
   out.algorithm = r.best.value_or(0);
-  for (std::size_t j = 0; j < r.inputs.size(); ++j)
-    out.inputs.push_back({synthetic_track(1, 1000, 1, 100, random),
-                          synthetic_track(1, 1000, 1, 100, random),
-                          synthetic_track(1, 1000, 0.03, 100, random)});
-  if (r.inputs.size() > 1) return out;
-  out.sensor = synthetic_track(1, 1000, 1, 100, random);
-  out.sensor_error = synthetic_track(1, 1000, 0.05, 100, random);
+  out.whole = synthetic_stretch(r, 1000, 100, random);
+  out.close_ups.push_back({{}, 0, 0.4, synthetic_stretch(r, 400, 0.4, random)});
   return out;
 }
 
@@ -199,9 +209,10 @@ ReplayResult without_reference() {
   r.inputs[0].optimum_rmse = kNan;
   r.best_sensor.reset();
   std::mt19937_64 random(20202);
-  r.tracks.sensor = r.tracks.sensor_error = {};
-  r.tracks.inputs[0].reference = r.tracks.inputs[0].error = {};
-  r.tracks.deviations = synthetic_track(r.sensors.size(), 1000, 0.05, 100, random);
+  r.tracks.whole.sensor = r.tracks.whole.sensor_error = {};
+  r.tracks.close_ups.clear();
+  r.tracks.whole.inputs[0].reference = r.tracks.whole.inputs[0].error = {};
+  r.tracks.whole.deviations = synthetic_track(r.sensors.size(), 1000, 0.05, 100, random);
   for (SensorResult& s : r.sensors) {
     s.error = ErrorScore{};
     s.error.rmse = kNan;

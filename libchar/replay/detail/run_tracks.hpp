@@ -48,13 +48,31 @@ class Envelope {
 /// At most so many stretches of a run.
 inline constexpr std::size_t kRunBins = 1000;
 
+/// Where a run is kept instant by instant.
+struct CloseUpPlace {
+  std::int64_t from = 0, count = 0;  ///< instants of the run
+  std::optional<std::size_t> fault;
+};
+
+/// Around the start of the first faults, and where scoring begins; without faults in the middle too.
+/// They do not overlap. `starts`: instants of the run at which the faults begin; `series`: that are
+/// kept of each.
+std::vector<CloseUpPlace> close_up_places(std::int64_t instants,
+                                          std::int64_t scored_from,
+                                          const std::vector<std::int64_t>& starts,
+                                          std::size_t series);
+
 /// Listens to a run: the reference, each method's estimate and its error, each sensor and its error
 /// (without a reference: its distance from the median of all).
 class RunTracker {
  public:
   RunTracker() = default;
   /// `alike`: all sensors see one input, in one unit; without that sensors are not compared.
-  RunTracker(const RunFrame& frame, std::int64_t instants, std::size_t algorithms, bool alike);
+  RunTracker(const RunFrame& frame,
+             std::int64_t instants,
+             std::size_t algorithms,
+             bool alike,
+             const std::vector<std::int64_t>& fault_starts);
   /// A block that starts at instant `first` of the run, after `runs` have scored it.
   void push(std::int64_t first,
             const Eigen::MatrixXd& samples,
@@ -67,20 +85,31 @@ class RunTracker {
   struct Pair {
     Envelope value, error;
   };
-  void push_run(std::int64_t first,
-                const AlgorithmRun& run,
-                const Eigen::MatrixXd& truth,
-                Pair* to);
-  void push_sensors(std::int64_t first,
+  /// A stretch of the run with all that is kept of it.
+  struct Kept {
+    CloseUpPlace place;
+    std::vector<Envelope> reference;  // [input]
+    std::vector<Pair> estimates;      // [run][input]
+    std::vector<Pair> sensors;        // empty: they are not compared
+  };
+  /// `count` instants of a block from its instant `skip` on are those from `first` of the stretch on.
+  struct Part {
+    std::int64_t first = 0;
+    Eigen::Index skip = 0, count = 0;
+  };
+  Kept kept(const CloseUpPlace& place, std::size_t bins, std::size_t algorithms, bool alike) const;
+  void push_run(const Part& part, const AlgorithmRun& run, const Eigen::MatrixXd& truth, Pair* to);
+  void push_sensors(const Part& part,
                     const Eigen::MatrixXd& samples,
-                    const Eigen::MatrixXd& truth);
-  void push_deviations(std::int64_t first, const Eigen::MatrixXd& samples);
-  Timeline timeline(const Envelope& envelope) const;
+                    const Eigen::MatrixXd& truth,
+                    std::vector<Pair>& to);
+  void find_medians(const Eigen::MatrixXd& samples);
+  RunStretch stretch(const Kept& kept, std::size_t run, std::optional<std::size_t> sensor) const;
+  Timeline timeline(const Kept& kept, const Envelope& envelope) const;
+  double start_s(const Kept& kept) const;
 
   const RunFrame* frame_ = nullptr;
-  std::vector<Envelope> reference_;  // [input]
-  std::vector<Pair> estimates_;      // [run][input]
-  std::vector<Pair> sensors_;        // empty: they are not compared
+  std::vector<Kept> kept_;  // the whole run first
   std::vector<double> median_, sorted_;
   Eigen::VectorXd h_;
   bool referenced_ = false;

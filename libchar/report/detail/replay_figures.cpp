@@ -40,14 +40,19 @@ std::string marked_text(const ReplayView& view) {
 }
 
 std::string signal_caption(const ReplayView& view) {
-  std::string out = view.result->has_reference ? "Reference, " : "";
-  out += "estimate of " + view.run.method;
+  const ReplayResult& r = *view.result;
+  std::string out = r.has_reference ? "Reference, estimate of " : "Estimate of ";
+  out += view.run.method;
   if (!view.run.sensor.empty()) out += ", and " + view.run.sensor + ", the best single sensor";
-  return joined_sentences(
-      out + fmt::format(": smallest and largest in each of {} stretches of the evaluation, {}.",
-                        view.result->tracks.inputs[0].estimate.time_s.size(),
-                        stretch_text(view.result->start_s, view.end_s)),
-      marked_text(view));
+  const std::size_t stretches = r.tracks.whole.inputs[0].estimate.time_s.size();
+  out += stretches < r.instants
+             ? fmt::format(
+                   ": smallest and largest in each of {} stretches of {}; closer in, every "
+                   "instant where the buttons lead.",
+                   stretches,
+                   duration_text(view.duration_s / static_cast<double>(stretches)))
+             : ", at every instant.";
+  return joined_sentences(out, marked_text(view));
 }
 
 std::string run_plots_of(const ReplayView& view, std::size_t j) {
@@ -177,7 +182,7 @@ std::string run_section(const ReplayView& view) {
   if (!view.figures.run) return "";
   const ReplayResult& r = *view.result;
   std::string plots;
-  for (std::size_t j = 0; j < std::min(r.inputs.size(), r.tracks.inputs.size()); ++j)
+  for (std::size_t j = 0; j < std::min(r.inputs.size(), r.tracks.whole.inputs.size()); ++j)
     plots += run_plots_of(view, j);
   if (view.figures.deviations)
     plots += plot_figure("deviations",
