@@ -300,13 +300,6 @@ TEST_CASE("fuse: what does not fit is refused in a sentence") {
   CHECK(fast.warnings.find("another_rate") != nullptr);
 }
 
-TEST_CASE("fuse: what was learnt behind a filter or without a trend is refused") {
-  for (const char* prepared : {"high_pass_hz: 1\n", "detrend: line\n"}) {
-    const FuseBench bench(kNoisyScene + "reference: x\nlearning: [0, 15]\n" + prepared);
-    CHECK_THAT(bench.refusal(by("mean")), Contains("not like them"));
-  }
-}
-
 TEST_CASE("fuse: at another rate delays keep their seconds") {
   const FuseBench bench(kScene + "reference: x\nalign: {learn: [0, 35]}\nevaluation: [36, end]\n");
   REQUIRE(bench.learnt.sensors[1].alignment.delay_samples == Approx(0.4).margin(0.02));

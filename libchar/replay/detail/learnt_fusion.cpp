@@ -114,9 +114,8 @@ void refuse_prepared(const ScenePreparation& preparation, LearntFusion& learnt) 
   if (!preparation.filters() && preparation.detrend == "none") return;
   for (LearntAlgorithm& algorithm : learnt.algorithms) {
     if (!algorithm.refused.empty()) continue;
-    algorithm.refused =
-        "the replay filtered its samples or took a trend out (`high_pass_hz`, "
-        "`band_hz`, `detrend`), and what is fused as it comes is not like them";
+    algorithm.refused = "the replay filtered its samples or took a trend out (`high_pass_hz`, "
+                        "`band_hz`, `detrend`), and what is fused as it comes is not like them";
     algorithm.learnt = {};
   }
 }
