@@ -239,7 +239,6 @@ class Replay {
                         scene_.align && scene_.align->apply ? &*alignment_ : nullptr);
     for (const AlgorithmRun& run : runs_)
       if (run.planned().asked) learnt_.algorithms.push_back(run.hand_out());
-    refuse_prepared(scene_.preparation, learnt_);
   }
 
   void run_all() {

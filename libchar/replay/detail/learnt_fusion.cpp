@@ -110,16 +110,6 @@ LearntFusion learnt_of(const Scene& scene,
   return out;
 }
 
-void refuse_prepared(const ScenePreparation& preparation, LearntFusion& learnt) {
-  if (!preparation.filters() && preparation.detrend == "none") return;
-  for (LearntAlgorithm& algorithm : learnt.algorithms) {
-    if (!algorithm.refused.empty()) continue;
-    algorithm.refused = "the replay filtered its samples or took a trend out (`high_pass_hz`, "
-                        "`band_hz`, `detrend`), and what is fused as it comes is not like them";
-    algorithm.learnt = {};
-  }
-}
-
 void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntFusion& learnt) {
   std::size_t next = 0;
   for (LearntSensor& sensor : learnt.sensors) {

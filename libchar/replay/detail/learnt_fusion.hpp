@@ -19,9 +19,6 @@ LearntFusion learnt_of(const Scene& scene,
                        const SensorKnowledge& knowledge,
                        const SceneAlignment* alignment);
 
-/// What was learnt behind a filter or without a trend is not for samples as they come: no method can be applied then, and says so.
-void refuse_prepared(const ScenePreparation& preparation, LearntFusion& learnt);
-
 /// Into the sensors that were not left out.
 void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntFusion& learnt);
 
