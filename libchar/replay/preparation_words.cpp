@@ -43,30 +43,31 @@ double settling_s(const ScenePreparation& p) {
   return p.filters() ? kSettlingPeriods / p.from_hz : 0;
 }
 
-std::vector<std::string> preparation_words(const ScenePreparation& p) {
+std::vector<std::string> preparation_words(const Scene& scene) {
+  const ScenePreparation& p = scene.preparation;
+  const char* reference = scene.reference ? " and the reference" : "";
   std::vector<std::string> out;
   if (p.detrend != "none")
     out.push_back(
-        fmt::format("From each sensor and the reference its own {} over the whole recording is "
-                    "subtracted.",
+        fmt::format("From each sensor{} its own {} over the whole recording is subtracted.",
+                    reference,
                     p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
   const std::string band =
       p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", significant(p.to_hz, 6)) : "";
-  out.push_back(
-      fmt::format("All sensors and the reference go through one filter: a Butterworth high-pass of "
-                  "second order "
-                  "at {} Hz{}, causal. Its first {} s are not learnt from and not scored; noise "
-                  "levels are those "
-                  "behind it, and noise models are not used.",
-                  significant(p.from_hz, 6),
-                  band,
-                  significant(settling_s(p), 4)));
+  out.push_back(fmt::format(
+      "All sensors{} go through one filter: a Butterworth high-pass of second order at "
+      "{} Hz{}, causal. Its first {} s are not learnt from and not scored; noise levels "
+      "are those behind it, and noise models are not used.",
+      reference,
+      significant(p.from_hz, 6),
+      band,
+      significant(settling_s(p), 4)));
   return out;
 }
 
 std::vector<std::string> preparation_words(const ReplayResult& r) {
-  std::vector<std::string> out = preparation_words(r.scene.preparation);
+  std::vector<std::string> out = preparation_words(r.scene);
   if (r.reference_offset)
     out.push_back(offset_words(r, *r.reference_offset));
   else if (r.scene.reference && r.scene.reference->offset != 0)

@@ -12,7 +12,7 @@ namespace libchar {
 std::vector<std::string> preparation_words(const ReplayResult& result);
 
 /// Of the filter and the trends alone.
-std::vector<std::string> preparation_words(const ScenePreparation& preparation);
+std::vector<std::string> preparation_words(const Scene& scene);
 
 /// Until the filter has settled, in s.
 double settling_s(const ScenePreparation& preparation);

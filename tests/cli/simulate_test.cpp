@@ -114,6 +114,7 @@ TEST_CASE("simulate: the scene it writes is read back, and simulates the same ag
   const auto again = test::run({"simulate", bench.path("a.scene.yaml"), "-o", bench.path("b.csv")});
   CHECK(again.code == 0);
   CHECK(test::slurp(bench.path("b.csv")) == test::slurp(bench.path("a.csv")));
+  CHECK_THAT(test::slurp(bench.path("b.scene.yaml")), Contains("recording: \"b.csv\""));
 }
 
 TEST_CASE("simulate: a scene file says it all") {

@@ -276,6 +276,10 @@ TEST_CASE("replay: behind a filter levels are those behind it, and the start is 
   CHECK(*band.sensors[0].noise_variance ==
         Approx(0.04 * band_filter(0.2, 5, 50).noise_gain).epsilon(1e-9));
   CHECK_FALSE(band.algorithms[1].ran);
+  CHECK(band.warnings.find("learning_before_settled") == nullptr);
+  const ReplayResult early =
+      replay(bench.read(models + "band_hz: [0.2, 5]\nlearning: [0, 5]\n"), options);
+  CHECK(early.warnings.find("learning_before_settled") != nullptr);
   CHECK(band.algorithms[0].inputs[0].error.samples == 2000 - 413);
   CHECK(band.algorithms[0].rmse < 0.1 * whole.algorithms[0].rmse);
 }

@@ -170,7 +170,7 @@ void simulate_again(SimulateVerb& verb, Scene& scene) {
                     "simulate what it was made from");
   scene.simulate = std::move(scene.simulated->simulation);
   if (verb.output.empty()) verb.output = scene.recording;
-  if (verb.scene_path.empty()) verb.no_scene = true;
+  if (verb.scene_path.empty() && verb.output == scene.recording) verb.no_scene = true;
   if (!scene.simulated->truth_columns) verb.no_truth = true;
   if (scene.reading.time_column == "none") verb.writing.no_time_column = true;
   // The log is the output here, no input.

@@ -161,7 +161,14 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
 // What is run and not scored, or not learnt from: what the scene says, and what a filter needs to settle.
 void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& plan) {
   const std::int64_t settled = instants.settled();
+  const bool learning = plan.learn_to > plan.learn_from;
   plan.learn_from = std::min(std::max(plan.learn_from, settled), plan.learn_to);
+  if (learning && plan.learn_from == plan.learn_to)
+    plan.warnings.add(
+        "learning_before_settled",
+        "the learning window ends before the filter has settled: nothing is learnt there",
+        fmt::format("settled after {} s",
+                    significant(static_cast<double>(settled) / instants.info().rate_hz, 4)));
   plan.warm_up = std::max<std::int64_t>(
       std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz), settled - plan.run_from);
   if (plan.warm_up > plan.run_to - plan.run_from - 2)

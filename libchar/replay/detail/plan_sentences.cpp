@@ -118,8 +118,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
                               seconds(scene.rest->from_s),
                               seconds(scene.rest->to_s)));
-  for (std::string& sentence : preparation_words(scene.preparation))
-    out.push_back(std::move(sentence));
+  for (std::string& sentence : preparation_words(scene)) out.push_back(std::move(sentence));
   if (scene.reference && scene.reference->estimate_offset)
     out.push_back(fmt::format(
         "offset of the reference: found {}, subtracted from it",
