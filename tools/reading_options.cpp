@@ -100,6 +100,20 @@ void add_accepting_flag(VerbOptions& verb,
 }  // namespace
 
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
+  verb.add_texts("-c,--channel",
+                 options.channels,
+                 "channel to read, by name, position c0, c1… or pattern ('gyro*'); repeat it or "
+                 "separate by commas (default: all)")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("NAME")
+      .group("Reading");
+  add_reading_options_without_channel(verb, session, options);
+}
+
+void add_reading_options_without_channel(VerbOptions& verb,
+                                         Session& session,
+                                         libchar::ReadOptions& options) {
   verb.add_texts("--names",
                  options.names,
                  "names for the channels that are read, in order, where the log has none "
@@ -115,14 +129,6 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
       .separated_by_commas()
       .one_value_each()
       .value_name("UNIT,…")
-      .group("Reading");
-  verb.add_texts("-c,--channel",
-                 options.channels,
-                 "channel to read, by name or position c0, c1…; repeat it or separate by commas "
-                 "(default: all)")
-      .separated_by_commas()
-      .one_value_each()
-      .value_name("NAME")
       .group("Reading");
   add_time_options(verb, options);
   add_dialect_options(verb, options);

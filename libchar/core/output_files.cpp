@@ -8,6 +8,7 @@ namespace libchar {
 namespace {
 
 void make_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) return;  // the folder one is in
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)

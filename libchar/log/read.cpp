@@ -15,6 +15,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -127,6 +128,12 @@ struct Watch final : BlockSink {
 };
 
 }  // namespace
+
+LogInfo read_log_head(const std::string& path, const ReadOptions& options) {
+  LogInfo info = format_of(path, options).open(path, options)->info();
+  name_channels(info.channels, options);
+  return info;
+}
 
 LogInfo read_log(const std::string& path,
                  const ReadOptions& options,

@@ -16,11 +16,13 @@
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
+#include "libchar/replay/detail/find_offset.hpp"
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 #include "libchar/replay/detail/step_noise.hpp"
+#include "libchar/replay/preparation_words.hpp"
 
 namespace libchar {
 namespace {
@@ -63,6 +65,7 @@ class Replay {
     passes_ += scene.rest ? 1 : 0;
     instants_.set_offsets(knowledge_.offsets);
     plan_ = make_plan(scene, options, instants_, knowledge_);
+    if (scene.reference && scene.reference->estimate_offset) estimate_offset();
   }
 
   std::vector<std::string> explain() const {
@@ -92,6 +95,24 @@ class Replay {
                       options_.evaluation ? *options_.evaluation : scene_.evaluation.value_or(all),
                       passing);
     instants_.set_lag(lag_s_, progress_);
+    ++passes_;
+  }
+
+  // Where methods may learn, else on what is scored.
+  void estimate_offset() {
+    PassProgress passing(progress_, "estimating the offset");
+    const bool learning = plan_.learn_to > plan_.learn_from;
+    const std::int64_t from = learning ? plan_.learn_from : plan_.run_from + plan_.warm_up;
+    const OffsetEstimate found = find_reference_offset(
+        scene_, instants_, from, learning ? plan_.learn_to : plan_.run_to, passing);
+    instants_.set_reference_offset(found.offset);
+    const double unit = instants_.info().output_scale;
+    offset_ =
+        FoundOffset{found.offset * unit,
+                    {(found.offset - found.reach95) * unit, (found.offset + found.reach95) * unit},
+                    learning ? plan_.learning : plan_.evaluation,
+                    learning,
+                    found.long_memory};
     ++passes_;
   }
 
@@ -347,6 +368,7 @@ class Replay {
   Eigen::MatrixXd expected_, healthy_;
   Eigen::Index truths_ = 0;  // instants of the run with a truth
   double lag_s_ = 0;
+  std::optional<FoundOffset> offset_;
   std::uint64_t passes_ = 0;
 };
 
@@ -384,6 +406,7 @@ void Replay::add_facts(ReplayResult& out) const {
               : scene_.reference                                 ? scene_.reference->lag_s
                                                                  : 0;
   out.lag_estimated = scene_.reference && scene_.reference->estimate_lag;
+  out.reference_offset = offset_;
   out.has_reference = info.has_reference;
   out.reference_use = info.reference_use;
   out.faults = instants_.source().known_faults();

@@ -130,6 +130,15 @@ struct AlignmentResult {
   std::vector<std::size_t> budgeted;  ///< sensors in the budget
 };
 
+/// By how much the reference reads more than the sensors, as it was found; in the unit of the input.
+struct FoundOffset {
+  double value = 0;
+  Interval ci95;             ///< NaN: too few instants
+  TimeWindow window;         ///< it was found in
+  bool in_learning = false;  ///< the learning window; else what is scored
+  bool drifts = false;       ///< within that window
+};
+
 struct InputResult {
   std::string name, unit;
   double optimum_rmse = 0;  ///< of the best linear unbiased weights of the run; NaN: no reference
@@ -157,6 +166,7 @@ struct ReplayResult {
   double window_s = 0;  ///< of the window RMS
   double lag_s = 0;     ///< the sensors lag the reference by this
   bool lag_estimated = false;
+  std::optional<FoundOffset> reference_offset;  ///< where the scene asked for it
   bool has_reference = false;
   std::string reference_use;  ///< "each instant", "mean over its intervals of 3600 s"…
   std::vector<SensorResult> sensors;

@@ -11,6 +11,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
+#include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -45,6 +46,7 @@ std::string facts(const ReplayView& view) {
   if (r.lag_estimated)
     out += " · the sensors lag the reference by <b>" + html_text(duration_text(r.lag_s)) +
            "</b> (estimated)";
+  for (const std::string& sentence : preparation_words(r)) out += " · " + html_text(sentence);
   return out + "</p>\n";
 }
 

@@ -8,6 +8,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/allan_json.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -248,12 +249,33 @@ Json reference_json(const ReplayResult& result) {
               {"channels", Json::array()},
               {"mean", false},
               {"lag_s", json_number(result.lag_s)},
-              {"lag_estimated", result.lag_estimated}};
+              {"lag_estimated", result.lag_estimated},
+              {"offset", 0.0},
+              {"offset_estimated", result.reference_offset.has_value()}};
+  if (result.reference_offset) {
+    const FoundOffset& offset = *result.reference_offset;
+    out["offset"] = json_number(offset.value);
+    out["offset_ci95"] = interval_json(offset.ci95);
+    out["offset_window"] = window(offset.window);
+    out["offset_drifts"] = offset.drifts;
+  } else if (result.scene.reference) {
+    out["offset"] = json_number(result.scene.reference->offset);
+  }
   if (result.scene.reference) {
     out["channels"] = texts(result.scene.reference->channels);
     out["mean"] = result.scene.reference->mean;
   }
   return out;
+}
+
+// null: nothing was done to the samples.
+Json preparation_json(const ScenePreparation& p) {
+  if (!p.filters() && p.detrend == "none") return nullptr;
+  return {{"detrend", p.detrend},
+          {"high_pass_hz", p.filters() ? json_number(p.from_hz) : Json(nullptr)},
+          {"low_pass_hz", p.to_hz > 0 ? json_number(p.to_hz) : Json(nullptr)},
+          {"order", p.filters() ? Json(2) : Json(nullptr)},
+          {"settling_s", json_number(settling_s(p))}};
 }
 
 void add_run(Json& out, const ReplayResult& result) {
@@ -298,6 +320,7 @@ Json replay_json(const ReplayView& view) {
   out["plan"] = texts(result.plan);
   add_run(out, result);
   out["sensors"] = sensors_json(result);
+  out["preparation"] = preparation_json(result.scene.preparation);
   if (result.alignment) out["alignment"] = alignment_json(result);
   out["faults"] = known_faults_json(result);
   out["best"] =

@@ -7,6 +7,7 @@
 
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"
 
@@ -179,6 +180,7 @@ std::string run_facts(const ReplayView& view) {
   if (r.lag_estimated)
     out +=
         fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
+  for (const std::string& sentence : preparation_words(r)) out += " " + markdown_text(sentence);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/algorithm_words.hpp"
+#include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 
 namespace libchar {
@@ -32,6 +33,7 @@ std::string replay_text(const ReplayView& view) {
   if (r.lag_estimated)
     text +=
         fmt::format("the sensors lag the reference by {} s (estimated)\n", significant(r.lag_s, 3));
+  for (const std::string& sentence : preparation_words(r)) text += printable(sentence) + "\n";
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     text += fmt::format(
         "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);

@@ -46,7 +46,19 @@ struct SceneReference {
   ReadOptions reading;                   ///< of that log
   double lag_s = 0;                      ///< the sensors lag the reference by this
   bool estimate_lag = false;
+  double offset = 0;             ///< it reads so much more than the sensors; in its own unit
+  bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
 };
+
+/// What all sensors and the reference go through alike, before anything is learnt or fused.
+struct ScenePreparation {
+  std::string detrend =
+      "none";          ///< of kDetrends: what is subtracted from each, of the whole recording
+  double from_hz = 0;  ///< corner of a high-pass; 0: no filter
+  double to_hz = 0;    ///< corner of a low-pass behind it; 0: none
+  bool filters() const { return from_hz > 0; }
+};
+inline constexpr std::string_view kDetrends[] = {"none", "mean", "line"};
 
 /// What is taken out of the sensors before they are fused.
 struct SceneAlign {
@@ -71,6 +83,14 @@ struct SimulatedFrom {
   std::uint64_t seed = 1;
   std::vector<SensorFault> faults;
   std::uint64_t oversampling = 1;  ///< says how much noise its models gave a sample
+  bool truth_columns = true;       ///< the log has those of the true inputs and of the temperature
+  bool deterministic = false;      ///< with the steps, warm-ups and ramps of the models' recordings
+  /// Weights of the true inputs, sensor after sensor, where the scene's rows h are others: its reference names some inputs only.
+  std::vector<double> rows;
+  std::vector<std::string> command;  ///< that simulated it, without the program; for people
+  /// The whole simulation, which makes the log again. Empty in older scenes, and where a true input comes from a log that nobody
+  /// asked to read.
+  std::optional<ArraySimulation> simulation;
 };
 
 struct Scene {
@@ -92,6 +112,7 @@ struct Scene {
   std::vector<SensorFault> faults;
   std::optional<SimulatedFrom> simulated;  ///< of a recording that `simulate` wrote
   std::optional<SceneAlign> align;
+  ScenePreparation preparation;
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets
   std::vector<std::string> files;          ///< every file that was named and found, resolved
   Warnings warnings;

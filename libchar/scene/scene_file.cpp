@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
@@ -10,6 +11,7 @@
 #include "libchar/core/fields.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_reference.hpp"
@@ -23,7 +25,9 @@ namespace {
 class SceneReader {
  public:
   SceneReader(const Document& document, const std::string& path, const SceneReadOptions& options)
-      : top_(document, path, "", keys_of(scene_fields())), folder_{path, options.allow_outside} {}
+      : top_(document, path, "", keys_of(scene_fields())),
+        folder_{path, options.allow_outside},
+        again_(options.again) {}
 
   Scene read() {
     scene_.file = folder_.scene;
@@ -33,7 +37,7 @@ class SceneReader {
     samples();
     const SensorIndex index = read_scene_sensors(top_, folder_, scene_);
     read_scene_reference(top_, folder_, index, scene_);
-    read_scene_times(top_, index, scene_);
+    read_scene_times(top_, folder_for_again(), index, scene_);
     if (top_.has("algorithms")) algorithms();
     finish_simulation();
     return std::move(scene_);
@@ -48,8 +52,16 @@ class SceneReader {
                    "a scene has either a recording or a simulation",
                    "recording: FILE, or simulate: {rate_hz, duration_s, truth}");
     if (top_.has("recording"))
-      scene_.recording = scene_recording_of(top_, "recording", folder_, scene_.reading, scene_);
+      scene_.recording =
+          scene_recording_of(top_, "recording", folder_for_again(), scene_.reading, scene_);
     if (top_.has("simulate")) scene_.simulate = scene_simulation_of(top_, folder_, scene_);
+  }
+
+  // A log that is made again may be gone.
+  SceneFolder folder_for_again() const {
+    SceneFolder folder = folder_;
+    folder.may_be_absent = again_;
+    return folder;
   }
 
   void algorithms() {
@@ -104,6 +116,7 @@ class SceneReader {
 
   MapReader top_;
   SceneFolder folder_;
+  bool again_;
   Scene scene_;
 };
 
@@ -182,6 +195,18 @@ Scene parse_scene(std::string_view text, const std::string& path, const SceneRea
   const Document document = parse_document(text, path);
   check_format(document, path, "scene", 1);
   return SceneReader(document, path, options).read();
+}
+
+bool looks_like_scene(const std::string& path) {
+  const std::string small = ascii_lower(path);
+  for (const char* suffix : {".yaml", ".yml", ".json"})
+    if (small.ends_with(suffix)) return true;
+  if (read_once(path)) return false;
+  std::string front(4096, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(front.data(), static_cast<std::streamsize>(front.size()));
+  front.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return ("\n" + front).find("\nformat: scene") != std::string::npos;
 }
 
 bool is_scene_file(const std::string& path) {

@@ -109,8 +109,9 @@ std::string resolve_scene_file(const std::string& text,
                  kOutside);
   // As the system walks it: "link/.." is not always ".".
   const fs::path whole = fs::path(folder.scene).parent_path() / path;
-  check_kind(named, whole);
   std::error_code problem, root_problem;
+  if (folder.may_be_absent && !fs::exists(whole, problem)) return whole.string();
+  check_kind(named, whole);
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
   if (problem || root_problem)

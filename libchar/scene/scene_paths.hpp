@@ -11,6 +11,8 @@ namespace libchar {
 struct SceneFolder {
   std::string scene;           ///< path of the scene file
   bool allow_outside = false;  ///< files elsewhere may be named
+  bool may_be_absent =
+      false;  ///< a file that is not there yet is only checked for where it would be
 };
 
 /// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at

@@ -95,11 +95,10 @@ Entries ordered(Entries entries, const std::vector<std::string>& keys) {
   return entries;
 }
 
-Entry simulation_entry(const Scene& scene) {
-  const ArraySimulation& s = *scene.simulate;
+Entry simulation_entry(const ArraySimulation& s, const std::string& file) {
   const auto signal = [&](std::string key, const SignalSpec& spec, const std::string& name) {
     return part_entry(
-        std::move(key), signal_entries(spec, name, s.truth_names, scene.file), Entry::Form::flow);
+        std::move(key), signal_entries(spec, name, s.truth_names, file), Entry::Form::flow);
   };
   Entries below = entries_of(simulation_fields(), s);
   below.push_back({"samples", s.samples});
@@ -130,7 +129,9 @@ Entry sensors_entry(const Scene& scene) {
 }
 
 Entry reference_entry(const SceneReference& r, const std::string& scene) {
-  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag) return {"reference", r.channels};
+  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 &&
+      !r.estimate_offset)
+    return {"reference", r.channels};
   Entries below = {{"channels", r.channels}};
   append(below, entries_of(reference_fields(), r));
   if (r.recording) below.push_back(recording_entry(*r.recording, r.reading, scene));
@@ -138,6 +139,10 @@ Entry reference_entry(const SceneReference& r, const std::string& scene) {
     below.push_back(word_entry("lag_s", "estimate"));
   else if (r.lag_s != 0)
     below.push_back({"lag_s", r.lag_s});
+  if (r.estimate_offset)
+    below.push_back(word_entry("offset", "estimate"));
+  else if (r.offset != 0)
+    below.push_back({"offset", r.offset});
   return part_entry("reference", std::move(below));
 }
 
@@ -165,6 +170,16 @@ Entry align_entry(const SceneAlign& align) {
   return part_entry("align", std::move(below));
 }
 
+Entries preparation_entries(const ScenePreparation& p) {
+  Entries out;
+  if (p.detrend != "none") out.push_back(word_entry("detrend", p.detrend));
+  if (p.to_hz > 0)
+    out.push_back({"band_hz", std::vector<double>{p.from_hz, p.to_hz}});
+  else if (p.filters())
+    out.push_back({"high_pass_hz", p.from_hz});
+  return out;
+}
+
 Entry faults_entry(const std::vector<SensorFault>& faults, const Scene& scene) {
   Entries below;
   for (const SensorFault& fault : faults) {
@@ -180,6 +195,8 @@ Entry simulated_entry(const Scene& scene) {
   Entries below = entries_of(simulated_fields(), *scene.simulated);
   if (!scene.simulated->faults.empty())
     below.push_back(faults_entry(scene.simulated->faults, scene));
+  if (scene.simulated->simulation)
+    below.push_back(simulation_entry(*scene.simulated->simulation, scene.file));
   Entry entry = part_entry("simulated", std::move(below));
   entry.comment = "what the recording is known to hold; not injected again";
   return entry;
@@ -205,7 +222,7 @@ Entries scene_entries(const Scene& scene) {
   Entries out = head(scene);
   out.push_back(
       scene.simulate
-          ? simulation_entry(scene)
+          ? simulation_entry(*scene.simulate, scene.file)
           : recording_entry(scene.recording, scene.reading, scene.file, scene.resample_hz));
   out.push_back(sensors_entry(scene));
   if (scene.reference) out.push_back(reference_entry(*scene.reference, scene.file));
@@ -214,6 +231,7 @@ Entries scene_entries(const Scene& scene) {
   if (scene.evaluation) out.push_back(window_entry("evaluation", *scene.evaluation));
   if (scene.rest) out.push_back(window_entry("rest", *scene.rest));
   if (scene.warm_up_s) out.push_back({"warm_up_s", *scene.warm_up_s});
+  append(out, preparation_entries(scene.preparation));
   if (scene.align) out.push_back(align_entry(*scene.align));
   if (scene.fault_free_s) out.push_back({"fault_free_s", *scene.fault_free_s});
   if (!scene.faults.empty()) out.push_back(faults_entry(scene.faults, scene));

@@ -32,6 +32,28 @@ ReadOptions reading_of(const ArraySimulation& simulation, const SimulatedRecordi
   return reading;
 }
 
+// All that makes the log again.
+SimulatedFrom simulated_from(const ArraySimulation& simulation,
+                             const SimulatedRecording& recording,
+                             const Scene& scene) {
+  SimulatedFrom out;
+  out.seed = simulation.seed;
+  out.faults = simulation.faults;
+  out.oversampling = simulation.oversampling;
+  out.truth_columns = recording.truth;
+  out.deterministic = simulation.deterministic;
+  out.command = recording.command;
+  out.simulation = simulation;
+  const auto weighed_otherwise = [&](std::size_t i) {
+    return simulation.sensors[i].h != scene.sensors[i].h;
+  };
+  for (std::size_t i = 0; i < scene.sensors.size() && out.rows.empty(); ++i)
+    if (weighed_otherwise(i))
+      for (const SimulatedSensor& sensor : simulation.sensors)
+        out.rows.insert(out.rows.end(), sensor.h.begin(), sensor.h.end());
+  return out;
+}
+
 }  // namespace
 
 std::string output_unit(const SensorModel& model) {
@@ -64,6 +86,7 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.warm_up_s = original.warm_up_s;
   scene.tilt = original.tilt;
   scene.align = original.align;
+  scene.preparation = original.preparation;
   scene.algorithms = original.algorithms;
   scene.file = recording.scene_file;
   scene.name = std::filesystem::path(recording.file).stem().string();
@@ -79,7 +102,7 @@ Scene replay_scene(const ArraySimulation& simulation,
     for (SceneSensor& sensor : scene.sensors)
       sensor.h = weights_of(*scene.reference, sensor.h, simulation);
   }
-  scene.simulated = SimulatedFrom{simulation.seed, simulation.faults, simulation.oversampling};
+  scene.simulated = simulated_from(simulation, recording, scene);
   return scene;
 }
 

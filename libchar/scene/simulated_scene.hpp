@@ -14,6 +14,7 @@ struct SimulatedRecording {
   std::string scene_file;  ///< of the scene that replays it
   WriteOptions writing;    ///< of the log
   bool truth = true;       ///< with the columns of the true inputs and of the temperature
+  std::vector<std::string> command = {};  ///< that asks for it, without the program
 };
 
 /// The unit of a sensor's output.

@@ -356,7 +356,10 @@ TEST_CASE("replay: scenes that do not fit their files end with exit code 3 and w
   CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nevaluation: [10, 20]\n"),
              Contains("evaluation"));
   CHECK(ReplayBench::replay_of(bench.path("absent.yaml"), {"-o", bench.path("out")}).code == 3);
-  CHECK(ReplayBench::replay_of(bench.path("log.csv"), {"-o", bench.path("out")}).code == 3);
+  // A log is no scene: which of its channels are sensors is asked.
+  const auto log = ReplayBench::replay_of(bench.path("log.csv"), {"-o", bench.path("out")});
+  CHECK(log.code == 2);
+  CHECK_THAT(log.err, Contains("--sensors: error E0749"));
 }
 
 TEST_CASE("replay: nothing can run is said with exit code 4") {

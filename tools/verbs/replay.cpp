@@ -1,4 +1,4 @@
-// replay SCENE -o DIR: every algorithm that the scene has the data for, and the report that says which to use.
+// replay SCENE|LOG -o DIR: every algorithm that the data allow, and the report that says which to use.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,11 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "fault_help.hpp"
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/output_files.hpp"
-#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/write.hpp"
@@ -26,8 +24,8 @@
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
 #include "libchar/report/replay_text.hpp"
-#include "libchar/scene/fault_text.hpp"
-#include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/scene_writer.hpp"
+#include "replay_source.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -37,10 +35,11 @@ using namespace libchar;
 namespace fs = std::filesystem;
 
 struct ReplayVerb {
-  std::string scene, folder, estimates, learning, evaluation;
-  std::vector<std::string> algorithms, settings, faults;
+  ReplaySource source;
+  std::string folder, estimates, scene_file;
+  std::vector<std::string> algorithms, settings;
   bool explain = false, list = false, force = false, json = false, no_allan = false,
-       no_skip = false, no_faults = false, allow_outside = false;
+       no_skip = false;
   std::optional<double> window_s;
 };
 
@@ -49,26 +48,6 @@ struct ReplayVerb {
                                 const std::string& got = "",
                                 const std::string& hint = "") {
   throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
-}
-
-// "0..50", "50.." in seconds.
-TimeWindow window_from_words(const std::string& text, const std::string& option) {
-  const std::size_t dots = text.find("..");
-  if (dots == std::string::npos)
-    refuse_replay(option, "expected FROM..TO in seconds", text, "50..1000, or 50.. up to the end");
-  TimeWindow window;
-  try {
-    if (dots > 0) window.from_s = parse_duration_s(text.substr(0, dots));
-    if (dots + 2 < text.size() && text.substr(dots + 2) != "end")
-      window.to_s = parse_duration_s(text.substr(dots + 2));
-  } catch (const Error& error) {
-    Problem problem = error.problem();
-    problem.where = option;
-    throw Error(problem);
-  }
-  if (!(window.from_s < window.to_s))
-    refuse_replay(option, "a window goes from a time to a later one", text);
-  return window;
 }
 
 // "minque.gamma=0.99": an option of an algorithm that runs.
@@ -108,29 +87,22 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   return out;
 }
 
+// With what the command line says on top: the scene that --write-scene writes.
 Scene read_scene(const ReplayVerb& verb) {
-  Scene scene = read_scene_file(verb.scene, {verb.allow_outside});
-  if (verb.no_faults) {
-    scene.faults.clear();
-    if (scene.simulate) scene.simulate->faults.clear();
-  }
-  std::vector<std::string> names;
-  for (const SceneSensor& sensor : scene.sensors) names.push_back(sensor.name);
-  for (const std::string& words : verb.faults) {
-    const SensorFault fault = parse_fault(words, names);
-    scene.faults.push_back(fault);
-    if (scene.simulate) scene.simulate->faults.push_back(fault);
-  }
+  Scene scene = read_replay_source(verb.source, verb.scene_file);
+  if (auto algorithms = chosen(verb, scene); !algorithms.empty())
+    scene.algorithms = std::move(algorithms);
+  if (!verb.scene_file.empty()) scene.file = verb.scene_file;
   return scene;
 }
 
 std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& result) {
   std::vector<std::string> faults;
-  for (const std::string& fault : verb.faults) faults.push_back(printable(fault));
+  for (const std::string& fault : verb.source.faults) faults.push_back(printable(fault));
   return {{"window_s", finite_or_null(result.window_s)},
           {"allan", !verb.no_allan},
           {"no_skip", verb.no_skip},
-          {"no_faults", verb.no_faults},
+          {"no_faults", verb.source.no_faults},
           {"faults", std::move(faults)}};
 }
 
@@ -147,12 +119,8 @@ struct MadeFolder {
   bool old;
 };
 
-ReplayOptions options_of(const ReplayVerb& verb, const Scene& scene) {
+ReplayOptions options_of(const ReplayVerb& verb) {
   ReplayOptions options;
-  options.algorithms = chosen(verb, scene);
-  if (!verb.learning.empty()) options.learning = window_from_words(verb.learning, "--learning");
-  if (!verb.evaluation.empty())
-    options.evaluation = window_from_words(verb.evaluation, "--evaluation");
   options.window_s = verb.window_s.value_or(0);
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
@@ -165,7 +133,7 @@ void print_plan(Session& session,
                 const ReplayOptions& options) {
   const auto plan = explain_replay(scene, options, session.terminal);
   session.terminal.clear();
-  session.terminal.warn(scene.warnings, verb.scene);
+  session.terminal.warn(scene.warnings, verb.source.path);
   for (const std::string& sentence : plan) print_text(printable(sentence) + "\n");
 }
 
@@ -181,16 +149,20 @@ void check_replay_outputs(const ReplayVerb& verb,
   check_outputs(reports, verb.folder, inputs, verb.force);
 }
 
-void run_replay(Session& session, const ReplayVerb& verb) {
-  if (verb.list) return print(algorithms_text());
-  if (verb.scene.empty()) refuse_replay("SCENE", "which scene?", "", "--list names the algorithms");
-  const Scene scene = read_scene(verb);
-  const ReplayOptions options = options_of(verb, scene);
-  if (verb.explain) return print_plan(session, verb, scene, options);
-  if (verb.folder.empty())
-    refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
-  std::vector<std::string> inputs = scene.files;
-  inputs.push_back(verb.scene);
+// The scene as a file that replays to the same results.
+void write_scene(const ReplayVerb& verb,
+                 const Scene& scene,
+                 const std::vector<std::string>& inputs) {
+  const fs::path folder = fs::path(verb.scene_file).parent_path();
+  write_outputs({{verb.scene_file, scene_yaml(scene)}}, folder, inputs, verb.force);
+  print(fmt::format("wrote {}\n", printable(verb.scene_file)));
+}
+
+// Runs everything and writes the reports; says which files.
+void run_and_report(Session& session,
+                    const ReplayVerb& verb,
+                    const Scene& scene,
+                    const std::vector<std::string>& inputs) {
   const fs::path folder = verb.folder;
   const MadeFolder made(folder);
   std::vector<std::string> files;
@@ -203,11 +175,11 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   workspace.heap = heap_meter();
   std::optional<EstimatesWriter> estimates;
   if (!tracks.empty()) workspace.estimates = &estimates.emplace(tracks, verb.force);
-  ReplayResult result = replay(scene, options, session.terminal, workspace);
+  ReplayResult result = replay(scene, options_of(verb), session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
   result.settings = settings_of(verb, result);
-  session.terminal.warn(result.warnings, verb.scene);
+  session.terminal.warn(result.warnings, verb.source.path);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
   const ReplayView view = replay_view(result);
   const Json document = replay_json(view);
@@ -226,10 +198,25 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   print(written + "\n");
 }
 
+void run_replay(Session& session, const ReplayVerb& verb) {
+  if (verb.list) return print(algorithms_text());
+  if (verb.source.path.empty())
+    refuse_replay("SCENE", "which scene or recording?", "", "--list names the algorithms");
+  const Scene scene = read_scene(verb);
+  if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
+  if (verb.folder.empty() && verb.scene_file.empty())
+    refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
+  std::vector<std::string> inputs = scene.files;
+  inputs.push_back(verb.source.path);
+  if (!verb.scene_file.empty())
+    check_outputs({verb.scene_file}, fs::path(verb.scene_file).parent_path(), inputs, verb.force);
+  if (!verb.folder.empty()) run_and_report(session, verb, scene, inputs);
+  if (!verb.scene_file.empty()) write_scene(verb, scene, inputs);
+}
+
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
-  options.add_text(
-      "SCENE", verb->scene, "scene file (docs/scenes.md), of a recording or a simulation");
+  add_replay_source(options, session, verb->source);
   options.add_text("-o,--output", verb->folder, "folder for the results, made when absent")
       .value_name("DIR");
   options
@@ -240,22 +227,6 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .value_name("NAME,…");
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING");
-  options
-      .add_text("--learning",
-                verb->learning,
-                "learning window FROM..TO in seconds (default: the scene's)")
-      .value_name("WINDOW");
-  options
-      .add_text("--evaluation",
-                verb->evaluation,
-                "what is scored, FROM..TO in seconds (default: the scene's, else all behind the "
-                "learning window)")
-      .value_name("WINDOW");
-  options
-      .add_texts(
-          "--fault", verb->faults, std::string(kFaultHelp) + "; injected on top of the scene's")
-      .value_name("FAULT");
-  options.add_flag("--no-faults", verb->no_faults, "leave out the faults that the scene injects");
   options.add_duration("--window",
                        verb->window_s,
                        "length of the window RMS (default: a fiftieth of the evaluation)");
@@ -272,8 +243,13 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-skip",
                    verb->no_skip,
                    "do all work whether an output needs it or not; the numbers are the same");
-  options.add_flag(
-      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
+  options
+      .add_text(
+          "--write-scene",
+          verb->scene_file,
+          "write all that was said as a scene file, which replays to the same results; without "
+          "-o nothing else is done")
+      .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the table");
   return [&session, verb] { run_replay(session, *verb); };

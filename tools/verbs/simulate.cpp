@@ -147,27 +147,52 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
   check_names(simulation, verb);
 }
 
-// The scene that is simulated; of models, an empty one.
-Scene read_source(Session& session, const SimulateVerb& verb) {
+// Where log and scene go; neither is an input.
+void place_outputs(SimulateVerb& verb, const Scene& scene) {
+  if (verb.output.empty()) refuse_simulate("--output", "is required", "", "-o LOG");
+  if (verb.scene_path.empty())
+    verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   std::vector<std::string> outputs = {verb.output};
   if (!verb.no_scene) outputs.push_back(verb.scene_path);
-  const bool scene_given = verb.sources.size() == 1 && is_scene_file(verb.sources[0]);
   for (const std::string& source : verb.sources)
-    for (const std::string& output : {verb.output, verb.scene_path})
-      refuse_same_file(source, output);
+    for (const std::string& output : outputs) refuse_same_file(source, output);
+  refuse_scene_outputs(scene, outputs);
+}
+
+// The scene that `simulate` wrote beside a log makes the log again; the scene stands already.
+void simulate_again(SimulateVerb& verb, Scene& scene) {
+  if (!scene.simulated)
+    refuse_simulate(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
+  if (!scene.simulated->simulation)
+    refuse_simulate(verb.sources[0],
+                    "holds no simulation: an older version wrote it",
+                    "",
+                    "simulate what it was made from");
+  scene.simulate = std::move(scene.simulated->simulation);
+  if (verb.output.empty()) verb.output = scene.recording;
+  if (verb.scene_path.empty()) verb.no_scene = true;
+  if (!scene.simulated->truth_columns) verb.no_truth = true;
+  if (scene.reading.time_column == "none") verb.writing.no_time_column = true;
+  // The log is the output here, no input.
+  std::erase(scene.files, scene.recording);
+  scene.recording.clear();
+}
+
+// The scene that is simulated; of models, an empty one.
+Scene read_source(Session& session, SimulateVerb& verb) {
+  const bool scene_given = verb.sources.size() == 1 && is_scene_file(verb.sources[0]);
   Scene scene;
   if (scene_given) {
-    scene = read_scene_file(verb.sources[0], {verb.allow_outside});
+    scene = read_scene_file(verb.sources[0], {verb.allow_outside, true});
     session.terminal.warn(scene.warnings, scene.file);
-    refuse_scene_outputs(scene, outputs);
-    if (!scene.simulate)
-      refuse_simulate(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
+    if (!scene.simulate) simulate_again(verb, scene);
+    place_outputs(verb, scene);
     if (verb.devices > 1)
       refuse_simulate("--devices", "the scene says how many devices there are (count)");
   } else {
     scene.simulate = simulation_of_models(verb.sources, {verb.rate_hz, verb.devices});
     scene.file = verb.sources[0];
-    refuse_scene_outputs(scene, outputs);
+    place_outputs(verb, scene);
   }
   return scene;
 }
@@ -187,13 +212,18 @@ void stream(Session& session,
   }
 }
 
+// argv without the program.
+std::vector<std::string> words_of(const Session& session) {
+  return {session.command.begin() + (session.command.empty() ? 0 : 1), session.command.end()};
+}
+
 // Writes the log and the scene that replays it.
 SimulationSummary write_recording(Session& session,
                                   const SimulateVerb& verb,
                                   const ArraySimulation& simulation,
                                   const Scene& scene) {
   const SimulatedRecording recording{
-      verb.output, verb.scene_path, write_options(verb.writing), !verb.no_truth};
+      verb.output, verb.scene_path, write_options(verb.writing), !verb.no_truth, words_of(session)};
   const LogInfo info = log_info(simulation, recording);
   const auto writer = open_log_writer(verb.output, info, recording.writing);
   std::optional<WholeFile> scene_file;
@@ -215,8 +245,6 @@ SimulationSummary write_recording(Session& session,
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
-  if (verb.scene_path.empty())
-    verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;
   apply_options(session, verb, simulation);
@@ -281,14 +309,16 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   options
       .add_texts("SOURCE",
                  verb->sources,
-                 "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml)")
+                 "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml); one "
+                 "that simulate "
+                 "wrote makes its log again")
       .required()
       .value_name("MODEL…|SCENE");
   options
       .add_text("-o,--output",
                 verb->output,
-                "log to write; its suffix says the format (" + libchar::written_suffixes() + ")")
-      .required()
+                "log to write; its suffix says the format (" + libchar::written_suffixes() +
+                    "); of a scene that simulate wrote its own log")
       .value_name("LOG");
   add_length_options(options, *verb);
   add_input_options(options, *verb);

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/pattern.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -44,12 +45,22 @@ std::size_t column_of(const TableColumns& table,
                  "`time_column` none reads it as a channel"});
   std::vector<std::string> names;
   for (const std::size_t i : all_but_time(table)) names.push_back(table.names[i]);
-  throw Error({ErrorKind::usage,
-               "E0320",
-               file,
-               "there is no channel of this name",
-               wanted,
-               channel_hint(wanted, names, options)});
+  refuse_channel(wanted, names, options, file);
+}
+
+// A name wins over a pattern.
+std::vector<std::size_t> columns_of(const TableColumns& table,
+                                    const std::string& wanted,
+                                    const ReadOptions& options,
+                                    const std::string& file) {
+  std::vector<std::size_t> out;
+  if (is_pattern(wanted) && !find_column(table, wanted))
+    for (const std::size_t i : all_but_time(table))
+      if (matches(wanted, table.names[i]) ||
+          (i < table.texts.size() && matches(wanted, table.texts[i])))
+        out.push_back(i);
+  if (out.empty()) out.push_back(column_of(table, wanted, options, file));
+  return out;
 }
 
 }  // namespace
@@ -74,8 +85,21 @@ std::string channel_hint(const std::string& wanted,
   if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
     return "`channels` chooses by the names in the log, " + all +
            ", and `names` then name what was chosen";
-  const auto near = nearest(wanted, names);
+  const auto near = is_pattern(wanted) ? std::nullopt : nearest(wanted, names);
   return near ? fmt::format("did you mean {}?", *near) : "it has " + all;
+}
+
+void refuse_channel(const std::string& wanted,
+                    const std::vector<std::string>& names,
+                    const ReadOptions& options,
+                    const std::string& file) {
+  throw Error(
+      {ErrorKind::usage,
+       "E0320",
+       file,
+       is_pattern(wanted) ? "no channel matches this pattern" : "there is no channel of this name",
+       wanted,
+       channel_hint(wanted, names, options)});
 }
 
 std::vector<std::size_t> choose_channels(const TableColumns& table,
@@ -91,8 +115,8 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
                  "`time_column` none reads it as a channel"});
   if (options.channels.empty()) return chosen;
   chosen.clear();
-  for (const std::string& name : options.channels)
-    chosen.push_back(column_of(table, name, options, file));
+  for (const std::string& wanted : options.channels)
+    for (const std::size_t i : columns_of(table, wanted, options, file)) chosen.push_back(i);
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;

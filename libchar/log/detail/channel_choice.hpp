@@ -1,5 +1,5 @@
 #pragma once
-// Which columns of a log the options ask for: by name, or by position c0, c1…
+// Which columns of a log the options ask for: by name, by position c0, c1…, or by a pattern.
 
 #include <cstddef>
 #include <optional>
@@ -23,6 +23,12 @@ struct TableColumns {
 std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const ReadOptions& options,
                                          const std::string& file);
+
+/// Throws Error(usage): no channel of this name, or none that matches this pattern.
+[[noreturn]] void refuse_channel(const std::string& wanted,
+                                 const std::vector<std::string>& names,
+                                 const ReadOptions& options,
+                                 const std::string& file);
 
 /// What to say of a channel that is not in the log: the nearest of its names, or all of them; that --names give new names to
 /// what -c chooses, when the word is one of those.

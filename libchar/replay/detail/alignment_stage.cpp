@@ -27,10 +27,12 @@ LearningWindow window_of_alignment(const Scene& scene,
                                    const ReplayPlan& plan,
                                    const Instants& instants) {
   const SceneAlign& align = *scene.align;
-  if (align.learn == "run") return {plan.run_from, plan.run_to};
+  if (align.learn == "run")
+    return {std::clamp(instants.settled(), plan.run_from, plan.run_to), plan.run_to};
   if (align.learn == "learning") return {plan.learn_from, plan.learn_to};
   const TimeWindow& w = align.window ? *align.window : *scene.rest;
-  const LearningWindow out{instants.instant_at(w.from_s), instants.instant_at(w.to_s)};
+  const LearningWindow out{std::max(instants.instant_at(w.from_s), instants.settled()),
+                           instants.instant_at(w.to_s)};
   if (out.to - out.from < 2)
     throw Error({ErrorKind::input,
                  "E0903",

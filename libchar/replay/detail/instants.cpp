@@ -4,9 +4,11 @@
 //   own log, less than half as fast      one instant an interval [t_j, t_j + T) of the reference:
 //                                        the sensors' mean over it (at least half of its samples
 //                                        present) against its value
+// Then, of sensors and truth alike: a trend subtracted, one filter.
 #include "libchar/replay/detail/instants.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +46,12 @@ class Instants::Columns {
           std::size_t size,
           const InstantsBlock& out)
       : instants_(instants),
+        prepared_(instants.preparation_,
+                  instants.rows_ + (instants.info_.has_reference ? instants.inputs_ : 0)),
         from_(from),
         to_(to),
+        // A filter remembers all that was before.
+        first_(instants.preparation_.filter ? std::min<std::int64_t>(0, from) : from),
         out_(out),
         samples_(instants.rows_, size),
         truth_(instants.info_.has_reference ? instants.inputs_ : 0, size) {
@@ -61,7 +67,7 @@ class Instants::Columns {
       const auto sample = static_cast<std::int64_t>(first + k);
       if (instants_.info_.averaged > 1)
         average(sample, columns, k);
-      else if (sample >= from_ && sample < to_)
+      else if (sample >= first_ && sample < to_)
         put(sample, columns, k);
     }
   }
@@ -80,8 +86,10 @@ class Instants::Columns {
   double value(std::size_t row, double y) const {
     const std::size_t n = instants_.sensors_;
     if (row >= n) return y * instants_.scene_->sensors[row % n].scale;
-    const std::size_t sensor = row;
-    return (y * instants_.factors_[sensor]) - instants_.offsets_[sensor];
+    return (y * instants_.factors_[row]) - (instants_.preparation_.filter ? 0 : offset(row));
+  }
+  double offset(std::size_t row) const {
+    return row < instants_.sensors_ ? instants_.offsets_[row] : 0;
   }
 
   void put(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
@@ -93,7 +101,7 @@ class Instants::Columns {
       else
         truth_of([&](std::size_t c) { return columns[instants_.sensors_ + c][k]; });
     }
-    next();
+    next(sample);
   }
 
   // The interval of the reference that a sample falls into.
@@ -116,7 +124,7 @@ class Instants::Columns {
   }
 
   void close_interval() {
-    if (seen_ > 0 && interval_ >= from_ && interval_ < to_) {
+    if (seen_ > 0 && interval_ >= first_ && interval_ < to_) {
       for (std::size_t i = 0; i < instants_.rows_; ++i)
         samples_(static_cast<Eigen::Index>(i), filled_) =
             2 * counts_[i] >= instants_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i])
@@ -131,7 +139,7 @@ class Instants::Columns {
         const auto& track = instants_.track_->values[c];
         return j < track.size() ? track[j] : kMissing;
       });
-      next();
+      next(interval_);
     }
     seen_ = 0;
     std::fill(sums_.begin(), sums_.end(), 0.0);
@@ -149,15 +157,31 @@ class Instants::Columns {
       double sum = 0;
       const std::size_t n = instants_.scene_->reference->channels.size();
       for (std::size_t c = 0; c < n; ++c) sum += reference(c);
-      truth_(0, filled_) = instants_.truth_factor_ * sum / static_cast<double>(n);
+      truth_(0, filled_) =
+          instants_.truth_factor_ * sum / static_cast<double>(n) - instants_.reference_offset_;
     } else {
       for (std::size_t c = 0; c < instants_.inputs_; ++c)
-        truth_(static_cast<Eigen::Index>(c), filled_) = instants_.truth_factor_ * reference(c);
+        truth_(static_cast<Eigen::Index>(c), filled_) =
+            instants_.truth_factor_ * reference(c) - instants_.reference_offset_;
     }
   }
 
-  void next() {
-    if (++filled_ == samples_.cols()) flush();
+  // The column is complete: what all rows go through, and on to the next one.
+  void next(std::int64_t instant) {
+    if (!instants_.preparation_.idle()) prepare(instant);
+    if (instant >= from_ && ++filled_ == samples_.cols()) flush();
+  }
+
+  void prepare(std::int64_t instant) {
+    for (Eigen::Index i = 0; i < samples_.rows(); ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      double& y = samples_(i, filled_);
+      y = prepared_(row, instant, y);
+      if (instants_.preparation_.filter) y -= offset(row);
+    }
+    for (Eigen::Index j = 0; j < truth_.rows(); ++j)
+      truth_(j, filled_) =
+          prepared_(static_cast<std::size_t>(samples_.rows() + j), instant, truth_(j, filled_));
   }
 
   void flush() {
@@ -172,7 +196,8 @@ class Instants::Columns {
   }
 
   const Instants& instants_;
-  std::int64_t from_, to_, done_ = 0, interval_ = -1;
+  Prepared prepared_;
+  std::int64_t from_, to_, first_, done_ = 0, interval_ = -1;
   const InstantsBlock& out_;
   Eigen::MatrixXd samples_, truth_;
   Eigen::Index filled_ = 0;
@@ -220,7 +245,44 @@ Instants::Instants(const Scene& scene, Progress& progress)
   }
   inputs_ = info_.input_names.size();
   if (scene.tilt) convert_tilt();
+  if (scene.reference) reference_offset_ = scene.reference->offset * truth_factor_;
   if (scene.reference && scene.reference->lag_s != 0) set_lag(scene.reference->lag_s, progress);
+  prepare(progress);
+}
+
+// Trends are those of the whole recording: one reading more.
+void Instants::prepare(Progress& progress) {
+  const ScenePreparation& asked = scene_->preparation;
+  preparation_ = {};
+  if (asked.detrend != "none") {
+    constexpr std::size_t kTrendBlock = 4096;
+    TrendMeter meter;
+    Eigen::MatrixXd rows;
+    pass_recorded(
+        0,
+        info_.count,
+        kTrendBlock,
+        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+          rows.resize(samples.rows() + truth.rows(), samples.cols());
+          rows << samples, truth;
+          meter.push(first, rows);
+        },
+        progress);
+    preparation_.trends = meter.lines(asked.detrend == "line");
+  }
+  if (!asked.filters()) return;
+  const double most_hz = info_.rate_hz / 2, highest_hz = std::max(asked.from_hz, asked.to_hz);
+  if (highest_hz >= most_hz)
+    throw Error({ErrorKind::input,
+                 "E0912",
+                 scene_->file,
+                 fmt::format("{}: instants at {} Hz have nothing above {} Hz",
+                             asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
+                             significant(info_.rate_hz, 6),
+                             significant(most_hz, 6)),
+                 significant(highest_hz, 6),
+                 "corners are below half the rate"});
+  preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
 }
 
 // One instant for each interval of the reference that lies within the recording.
@@ -237,6 +299,7 @@ void Instants::fit_slow_reference() {
   info_.rate_hz = track_->rate_hz;
   info_.reference_use =
       fmt::format("the sensors' means over its intervals of {} s", significant(interval_s, 6));
+  note_partial_intervals(length_s);
   if (info_.count == 0)
     throw Error({ErrorKind::input,
                  "E0902",
@@ -244,6 +307,24 @@ void Instants::fit_slow_reference() {
                  "reference and recording have no time in common",
                  "",
                  "their stamps must count from one epoch; from_s and to_s choose stretches"});
+}
+
+// The first and the last interval may reach beyond the recording: a mean over a part of one is no mean over it.
+void Instants::note_partial_intervals(double length_s) {
+  const double begun_s = track_->start_s + scene_->reference->lag_s;
+  const double end_s = info_.start_s + static_cast<double>(info_.count) / info_.rate_hz;
+  const double ended_s = begun_s + static_cast<double>(track_->values[0].size()) / track_->rate_hz;
+  const double least_s = 0.5 / source_.info().rate_hz;
+  std::vector<std::string> parts;
+  if (begun_s < 0 && info_.start_s > least_s)
+    parts.push_back(fmt::format("the first {} s", significant(info_.start_s, 6)));
+  if (ended_s > length_s && length_s - end_s > least_s)
+    parts.push_back(fmt::format("the last {} s", significant(length_s - end_s, 6)));
+  if (!parts.empty())
+    info_.reference_use +=
+        fmt::format("; {} of the recording, only a part of an interval{}, not used",
+                    fmt::join(parts, " and "),
+                    parts.size() > 1 ? " each, are" : ", are");
 }
 
 // Filters work in radians; scores speak the reference's unit.
@@ -262,6 +343,7 @@ void Instants::convert_tilt() {
 void Instants::set_lag(double lag_s, Progress& progress) {
   lag_s_ = lag_s;
   if (lag_s != 0 && !track_) track_ = read_reference(*scene_, source_, progress);
+  if (!preparation_.trends.empty()) prepare(progress);  // the reference's line is later now
 }
 
 std::int64_t Instants::instant_at(double time_s) const {

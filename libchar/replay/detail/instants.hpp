@@ -12,6 +12,7 @@
 
 #include "libchar/core/progress.hpp"
 #include "libchar/replay/detail/aligned_pass.hpp"
+#include "libchar/replay/detail/preparation.hpp"
 #include "libchar/replay/detail/reference_track.hpp"
 #include "libchar/replay/detail/scene_source.hpp"
 
@@ -53,18 +54,27 @@ class Instants {
                      Progress& progress) const;
   /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
   double factor(std::size_t sensor) const { return factors_[sensor]; }
-  /// Subtracted from every sample of a sensor from now on.
+  /// From here on what the filter of the scene began with has died away; 0 without one.
+  std::int64_t settled() const { return preparation_.filter ? preparation_.filter->settling : 0; }
+  /// Variance of white noise behind that filter, over its variance in front; 1 without one.
+  double noise_gain() const { return preparation_.filter ? preparation_.filter->noise_gain : 1; }
+  /// Subtracted from every sample of a sensor from now on, behind the filter.
   void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
   /// What is taken out of the sensors from now on; it must live as long.
   void set_alignment(const SceneAlignment* alignment) { alignment_ = alignment; }
   /// The truth of an instant is the reference so much earlier, from now on. Reads the reference
   /// into memory when it is not there yet.
   void set_lag(double lag_s, Progress& progress);
+  /// Subtracted from the one true input from now on; as fused (a tilt in rad).
+  void set_reference_offset(double offset) { reference_offset_ = offset; }
+  double reference_offset() const { return reference_offset_; }
   /// The first instant at or after a time in seconds from the recording's first sample.
   std::int64_t instant_at(double time_s) const;
 
  private:
   void fit_slow_reference();
+  void note_partial_intervals(double length_s);
+  void prepare(Progress& progress);
   void convert_tilt();
   class Columns;
 
@@ -73,7 +83,8 @@ class Instants {
   std::optional<ReferenceTrack> track_;
   InstantsInfo info_;
   std::vector<double> offsets_, factors_;  // a sensor each
-  double truth_factor_ = 1, lag_s_ = 0;
+  double truth_factor_ = 1, lag_s_ = 0, reference_offset_ = 0;
+  Preparation preparation_;
   std::size_t sensors_, inputs_, rows_ = 0;  // rows: with the further axes
   const SceneAlignment* alignment_ = nullptr;
 };

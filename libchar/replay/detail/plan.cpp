@@ -102,7 +102,9 @@ fusion::Array describe_array(const Scene& scene,
   const bool known =
       plan.live.empty() ? (levels.array() > 0).all() : (levels(plan.live).array() > 0).all();
   if (known) array.noise_levels = levels;
-  if (known && std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const SceneSensor& s) {
+  // A filter takes out the drifts that the models describe.
+  if (known && !scene.preparation.filters() &&
+      std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const SceneSensor& s) {
         return s.model.has_value();
       }))
     for (std::size_t i = 0; i < scene.sensors.size(); ++i)
@@ -155,6 +157,23 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
   return live;
 }
 
+// What is run and not scored, or not learnt from: what the scene says, and what a filter needs to settle.
+void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& plan) {
+  const std::int64_t settled = instants.settled();
+  plan.learn_from = std::min(std::max(plan.learn_from, settled), plan.learn_to);
+  plan.warm_up = std::max<std::int64_t>(
+      std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz), settled - plan.run_from);
+  if (plan.warm_up > plan.run_to - plan.run_from - 2)
+    refuse(
+        scene,
+        "E0903",
+        settled > plan.run_from
+            ? "the evaluation ends before the filter has settled"
+            : "warm_up_s: it leaves fewer than two instants of the evaluation to score",
+        fmt::format("{} s",
+                    significant(static_cast<double>(plan.warm_up) / instants.info().rate_hz, 6)));
+}
+
 // Seconds from the recording's first sample to instants.
 void place_windows(const Scene& scene,
                    const ReplayOptions& options,
@@ -196,12 +215,7 @@ void place_windows(const Scene& scene,
   plan.run_to = instants.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
     refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
-  plan.warm_up = std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz);
-  if (plan.warm_up > plan.run_to - plan.run_from - 2)
-    refuse(scene,
-           "E0903",
-           "warm_up_s: it leaves fewer than two instants of the evaluation to score",
-           significant(*scene.warm_up_s, 6));
+  place_warm_up(scene, instants, plan);
   for (const SensorFault& fault : instants.source().known_faults())
     if (fault.from_s >= end_s)
       plan.warnings.add(

@@ -7,6 +7,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/preparation_words.hpp"
 
 namespace libchar {
 namespace {
@@ -105,6 +106,12 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
                               seconds(scene.rest->from_s),
                               seconds(scene.rest->to_s)));
+  for (std::string& sentence : preparation_words(scene.preparation))
+    out.push_back(std::move(sentence));
+  if (scene.reference && scene.reference->estimate_offset)
+    out.push_back(fmt::format(
+        "offset of the reference: found {}, subtracted from it",
+        plan.learn_to > plan.learn_from ? "in the learning window" : "on the evaluation itself"));
   if (scene.align) out.push_back(align(*scene.align));
   if (scene.reference) out.push_back(learning(plan));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",

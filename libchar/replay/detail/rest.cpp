@@ -1,5 +1,6 @@
 #include "libchar/replay/detail/rest.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,7 @@ void RestMeter::push(const Eigen::MatrixXd& samples) {
       }
       if (s.samples == 0) s.origin = y;  // an offset must cost no digits
       s.sum += y - s.origin;
+      s.squares += (y - s.origin) * (y - s.origin);
       ++s.samples;
       if (s.has_last) {
         s.differences += (y - s.last) * (y - s.last);
@@ -39,6 +41,16 @@ std::vector<double> RestMeter::noise_variances() const {
   for (const Sums& s : sensors_)
     out.push_back(s.pairs > 0 ? s.differences / (2 * static_cast<double>(s.pairs))
                               : std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
+std::vector<double> RestMeter::variances() const {
+  std::vector<double> out;
+  for (const Sums& s : sensors_) {
+    const auto n = static_cast<double>(s.samples);
+    out.push_back(n > 1 ? std::max(0.0, (s.squares - s.sum * s.sum / n) / (n - 1))
+                        : std::numeric_limits<double>::quiet_NaN());
+  }
   return out;
 }
 

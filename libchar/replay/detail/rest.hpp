@@ -17,10 +17,12 @@ class RestMeter {
   void push(const Eigen::MatrixXd& samples);
   std::vector<double> means() const;            ///< 0 without a sample
   std::vector<double> noise_variances() const;  ///< NaN without a difference
+  /// About the mean; NaN without two samples. Of filtered samples, which have no drift, and of which neighbours are alike.
+  std::vector<double> variances() const;
 
  private:
   struct Sums {
-    double origin = 0, sum = 0, differences = 0, last = 0;
+    double origin = 0, sum = 0, squares = 0, differences = 0, last = 0;
     std::uint64_t samples = 0, pairs = 0;
     bool has_last = false;
   };

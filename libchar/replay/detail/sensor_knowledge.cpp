@@ -1,7 +1,9 @@
 // Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
-// scene's own figure, else from the sensor's model, else from the stretch at rest.
+// scene's own figure, else from the sensor's model, else from the stretch at rest. Behind a filter the first two are multiplied by
+// what it leaves of white noise, the third is measured there.
 #include "libchar/replay/detail/sensor_knowledge.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
@@ -16,7 +18,7 @@ constexpr std::size_t kRestBlock = 4096;
 
 RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progress) {
   RestMeter meter(scene.sensors.size());
-  const std::int64_t from = instants.instant_at(scene.rest->from_s),
+  const std::int64_t from = std::max(instants.instant_at(scene.rest->from_s), instants.settled()),
                      to = instants.instant_at(scene.rest->to_s);
   if (to - from < 2)
     throw Error({ErrorKind::input,
@@ -24,7 +26,7 @@ RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progre
                  scene.file,
                  "rest: the window holds fewer than two instants of the recording",
                  "",
-                 ""});
+                 instants.settled() > 0 ? "the filter has to settle first" : ""});
   instants.pass(
       from,
       to,
@@ -47,7 +49,7 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
   if (scene.rest) {
     const RestMeter rest = at_rest(scene, instants, progress);
     out.offsets = rest.means();
-    out.noise_variances = rest.noise_variances();
+    out.noise_variances = scene.preparation.filters() ? rest.variances() : rest.noise_variances();
     out.noise_sources.assign(n, "rest");
     // Gravity is no offset.
     if (scene.tilt)
@@ -56,8 +58,8 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
   const InstantsInfo& info = instants.info();
   for (std::size_t i = 0; i < n; ++i) {
     const SceneSensor& sensor = scene.sensors[i];
-    const double to_fused =
-        instants.factor(i) * instants.factor(i) / static_cast<double>(info.averaged);
+    const double to_fused = instants.factor(i) * instants.factor(i) * instants.noise_gain() /
+                            static_cast<double>(info.averaged);
     if (sensor.noise) {
       out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
       out.noise_sources[i] = "the scene";

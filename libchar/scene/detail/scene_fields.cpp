@@ -22,6 +22,40 @@ Row<T> elsewhere(std::string_view key, std::string_view kind, const FieldText& t
   return custom<T, read_elsewhere<T>, written_elsewhere<T>>(key, kind, text);
 }
 
+Row<Scene> detrend_row() {
+  return elsewhere<Scene>("detrend",
+                          "none, mean, line",
+                          {.meaning = "what is subtracted from each sensor and the reference: its "
+                                      "mean, or its line of least "
+                                      "squares, over the whole recording",
+                           .otherwise = "none"});
+}
+
+Row<Scene> high_pass_hz_row() {
+  return elsewhere<Scene>(
+      "high_pass_hz",
+      "Hz",
+      {.meaning = "all sensors and the reference go through one high-pass (below)",
+       .otherwise = "none"});
+}
+
+Row<Scene> band_hz_row() {
+  return elsewhere<Scene>(
+      "band_hz",
+      "[low, high]",
+      {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
+       .otherwise = "none"});
+}
+
+Row<Scene> align_row() {
+  return elsewhere<Scene>(
+      "align",
+      "map",
+      {.meaning = "delays, biases, gains and misalignments are learnt and taken "
+                  "out before fusion (below)",
+       .otherwise = "the sensors are fused as recorded"});
+}
+
 }  // namespace
 
 const Fields<Scene>& scene_fields() {
@@ -55,11 +89,10 @@ const Fields<Scene>& scene_fields() {
                        "[from, to]",
                        {.meaning = "the true inputs are zero there: each sensor's mean is "
                                    "subtracted, and its noise measured"}),
-      elsewhere<Scene>("align",
-                       "map",
-                       {.meaning = "delays, biases, gains and misalignments are learnt and taken "
-                                   "out before fusion (below)",
-                        .otherwise = "the sensors are fused as recorded"}),
+      align_row(),
+      detrend_row(),
+      high_pass_hz_row(),
+      band_hz_row(),
       elsewhere<Scene>("fault_free_s",
                        "s",
                        {.meaning = "so long no sensor fails, from the start of the evaluation",
@@ -71,10 +104,12 @@ const Fields<Scene>& scene_fields() {
                       "scored",
            .otherwise = "0"}),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
-      elsewhere<Scene>("simulated",
-                       "map",
-                       {.meaning = "written by `simulate`: `{seed, oversampling, faults}` that the "
-                                   "recording holds already; nothing of it is injected again"}),
+      elsewhere<Scene>(
+          "simulated",
+          "map",
+          {.meaning = "written by `simulate`: `{seed, oversampling, faults, simulate…}` that the "
+                      "recording holds already; nothing of it is injected again, and "
+                      "`simulate` makes the log again from it"}),
       elsewhere<Scene>("algorithms",
                        "list",
                        {.meaning = "names, or maps `{name: NAME, OPTION: NUMBER…}`",
@@ -142,6 +177,12 @@ const Fields<SceneReference>& reference_fields() {
           "lag_s",
           "s, or estimate",
           {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
+      elsewhere<SceneReference>("delay", "s, or estimate", {.meaning = "another word for lag_s"}),
+      elsewhere<SceneReference>("offset",
+                                "number, or estimate",
+                                {.meaning = "the reference reads so much more than the sensors, in "
+                                            "its own unit; it is subtracted from it (below)",
+                                 .otherwise = "0"}),
   };
   return rows;
 }
@@ -311,6 +352,15 @@ const Fields<SimulatedFrom>& simulated_fields() {
       field<&SimulatedFrom::oversampling>("oversampling",
                                           {.meaning = "likewise", .otherwise = "1"}),
       elsewhere<SimulatedFrom>("faults", "list", {.meaning = "that its samples hold"}),
+      elsewhere<SimulatedFrom>("simulate", "map", {.meaning = "the rest of the simulation"}),
+      field<&SimulatedFrom::rows>("rows",
+                                  {.meaning = "weights of the true inputs, sensor after sensor",
+                                   .otherwise = "the sensors' h"}),
+      field<&SimulatedFrom::truth_columns>(
+          "truth_columns", {.meaning = "the log has the true inputs", .otherwise = "true"}),
+      field<&SimulatedFrom::deterministic>(
+          "deterministic", {.meaning = "steps, warm-ups and ramps", .otherwise = "false"}),
+      field<&SimulatedFrom::command>("command", {.meaning = "for people"}),
   };
   return rows;
 }

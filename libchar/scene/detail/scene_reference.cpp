@@ -15,6 +15,20 @@
 namespace libchar {
 namespace {
 
+// A number, or the word for finding it out.
+void read_or_estimate(const MapReader& at,
+                      const char* key,
+                      const std::string& expected,
+                      double& value,
+                      bool& estimate) {
+  if (!at.has(key)) return;
+  const Document& node = at.require(key);
+  estimate = node.kind == Document::Kind::text && node.text == "estimate";
+  if (node.kind == Document::Kind::text && !estimate)
+    at.refuse(key, fmt::format("expected {}, or estimate", expected));
+  if (!estimate) value = at.number(key);
+}
+
 void read_options(const MapReader& at,
                   const SceneFolder& folder,
                   SceneReference& reference,
@@ -25,12 +39,14 @@ void read_options(const MapReader& at,
   read_fields(reference_fields(), at, reference);
   if (at.has("recording"))
     reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
-  if (!at.has("lag_s")) return;
-  const Document& lag = at.require("lag_s");
-  reference.estimate_lag = lag.kind == Document::Kind::text && lag.text == "estimate";
-  if (lag.kind == Document::Kind::text && !reference.estimate_lag)
-    at.refuse("lag_s", "expected a number of seconds, or estimate");
-  if (!reference.estimate_lag) reference.lag_s = at.number("lag_s");
+  if (at.has("lag_s") && at.has("delay"))
+    refuse_scene("E0735", at, "delay", "lag_s says the same", "give one of them");
+  read_or_estimate(at,
+                   at.has("delay") ? "delay" : "lag_s",
+                   "a number of seconds",
+                   reference.lag_s,
+                   reference.estimate_lag);
+  read_or_estimate(at, "offset", "a number", reference.offset, reference.estimate_offset);
 }
 
 void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scene) {

@@ -8,7 +8,10 @@
 #include <cctype>
 #include <cmath>
 
+#include "libchar/core/error.hpp"
+#include "libchar/core/pattern.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/channel_names.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
@@ -28,6 +31,26 @@ std::string lower(std::string text) {
   return text;
 }
 
+// The channel that an entry of the list means; empty: it says none.
+std::string channel_word(const Document& entry) {
+  if (is_scalar(entry)) return entry.text;
+  const DocumentEntry* found = entry.find("channel");
+  if (found == nullptr) found = entry.find("name");
+  return found != nullptr && is_scalar(found->value) ? found->value.text : "";
+}
+
+// Channels of the scene's own recording that are its reference: no pattern means them.
+std::vector<std::string> reference_words(const MapReader& top) {
+  const DocumentEntry* reference = top.node().find("reference");
+  if (reference == nullptr || reference->value.find("recording") != nullptr) return {};
+  const DocumentEntry* channels = reference->value.find("channels");
+  const Document& node = channels != nullptr ? channels->value : reference->value;
+  std::vector<std::string> out;
+  for (const Document& name : is_scalar(node) ? std::vector<Document>{node} : node.list)
+    out.push_back(name.text);
+  return out;
+}
+
 class SensorsReader {
  public:
   SensorsReader(const MapReader& top, const SceneFolder& folder, Scene& scene)
@@ -37,7 +60,12 @@ class SensorsReader {
     const auto& list = top_.list("sensors");
     if (list.empty()) refuse_scene("E0736", top_, "sensors", "expected at least one sensor");
     if (list.size() > kMostSensors) refuse_number(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) sensor(list[i], fmt::format("sensors[{}]", i));
+    match_patterns(list);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const auto found = channels_.find(channel_word(list[i]));
+      matched_ = found == channels_.end() ? nullptr : &found->second;
+      sensor(list[i], fmt::format("sensors[{}]", i));
+    }
     check_names();
     return std::move(index_);
   }
@@ -60,12 +88,47 @@ class SensorsReader {
         fmt::format("{} sensors are more than the {} that a scene may have", number, kMostSensors));
   }
 
+  // Of a recording, and where nobody wrote one, the recording is not looked at.
+  void match_patterns(const std::vector<Document>& list) {
+    if (scene_.simulate) return;
+    std::vector<std::string> patterns, named = reference_words(top_);
+    for (const Document& entry : list) {
+      const std::string word = channel_word(entry);
+      (is_pattern(word) ? patterns : named).push_back(word);
+    }
+    if (patterns.empty()) return;
+    try {
+      const auto found = channel_names(scene_.recording, scene_.reading, patterns, named);
+      for (std::size_t k = 0; k < patterns.size(); ++k) channels_.emplace(patterns[k], found[k]);
+    } catch (const Error& error) {
+      if (error.problem().kind != ErrorKind::usage) throw;
+      for (std::size_t i = 0; i < list.size(); ++i)
+        if (channel_word(list[i]) == error.problem().got)
+          refuse_scene_value("E0738",
+                             top_,
+                             list[i],
+                             fmt::format("sensors[{}]", i),
+                             fmt::format("{} in {}", error.problem().what, scene_.recording),
+                             error.problem().hint);
+      throw;
+    }
+  }
+
+  // One sensor, or one a channel that the pattern stands for.
+  void add_matched(SceneSensor sensor, const Place& place) {
+    if (matched_ == nullptr) return add(sensor, place);
+    for (const std::string& channel : *matched_) {
+      sensor.name = sensor.channel = channel;
+      add(sensor, place);
+    }
+  }
+
   void sensor(const Document& node, const std::string& path) {
     SceneSensor sensor;
     if (is_scalar(node)) {
       if (scene_.simulate) refuse("E0743", {&node, path}, kNeedsModel, kModelHint);
       sensor.name = sensor.channel = node.text;
-      return add(sensor, {&node, path});
+      return add_matched(sensor, {&node, path});
     }
     const MapReader at(node, folder_.scene, path, keys_of(sensor_fields()));
     const char* named = at.has("name") || !at.has("channel") ? "name" : "channel";
@@ -82,6 +145,14 @@ class SensorsReader {
       at.refuse("scale", "a scale beyond 1e100 or below 1e-100 leaves no room for squares");
     check_simulated(at);
     if (at.has("count")) return devices(sensor, at, place);
+    if (matched_ == nullptr || !at.has("name") || !at.has("channel"))
+      return add_matched(sensor, place);
+    if (matched_->size() > 1)
+      refuse("E0737",
+             place,
+             fmt::format("one name for {} channels", matched_->size()),
+             "leave name out: each sensor has its channel's");
+    sensor.channel = matched_->front();
     add(sensor, place);
   }
 
@@ -147,6 +218,8 @@ class SensorsReader {
   Scene& scene_;
   SensorIndex index_;
   std::map<std::string, SensorModel> models_;
+  std::map<std::string, std::vector<std::string>> channels_;  // that patterns stand for
+  const std::vector<std::string>* matched_ = nullptr;         // of an entry with a pattern
 };
 
 }  // namespace

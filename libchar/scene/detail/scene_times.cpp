@@ -7,11 +7,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
+#include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
+#include "libchar/scene/detail/scene_simulation.hpp"
+#include "libchar/scene/preparation_check.hpp"
 
 namespace libchar {
 namespace {
@@ -70,6 +74,24 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   return align;
 }
 
+// [low, high], or a high-pass alone.
+void read_preparation(const MapReader& top, Scene& scene) {
+  ScenePreparation& out = scene.preparation;
+  if (top.has("detrend"))
+    out.detrend = top.word("detrend", {std::begin(kDetrends), std::end(kDetrends)});
+  if (top.has("band_hz") && top.has("high_pass_hz"))
+    refuse_scene(
+        "E0735", top, "high_pass_hz", "band_hz has a high-pass already", "give one of them");
+  if (top.has("high_pass_hz")) out.from_hz = top.number("high_pass_hz", kPositive);
+  if (top.has("band_hz")) std::tie(out.from_hz, out.to_hz) = top.interval("band_hz");
+  const char* key = out.to_hz != 0          ? "band_hz"
+                    : out.filters()         ? "high_pass_hz"
+                    : out.detrend != "none" ? "detrend"
+                                            : "reference";
+  if (const std::string why = why_not_prepared(scene); !why.empty())
+    refuse_scene("E0750", top, key, why);
+}
+
 // Either every sensor names as many other axes, or none does.
 void check_cross(const MapReader& top, const SensorIndex& index, const Scene& scene) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
@@ -120,7 +142,58 @@ std::vector<SensorFault> faults_of(const MapReader& from,
   return out;
 }
 
-SimulatedFrom simulated_of(const MapReader& top, const Scene& scene, const SensorIndex& index) {
+// Is a true input, or the temperature, read from a log?
+bool has_recorded_signal(const Document& node) {
+  const DocumentEntry* kind = node.find("kind");
+  if (kind != nullptr && kind->value.text == "recording") return true;
+  return std::any_of(node.list.begin(), node.list.end(), has_recorded_signal) ||
+         std::any_of(node.map.begin(), node.map.end(), [](const DocumentEntry& entry) {
+           return has_recorded_signal(entry.value);
+         });
+}
+
+// The simulation that `simulate` began with: the same sensors and faults, and its own rows h.
+std::optional<ArraySimulation> simulation_again(const MapReader& at,
+                                                const SimulatedFrom& from,
+                                                const SceneFolder& folder,
+                                                Scene& scene) {
+  if (!folder.may_be_absent && has_recorded_signal(at.require("simulate"))) return std::nullopt;
+  SceneFolder files = folder;
+  files.may_be_absent = false;
+  ArraySimulation out = scene_simulation_of(at, files, scene);
+  out.seed = from.seed;
+  out.oversampling = from.oversampling;
+  out.deterministic = from.deterministic;
+  out.faults = from.faults;
+  const std::size_t inputs = out.truth.size();
+  if (!from.rows.empty() && from.rows.size() != inputs * scene.sensors.size())
+    refuse_scene("E0741",
+                 at,
+                 "rows",
+                 fmt::format("expected {} weights, one a sensor and true input, found {}",
+                             inputs * scene.sensors.size(),
+                             from.rows.size()));
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const SceneSensor& sensor = scene.sensors[i];
+    out.sensors.push_back({sensor.name, sensor.model.value_or(SensorModel{}), sensor.h});
+    if (!from.rows.empty())
+      out.sensors[i].h.assign(from.rows.begin() + static_cast<std::ptrdiff_t>(i * inputs),
+                              from.rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * inputs));
+  }
+  try {
+    check(out);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.where = at.where(at.require("simulate"));
+    throw Error(problem);
+  }
+  return out;
+}
+
+SimulatedFrom simulated_of(const MapReader& top,
+                           const SceneFolder& folder,
+                           Scene& scene,
+                           const SensorIndex& index) {
   if (scene.simulate)
     refuse_scene("E0735", top, "simulated", "tells what a recording holds; this scene has none");
   const MapReader at = top.map("simulated", keys_of(simulated_fields()));
@@ -128,12 +201,16 @@ SimulatedFrom simulated_of(const MapReader& top, const Scene& scene, const Senso
   read_fields(simulated_fields(), at, from);
   check_oversampling(at, from.oversampling);
   from.faults = faults_of(at, scene, index);
+  if (at.has("simulate")) from.simulation = simulation_again(at, from, folder, scene);
   return from;
 }
 
 }  // namespace
 
-void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& scene) {
+void read_scene_times(const MapReader& top,
+                      const SceneFolder& folder,
+                      const SensorIndex& index,
+                      Scene& scene) {
   scene.learning = window_of(top, "learning");
   scene.evaluation = window_of(top, "evaluation");
   scene.rest = window_of(top, "rest");
@@ -141,8 +218,9 @@ void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& sce
   scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
   scene.faults = faults_of(top, scene, index);
   check_cross(top, index, scene);
+  read_preparation(top, scene);
   if (top.has("align")) scene.align = align_of(top, scene);
-  if (top.has("simulated")) scene.simulated = simulated_of(top, scene, index);
+  if (top.has("simulated")) scene.simulated = simulated_of(top, folder, scene, index);
 }
 
 }  // namespace libchar

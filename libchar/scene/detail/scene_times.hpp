@@ -6,6 +6,9 @@
 namespace libchar {
 
 /// The blocks `learning`, `evaluation`, `rest`, `fault_free_s`, `faults` and `simulated`.
-void read_scene_times(const MapReader& top, const SensorIndex& index, Scene& scene);
+void read_scene_times(const MapReader& top,
+                      const SceneFolder& folder,
+                      const SensorIndex& index,
+                      Scene& scene);
 
 }  // namespace libchar

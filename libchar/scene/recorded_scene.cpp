@@ -1,0 +1,200 @@
+#include "libchar/scene/recorded_scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/file_name.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/log/channel_names.hpp"
+#include "libchar/model/model_reader.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kNamesShown = 24;
+
+[[noreturn]] void refuse_words(const std::string& where,
+                               const std::string& what,
+                               const std::string& got = "",
+                               const std::string& hint = "") {
+  throw Error({ErrorKind::usage, "E0749", where, what, got, hint});
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), kNamesShown);
+  return fmt::format(
+      "{}{}",
+      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      shown < names.size() ? ", …" : "");
+}
+
+// Three axes are in one unit, too: nobody but the caller knows which channels see one input.
+[[noreturn]] void ask_for_sensors(const SensorRecording& r) {
+  ReadOptions head = r.reading;
+  head.units.clear();
+  std::vector<std::string> names;
+  for (const Channel& channel : read_log_head(r.file, head).channels) names.push_back(channel.name);
+  refuse_words("`sensors`",
+               "which channels measure one quantity?",
+               "",
+               fmt::format("{} has {}; patterns such as 'gyro*' name several",
+                           printable(r.file),
+                           printable(list_of(names))));
+}
+
+std::vector<std::string> together(const std::vector<std::vector<std::string>>& parts,
+                                  const char* option) {
+  std::vector<std::string> out;
+  std::set<std::string> seen;
+  for (const auto& part : parts)
+    for (const std::string& name : part) {
+      if (!seen.insert(name).second) refuse_words(option, "a channel is named twice", name);
+      out.push_back(name);
+    }
+  return out;
+}
+
+struct Chosen {
+  std::vector<std::string> sensors, reference;
+};
+
+// Spelled otherwise is the same unit.
+bool same_unit(const std::string& a, const std::string& b) {
+  const auto x = find_unit(a), y = find_unit(b);
+  return a == b || (x && y && x->quantity == y->quantity && x->to_si == y->to_si);
+}
+
+// Names first: a pattern for the sensors leaves the reference out.
+Chosen choose_columns(const SensorRecording& r) {
+  Chosen out;
+  const bool own_log = !r.reference_file.empty();
+  if (!r.reference.empty())
+    out.reference = together(
+        channel_names(
+            own_log ? r.reference_file : r.file, own_log ? ReadOptions{} : r.reading, r.reference),
+        "`reference`");
+  out.sensors = together(
+      channel_names(
+          r.file, r.reading, r.sensors, own_log ? std::vector<std::string>{} : out.reference),
+      "`sensors`");
+  if (out.sensors.size() > kMostSensors)
+    refuse_words("`sensors`",
+                 fmt::format("{} sensors are more than the {} that a scene may have",
+                             out.sensors.size(),
+                             kMostSensors));
+  for (const std::string& name : out.reference)
+    if (!own_log && std::find(out.sensors.begin(), out.sensors.end(), name) != out.sensors.end())
+      refuse_words("`reference`",
+                   "the reference is one of the sensors: its own error would be hidden",
+                   name,
+                   "name sensors and reference apart");
+  return out;
+}
+
+// Those of `names`, with their units.
+std::vector<Channel> channels_of(const std::string& file,
+                                 ReadOptions reading,
+                                 const std::vector<std::string>& names) {
+  if (reading.names.empty()) reading.channels = names;
+  std::vector<Channel> out;
+  for (const Channel& channel : read_log_head(file, reading).channels)
+    if (std::find(names.begin(), names.end(), channel.name) != names.end()) out.push_back(channel);
+  return out;
+}
+
+// Where two channels say their units, they say one.
+void check_units(const SensorRecording& r, const Chosen& chosen) {
+  std::vector<std::string> here = chosen.sensors;
+  if (r.reference_file.empty())
+    here.insert(here.end(), chosen.reference.begin(), chosen.reference.end());
+  std::vector<Channel> all = channels_of(r.file, r.reading, here);
+  if (!r.reference_file.empty())
+    for (Channel& channel : channels_of(r.reference_file, {}, chosen.reference))
+      all.push_back(std::move(channel));
+  std::erase_if(all, [](const Channel& channel) { return channel.unit.empty(); });
+  for (const Channel& channel : all)
+    if (!same_unit(all[0].unit, channel.unit))
+      refuse_words(r.file,
+                   fmt::format("{} is in {}, and {} in {}: they are not one quantity in one unit",
+                               printable(all[0].name, 40),
+                               printable(all[0].unit, 40),
+                               printable(channel.name, 40),
+                               printable(channel.unit, 40)),
+                   "",
+                   "choose others with `sensors`, say what they are in with `units`, or give each "
+                   "a scale and a unit in a scene file");
+}
+
+void add_model(SceneSensor& sensor, const std::string& file, Scene& scene) {
+  sensor.model = read_model_file(file);
+  if (std::find(scene.files.begin(), scene.files.end(), file) == scene.files.end())
+    scene.files.push_back(file);
+}
+
+void add_models(const SensorRecording& r, Scene& scene) {
+  if (!r.models_folder.empty())
+    for (SceneSensor& sensor : scene.sensors) {
+      const fs::path file =
+          fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
+      if (!fs::exists(file))
+        refuse_words("`models`",
+                     fmt::format("there is no model of sensor {}", printable(sensor.name, 40)),
+                     file.string(),
+                     "characterize writes one for each channel into its folder");
+      add_model(sensor, file.string(), scene);
+    }
+  for (const auto& [name, file] : r.models) {
+    const auto sensor = std::find_if(
+        scene.sensors.begin(), scene.sensors.end(), [&](const auto& s) { return s.name == name; });
+    if (sensor == scene.sensors.end())
+      refuse_words("`model`", "there is no sensor of this name among those chosen", name);
+    add_model(*sensor, file, scene);
+  }
+}
+
+}  // namespace
+
+Scene scene_from_recording(const SensorRecording& r) {
+  if (read_once(r.file))
+    refuse_words(r.file,
+                 "a replay reads its recording several times, and this can be read once only",
+                 "",
+                 "save it in a file");
+  if (r.sensors.empty()) ask_for_sensors(r);
+  if (r.reference.empty() && !r.reference_file.empty())
+    refuse_words("`reference_log`", "which of its channels is the reference?", r.reference_file);
+  const Chosen chosen = choose_columns(r);
+  check_units(r, chosen);
+  Scene scene;
+  scene.file = r.scene_file.empty() ? r.file : r.scene_file;
+  scene.name = fs::path(r.file).stem().string();
+  scene.recording = r.file;
+  scene.reading = r.reading;
+  scene.files.push_back(r.file);
+  for (const std::string& name : chosen.sensors) {
+    SceneSensor sensor;
+    sensor.name = sensor.channel = name;
+    scene.sensors.push_back(std::move(sensor));
+  }
+  if (!chosen.reference.empty()) {
+    SceneReference& reference = scene.reference.emplace();
+    reference.channels = chosen.reference;
+    reference.mean = chosen.reference.size() > 1;
+    if (!r.reference_file.empty()) {
+      reference.recording = r.reference_file;
+      scene.files.push_back(r.reference_file);
+    }
+  }
+  add_models(r, scene);
+  return scene;
+}
+
+}  // namespace libchar
