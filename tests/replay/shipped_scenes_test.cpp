@@ -72,7 +72,8 @@ TEST_CASE("a simulated recording keeps its oversampling", "[shipped]") {
   Scene scene = read_scene_file((test::fixture("scenes") / "rv-5.1-fault-free.yaml").string());
   scene.recording = (test::fixture("imu_at_rest.csv")).string();
   scene.file = (test::fixture("") / "written.scene.yaml").string();
-  scene.simulated = SimulatedFrom{7, {}, scene.simulate->oversampling};
+  scene.simulated.emplace().seed = 7;
+  scene.simulated->oversampling = scene.simulate->oversampling;
   scene.simulate.reset();
   const Scene again = parse_scene(scene_yaml(scene), scene.file);
   REQUIRE(again.simulated);
