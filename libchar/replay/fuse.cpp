@@ -272,6 +272,7 @@ void Fusing::describe_scene() {
   scene_.recording = log_;
   scene_.reading = options_.reading;
   scene_.resample_hz = learnt_.resample_hz;
+  scene_.preparation = learnt_.preparation;
   const bool tilt = !learnt_.tilt.gyroscope.empty();
   if (tilt) scene_.tilt = SceneTilt{};
   if (!learnt_.interpolation.empty()) scene_.align = SceneAlign{};

@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kFormat = "fusion";
 constexpr Word kInterpolations[] = {{"sinc"}, {"cubic"}};
+constexpr Word kTrends[] = {{"none"}, {"mean"}, {"line"}};
 
 // A list of maps, each with rows of its own.
 template <class Part>
@@ -180,6 +181,9 @@ class FileCheck {
   FileCheck(const MapReader& top, const LearntFusion& learnt) : top_(top), learnt_(learnt) {}
 
   void run() const {
+    if (learnt_.preparation.to_hz > 0 && !(learnt_.preparation.from_hz > 0 &&
+                                           learnt_.preparation.from_hz < learnt_.preparation.to_hz))
+      top_.refuse("low_pass_hz", "stands behind a high-pass with a lower corner");
     if (learnt_.sensors.empty()) top_.refuse("sensors", "expected at least one sensor");
     if (learnt_.inputs.empty()) top_.refuse("inputs", "expected at least one input");
     for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) sensor(i);
@@ -335,6 +339,23 @@ const Fields<LearntFusion>& fusion_fields() {
            .range = kPositive,
            .meaning = "samples are interpolated to this rate by their stamps",
            .otherwise = "they are not"}),
+      field<&LearntFusion::preparation, &ScenePreparation::detrend>(
+          "detrend",
+          {.words = kTrends,
+           .meaning = "subtracted from each sensor, of the whole log",
+           .otherwise = "none"}),
+      field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
+          "high_pass_hz",
+          {.unit = "Hz",
+           .range = kNotNegative,
+           .meaning = "corner of a high-pass that each sensor goes through",
+           .otherwise = "no filter"}),
+      field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
+          "low_pass_hz",
+          {.unit = "Hz",
+           .range = kNotNegative,
+           .meaning = "corner of the low-pass behind it",
+           .otherwise = "none"}),
       field<&LearntFusion::learning_instants>(
           "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
       field<&LearntFusion::fault_free_s>("fault_free_s",

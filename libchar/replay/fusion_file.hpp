@@ -11,6 +11,7 @@
 
 #include "libchar/core/fields.hpp"
 #include "libchar/fusion/learnt.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
 
@@ -71,6 +72,7 @@ struct LearntFusion {
   double rate_hz = 0;                 ///< of the instants that were fused
   std::optional<double> average_s;    ///< an instant is the mean over so long
   std::optional<double> resample_hz;  ///< samples are interpolated to this rate by their stamps
+  ScenePreparation preparation;       ///< what every sensor goes through first
   std::uint64_t learning_instants = 0;
   double fault_free_s = 0;  ///< so long no sensor failed at the start of the run
   std::vector<LearntInput> inputs;

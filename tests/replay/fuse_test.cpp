@@ -187,6 +187,17 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
     CHECK(fused.sensors[0].unit == "m");
     CHECK(fused.sensors[1].unit == "rad/s");
   }
+  SECTION("trends and filters run over the new log") {
+    const std::string prepared =
+        GENERATE(std::string("high_pass_hz: 0.05\n"),
+                 std::string("band_hz: [0.05, 20]\n"),
+                 std::string("detrend: line\n"),
+                 std::string("align: {learn: [0, 35]}\nhigh_pass_hz: 0.1\n"));
+    const FuseBench bench(kScene + prepared);
+    Kept kept;
+    bench.fuse_log(kept, by("mean"));
+    CHECK(differences(kept.columns[0], bench.replayed.of("mean", false)) == 0);
+  }
   SECTION("three sensors of two inputs") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n  - {name: a, h: [1, 0]}\n"

@@ -88,6 +88,7 @@ LearntFusion learnt_of(const Scene& scene,
   out.rate_hz = info.rate_hz;
   if (info.averaged > 1) out.average_s = 1 / info.rate_hz;
   out.resample_hz = scene.resample_hz;
+  out.preparation = scene.preparation;
   out.learning_instants = static_cast<std::uint64_t>(plan.array.learning_samples);
   out.fault_free_s = static_cast<double>(plan.array.fault_free_samples) / info.rate_hz;
   for (std::size_t j = 0; j < info.input_names.size(); ++j)
