@@ -253,6 +253,91 @@ class FileCheck {
   const LearntFusion& learnt_;
 };
 
+// ---- the keys of the file, in three parts ----
+
+const Fields<LearntFusion>& head_rows() {
+  static const Fields<LearntFusion> rows = {
+      constant<LearntFusion>("format", std::string(kFormat)),
+      constant<LearntFusion>("version", std::uint64_t{1}),
+      tool_row<LearntFusion>(),
+      field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
+      custom<LearntFusion, read_sources, write_sources>(
+          "learnt_from", "list", {.meaning = "files it was learnt from: their path and SHA-256"}),
+      field<&LearntFusion::rate_hz>("rate_hz",
+                                    {.unit = "Hz",
+                                     .range = kPositive,
+                                     .meaning = "of the instants that were fused",
+                                     .written = Written::always,
+                                     .required = true}),
+  };
+  return rows;
+}
+
+// How samples become instants.
+const Fields<LearntFusion>& instant_rows() {
+  static const Fields<LearntFusion> rows = {
+      field<&LearntFusion::average_s>("average_s",
+                                      {.unit = "s",
+                                       .range = kPositive,
+                                       .meaning = "an instant is the mean over so long",
+                                       .otherwise = "one sample"}),
+      field<&LearntFusion::resample_hz>(
+          "resample_hz",
+          {.unit = "Hz",
+           .range = kPositive,
+           .meaning = "samples are interpolated to this rate by their stamps",
+           .otherwise = "they are not"}),
+      field<&LearntFusion::preparation, &ScenePreparation::detrend>(
+          "detrend",
+          {.words = kTrends,
+           .meaning = "subtracted from each sensor, of the whole log",
+           .otherwise = "none"}),
+      field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
+          "high_pass_hz",
+          {.unit = "Hz",
+           .range = kNotNegative,
+           .meaning = "corner of a high-pass that each sensor goes through",
+           .otherwise = "no filter"}),
+      field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
+          "low_pass_hz",
+          {.unit = "Hz",
+           .range = kNotNegative,
+           .meaning = "corner of the low-pass behind it",
+           .otherwise = "none"}),
+      field<&LearntFusion::learning_instants>(
+          "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
+      field<&LearntFusion::fault_free_s>("fault_free_s",
+                                         {.unit = "s",
+                                          .range = kNotNegative,
+                                          .meaning = "so long no sensor failed at the start",
+                                          .otherwise = "0: not known"}),
+  };
+  return rows;
+}
+
+const Fields<LearntFusion>& content_rows() {
+  static const Fields<LearntFusion> rows = {
+      custom<LearntFusion, read_inputs, write_inputs>(
+          "inputs", "list", {.meaning = "what is estimated: `name`, `unit`", .required = true}),
+      field<&LearntFusion::interpolation>("interpolation",
+                                          {.words = kInterpolations,
+                                           .meaning = "of the alignment",
+                                           .otherwise = "nothing is aligned"}),
+      part<&LearntFusion::tilt>("tilt",
+                                learnt_tilt_fields(),
+                                {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
+      custom<LearntFusion, read_sensors, write_sensors>(
+          "sensors", "list", {.meaning = "in their order (below)", .required = true}),
+      field<&LearntFusion::recommended>(
+          "recommended", {.meaning = "label of the best method", .otherwise = "none"}),
+      custom<LearntFusion, read_algorithms, write_algorithms>(
+          "algorithms", "list", {.meaning = "that ran (below)", .required = true}),
+      custom<LearntFusion, read_complete, write_complete>(
+          "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
+  };
+  return rows;
+}
+
 }  // namespace
 
 const Fields<LearntSensor>& fusion_sensor_fields() {
@@ -315,72 +400,12 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
 }
 
 const Fields<LearntFusion>& fusion_fields() {
-  static const Fields<LearntFusion> rows = {
-      constant<LearntFusion>("format", std::string(kFormat)),
-      constant<LearntFusion>("version", std::uint64_t{1}),
-      tool_row<LearntFusion>(),
-      field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
-      custom<LearntFusion, read_sources, write_sources>(
-          "learnt_from", "list", {.meaning = "files it was learnt from: their path and SHA-256"}),
-      field<&LearntFusion::rate_hz>("rate_hz",
-                                    {.unit = "Hz",
-                                     .range = kPositive,
-                                     .meaning = "of the instants that were fused",
-                                     .written = Written::always,
-                                     .required = true}),
-      field<&LearntFusion::average_s>("average_s",
-                                      {.unit = "s",
-                                       .range = kPositive,
-                                       .meaning = "an instant is the mean over so long",
-                                       .otherwise = "one sample"}),
-      field<&LearntFusion::resample_hz>(
-          "resample_hz",
-          {.unit = "Hz",
-           .range = kPositive,
-           .meaning = "samples are interpolated to this rate by their stamps",
-           .otherwise = "they are not"}),
-      field<&LearntFusion::preparation, &ScenePreparation::detrend>(
-          "detrend",
-          {.words = kTrends,
-           .meaning = "subtracted from each sensor, of the whole log",
-           .otherwise = "none"}),
-      field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
-          "high_pass_hz",
-          {.unit = "Hz",
-           .range = kNotNegative,
-           .meaning = "corner of a high-pass that each sensor goes through",
-           .otherwise = "no filter"}),
-      field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
-          "low_pass_hz",
-          {.unit = "Hz",
-           .range = kNotNegative,
-           .meaning = "corner of the low-pass behind it",
-           .otherwise = "none"}),
-      field<&LearntFusion::learning_instants>(
-          "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
-      field<&LearntFusion::fault_free_s>("fault_free_s",
-                                         {.unit = "s",
-                                          .range = kNotNegative,
-                                          .meaning = "so long no sensor failed at the start",
-                                          .otherwise = "0: not known"}),
-      custom<LearntFusion, read_inputs, write_inputs>(
-          "inputs", "list", {.meaning = "what is estimated: `name`, `unit`", .required = true}),
-      field<&LearntFusion::interpolation>("interpolation",
-                                          {.words = kInterpolations,
-                                           .meaning = "of the alignment",
-                                           .otherwise = "nothing is aligned"}),
-      part<&LearntFusion::tilt>("tilt",
-                                learnt_tilt_fields(),
-                                {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
-      custom<LearntFusion, read_sensors, write_sensors>(
-          "sensors", "list", {.meaning = "in their order (below)", .required = true}),
-      field<&LearntFusion::recommended>(
-          "recommended", {.meaning = "label of the best method", .otherwise = "none"}),
-      custom<LearntFusion, read_algorithms, write_algorithms>(
-          "algorithms", "list", {.meaning = "that ran (below)", .required = true}),
-      custom<LearntFusion, read_complete, write_complete>(
-          "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
-  };
+  static const Fields<LearntFusion> rows = [] {
+    Fields<LearntFusion> all = head_rows();
+    for (const auto* part : {&instant_rows(), &content_rows()})
+      all.rows.insert(all.rows.end(), part->rows.begin(), part->rows.end());
+    return all;
+  }();
   return rows;
 }
 
