@@ -33,43 +33,46 @@ bool is_document(const std::filesystem::path& path) {
   return path.extension() == ".json";
 }
 
-/// Names that a document gives as files written with it, itself among them; none of another document.
-std::vector<std::string> files_of_document(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const Json document = Json::parse(file, nullptr, false);
-  if (!document.is_object() || !document.contains("files") || !document["files"].is_array())
-    return {};
-  std::vector<std::string> names;
-  for (const Json& value : document["files"])
-    if (value.is_string()) names.push_back(value.get<std::string>());
-  const bool itself =
-      std::find(names.begin(), names.end(), path.filename().string()) != names.end();
-  return itself ? names : std::vector<std::string>{};
-}
-
-/// What earlier runs wrote into the folder: plain names of regular files there.
-std::set<std::string> earlier_files(const std::filesystem::path& folder) {
-  namespace fs = std::filesystem;
+/// Names that a document gives as files written with it: plain ones.
+std::set<std::string> files_named_in(const Json& document) {
   std::set<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (!is_document(entry.path()) || !entry.is_regular_file(ignored)) continue;
-    for (const std::string& name : files_of_document(entry.path()))
-      if (name.find('/') == std::string::npos &&
-          fs::symlink_status(folder / name, ignored).type() == fs::file_type::regular)
-        names.insert(name);
-  }
+  if (!document.is_object() || !document.contains("files") || !document["files"].is_array())
+    return names;
+  for (const Json& value : document["files"])
+    if (value.is_string() && value.get<std::string>().find('/') == std::string::npos)
+      names.insert(value.get<std::string>());
   return names;
 }
 
-/// Temporary files (NAME.tmp-PROCESS-NUMBER) that a process which is no more has left.
+/// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
+std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
+  namespace fs = std::filesystem;
+  std::set<std::string> before, now;
+  for (const OutputFile& output : outputs) {
+    now.insert(fs::path(output.path).filename().string());
+    if (!is_document(output.path)) continue;
+    std::ifstream file(output.path, std::ios::binary);
+    before.merge(files_named_in(Json::parse(file, nullptr, false)));
+    now.merge(files_named_in(Json::parse(output.text, nullptr, false)));
+  }
+  std::vector<std::string> stale;
+  for (const std::string& name : before) {
+    std::error_code ignored;
+    const fs::path path = fs::path(outputs.front().path).replace_filename(name);
+    if (!now.contains(name) && fs::symlink_status(path, ignored).type() == fs::file_type::regular)
+      stale.push_back(name);
+  }
+  return stale;
+}
+
+/// Temporary files (WholeFile) that a process which is no more has left.
 void remove_litter(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    const std::size_t mark = name.rfind(".tmp-");
+    const std::size_t mark = name.rfind(kTemporaryMark);
     if (mark == std::string::npos || !entry.is_regular_file(ignored)) continue;
-    const std::string number = name.substr(mark + 5);
+    const std::string number = name.substr(mark + kTemporaryMark.size());
     pid_t process = 0;
     const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
     if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
@@ -122,7 +125,6 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
   const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
   make_folder(folder);
   const FolderLock lock(folder);
-  const std::vector<std::string> names = names_of(outputs);
   finish_journal(folder);
   remove_litter(folder);
   std::vector<WholeFile> files;
@@ -130,13 +132,9 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
     for (const std::string& input : inputs) refuse_same_file(input, output.path);
     files.emplace_back(output.path, force).write(output.text);
   }
-  std::vector<std::string> stale;
-  const bool replaces = force && std::any_of(names.begin(), names.end(), is_document);
-  for (const std::string& name : replaces ? earlier_files(folder) : std::set<std::string>{}) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+  const auto stale = force ? stale_files(outputs) : std::vector<std::string>{};
+  for (const std::string& name : stale)
     for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
-    stale.push_back(name);
-  }
   for (WholeFile& file : files) file.prepare();
   if (before_names) before_names();
   give_names(files, stale, folder);

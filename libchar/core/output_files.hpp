@@ -22,10 +22,10 @@ void check_outputs(const std::vector<std::string>& paths,
                    bool force);
 
 /// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
-/// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked: sets
-/// of two runs never mix. With `force`, what the folder's documents name as files of an earlier run ("files", themselves among them)
-/// and is not of this set is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run is writing there.
-/// `before_names` runs when everything is on disk. Returns the names that were removed.
+/// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
+/// meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names as its files ("files") and
+/// the new one does not is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run
+/// keeps writing there. `before_names` runs when everything is on disk. Returns the names that were removed.
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
                                        const std::filesystem::path& folder,
                                        const std::vector<std::string>& inputs,

@@ -27,6 +27,10 @@ bool exists(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0;
 }
 
+std::string temporary_name(const std::string& path, int attempt) {
+  return fmt::format("{}{}{}-{}", path, kTemporaryMark, ::getpid(), attempt);
+}
+
 // A device or pipe (/dev/stdout, /dev/full) cannot be replaced by renaming: it is written through.
 bool is_special(const std::string& path) {
   struct stat status {};
@@ -71,7 +75,7 @@ WholeFile::WholeFile(std::string path, bool overwrite)
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
-    temporary_ = fmt::format("{}.tmp-{}-{}", path_, ::getpid(), attempt);
+    temporary_ = temporary_name(path_, attempt);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
@@ -127,7 +131,7 @@ void WholeFile::prepare() {
   if (temporary_.empty()) {  // give the nameless file a temporary name first: linkat cannot replace
     const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
     for (int attempt = 0; attempt < 100; ++attempt) {
-      const std::string name = fmt::format("{}.tmp-{}-{}", path_, ::getpid(), attempt);
+      const std::string name = temporary_name(path_, attempt);
       if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
         temporary_ = name;
         break;
@@ -155,11 +159,14 @@ void WholeFile::commit() {
   }
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
   temporary_.clear();
-  const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {  // best effort: not every file system lets a folder be synchronised
-    ::fsync(folder);
-    ::close(folder);
-  }
+  sync_folder(folder_of(path_));
+}
+
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
 }
 
 void commit_with_description(WholeFile& data, WholeFile& description) {

@@ -8,6 +8,9 @@
 
 namespace libchar {
 
+/// Between the name that a file will have and the process and number that make a temporary one of it.
+inline constexpr std::string_view kTemporaryMark = ".libchar-tmp-";
+
 class WholeFile {
  public:
   /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false, or when the folder cannot be written.
@@ -43,6 +46,9 @@ class WholeFile {
 /// Gives both files their names, or neither as far as POSIX allows: both are on disk before the first is renamed; an older
 /// `description` goes first and the new one comes last, so that at no instant one stands beside data that it does not describe.
 void commit_with_description(WholeFile& data, WholeFile& description);
+
+/// New names in the folder get to the disk: best effort, not every file system lets a folder be synchronised.
+void sync_folder(const std::string& folder);
 
 /// One call for small files.
 void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite = false);

@@ -8,6 +8,7 @@
 
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 
@@ -443,6 +444,7 @@ LearntFusion parse_fusion_file(std::string_view text, const std::string& path) {
 LearntFusion read_fusion_file(const std::string& path) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(path)) return parse_fusion_file(read_document_text(path), path);
+  refuse_interrupted(path);
   const std::string inside = (fs::path(path) / "fusion.yaml").string();
   if (!fs::exists(inside))
     throw Error({ErrorKind::input,

@@ -279,6 +279,7 @@ ReplayView replay_view(const ReplayResult& r) {
   out.remarks = remarks_of(r);
   out.warnings = all_warnings(r);
   out.figures = figures_of(r);
+  out.shown_verdict = out.figures.time_matters ? out.verdict : out.steady_verdict;
   out.simulation_identity = identity_of(r.scene);
   return out;
 }

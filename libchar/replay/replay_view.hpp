@@ -88,6 +88,7 @@ struct ReplayView {
   std::string optimum;                         ///< what it is of: "fixed weights", "tilt filters"
   std::vector<std::string> verdict;            ///< sentences, with what was measured
   std::vector<std::string> steady_verdict;     ///< without: the same in every run
+  std::vector<std::string> shown_verdict;      ///< of both, what people read
   double duration_s = 0, end_s = 0;            ///< of the run
   std::vector<AlgorithmView> algorithms;       ///< all, in the order of the table
   std::vector<const AlgorithmView*> ranked;    ///< those that ran, best first, bounds among them

@@ -76,7 +76,7 @@ std::string scores_note(const ReplayView& view) {
 // Costs are worth a word only where they could decide.
 std::string overview(const ReplayView& view) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
-  for (const std::string& sentence : view.figures.time_matters ? view.verdict : view.steady_verdict)
+  for (const std::string& sentence : view.shown_verdict)
     out += "<p>" + html_text(sentence) + "</p>\n";
   return out + "</div>\n" + facts(view) + "</section>\n";
 }

@@ -197,9 +197,10 @@ std::string skipped_section(const ReplayView& view) {
 }  // namespace
 
 std::string replay_markdown(const ReplayView& view) {
-  std::string out = fmt::format("# {}\n\n{}\n\n",
-                                markdown_text(view.title),
-                                markdown_text(fmt::format("{}", fmt::join(view.verdict, " "))));
+  std::string out =
+      fmt::format("# {}\n\n{}\n\n",
+                  markdown_text(view.title),
+                  markdown_text(fmt::format("{}", fmt::join(view.shown_verdict, " "))));
   out += run_facts(view) + "\n\n" +
          (view.result->has_reference ? with_reference(view) : without_reference(view));
   out +=

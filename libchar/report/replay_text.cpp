@@ -68,7 +68,7 @@ std::string replay_text(const ReplayView& view) {
                         printable(fmt::format("{}", fmt::join(s.labels, ", "))),
                         printable(s.reason));
   text += alignment_text(view);
-  text += "\n" + printable(fmt::format("{}", fmt::join(view.verdict, " "))) + "\n";
+  text += "\n" + printable(fmt::format("{}", fmt::join(view.shown_verdict, " "))) + "\n";
   return text;
 }
 

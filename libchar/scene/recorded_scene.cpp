@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
@@ -140,7 +141,8 @@ void add_model(SceneSensor& sensor, const std::string& file, Scene& scene) {
 }
 
 void add_models(const SensorRecording& r, Scene& scene) {
-  if (!r.models_folder.empty())
+  if (!r.models_folder.empty()) {
+    refuse_interrupted(r.models_folder);
     for (SceneSensor& sensor : scene.sensors) {
       const fs::path file =
           fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
@@ -151,6 +153,7 @@ void add_models(const SensorRecording& r, Scene& scene) {
                      "characterize writes one for each channel into its folder");
       add_model(sensor, file.string(), scene);
     }
+  }
   for (const auto& [name, file] : r.models) {
     const auto sensor = std::find_if(
         scene.sensors.begin(), scene.sensors.end(), [&](const auto& s) { return s.name == name; });

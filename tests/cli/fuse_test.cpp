@@ -45,9 +45,14 @@ struct FuseProgram {
     REQUIRE(test::run({"simulate", path("scene.yaml"), "-o", path("log.csv")}).code == 0);
   }
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  test::Ran fuse(std::vector<std::string> more) const {
-    more.insert(more.begin(), "fuse");
-    return test::run(more);
+  /// fuse LOG --with RUN -o OUT and more; files of the folder.
+  test::Ran fuse(const std::string& log,
+                 const std::string& with,
+                 const std::string& out,
+                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"fuse", path(log), "--with", path(with), "-o", path(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run(words);
   }
   test::TemporaryFolder folder;
 };
@@ -56,8 +61,7 @@ struct FuseProgram {
 
 TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   const FuseProgram bench;
-  const auto ran = bench.fuse(
-      {bench.path("log.csv"), "--with", bench.path("run"), "-o", bench.path("fused.csv")});
+  const auto ran = bench.fuse("log.csv", "run", "fused.csv");
   INFO(ran.out + ran.err);
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out,
@@ -72,13 +76,8 @@ TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   CHECK(fused.info.samples == 6000);
   CHECK(fused.info.time.rate_hz == Approx(100));
   // The replay's own estimates: its evaluation begins at 10 s.
-  const auto same = bench.fuse({bench.path("log.csv"),
-                                "--with",
-                                bench.path("run/fusion.yaml"),
-                                "--algorithm",
-                                "least-squares",
-                                "-o",
-                                bench.path("same.npy")});
+  const auto same =
+      bench.fuse("log.csv", "run/fusion.yaml", "same.npy", {"--algorithm", "least-squares"});
   REQUIRE(same.code == 0);
   const libchar::Recording npy = libchar::read_recording(bench.path("same.npy"));
   const libchar::Recording replayed = libchar::read_recording(bench.path("run/estimates.csv"));
@@ -88,17 +87,10 @@ TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   for (std::size_t k = 0; k < 5000; ++k)
     REQUIRE(npy.samples[0][1000 + k] == replayed.samples[column][k]);
   // Nothing is overwritten, and what is refused leaves nothing.
-  const auto again = bench.fuse(
-      {bench.path("log.csv"), "--with", bench.path("run"), "-o", bench.path("fused.csv")});
+  const auto again = bench.fuse("log.csv", "run", "fused.csv");
   CHECK(again.code == 5);
   CHECK_THAT(again.err, Contains("--force"));
-  const auto missing = bench.fuse({bench.path("log.csv"),
-                                   "--with",
-                                   bench.path("run"),
-                                   "--algorithm",
-                                   "meen",
-                                   "-o",
-                                   bench.path("none.csv")});
+  const auto missing = bench.fuse("log.csv", "run", "none.csv", {"--algorithm", "meen"});
   CHECK(missing.code == 2);
   CHECK_THAT(missing.err, Contains("did you mean mean?"));
   CHECK_FALSE(fs::exists(bench.path("none.csv")));
@@ -109,14 +101,7 @@ TEST_CASE("fuse: --json, --map and refusals that name flags") {
   std::string text = test::slurp(bench.folder / "log.csv");
   text.replace(text.find("b[m]"), 4, "q[m]");
   std::ofstream(bench.path("other.csv")) << text;
-  const auto json = bench.fuse({bench.path("other.csv"),
-                                "--with",
-                                bench.path("run"),
-                                "--algorithm",
-                                "mean",
-                                "-o",
-                                bench.path("a.csv"),
-                                "--json"});
+  const auto json = bench.fuse("other.csv", "run", "a.csv", {"--algorithm", "mean", "--json"});
   INFO(json.err);
   REQUIRE(json.code == 0);
   const auto document = libchar::parse_json(json.out, "stdout");
@@ -128,34 +113,15 @@ TEST_CASE("fuse: --json, --map and refusals that name flags") {
   CHECK(document["sensors"][1]["missing"] == 1);
   CHECK(document["warnings"][0]["code"] == "sensor_not_in_log");
   CHECK_THAT(json.err, Contains("does not have these sensors"));
-  const auto mapped = bench.fuse({bench.path("other.csv"),
-                                  "--with",
-                                  bench.path("run"),
-                                  "--map",
-                                  "b=q",
-                                  "-o",
-                                  bench.path("b.csv"),
-                                  "--quiet"});
+  const auto mapped = bench.fuse("other.csv", "run", "b.csv", {"--map", "b=q", "--quiet"});
   CHECK(mapped.code == 0);
   CHECK(mapped.err.empty());
-  const auto wrong = bench.fuse({bench.path("other.csv"),
-                                 "--with",
-                                 bench.path("run"),
-                                 "--map",
-                                 "d=q",
-                                 "-o",
-                                 bench.path("c.csv")});
+  const auto wrong = bench.fuse("other.csv", "run", "c.csv", {"--map", "d=q"});
   CHECK(wrong.code == 2);
   CHECK_THAT(wrong.err, Contains("--map"));
-  const auto folder = bench.fuse(
-      {bench.path("other.csv"), "--with", bench.folder.path().string(), "-o", bench.path("d.csv")});
+  const auto folder = bench.fuse("other.csv", "", "d.csv");
   CHECK(folder.code == 3);
   CHECK_THAT(folder.err, Contains("no fusion.yaml"));
-  const auto own = bench.fuse({bench.path("other.csv"),
-                               "--with",
-                               bench.path("run"),
-                               "-o",
-                               bench.path("other.csv"),
-                               "--force"});
+  const auto own = bench.fuse("other.csv", "run", "other.csv", {"--force"});
   CHECK(own.code == 5);
 }

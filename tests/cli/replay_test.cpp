@@ -67,6 +67,25 @@ std::size_t files_in(const fs::path& folder) {
 
 }  // namespace
 
+TEST_CASE(
+    "replay: estimates written again over those of an earlier run stay; without them they go") {
+  const ReplayBench bench;
+  const auto replayed = [&](std::vector<std::string> more) {
+    more.insert(
+        more.begin(),
+        {"replay", bench.scene, "-o", bench.path("out"), "--force", "--algorithms", "mean"});
+    return test::run(more);
+  };
+  for (int round = 0; round < 2; ++round) {
+    REQUIRE(replayed({"--estimates", "csv"}).code == 0);
+    CHECK(fs::exists(bench.path("out/estimates.csv")));
+  }
+  const auto without = replayed({});
+  REQUIRE(without.code == 0);
+  CHECK_THAT(without.out, Contains("removed, of an earlier run: estimates.csv"));
+  CHECK_FALSE(fs::exists(bench.path("out/estimates.csv")));
+}
+
 TEST_CASE("replay: four files, a table, and no progress on stderr") {
   const ReplayBench bench;
   const auto ran =

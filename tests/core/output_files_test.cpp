@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
@@ -59,19 +62,32 @@ TEST_CASE("what an earlier run named and the new one has not is removed, and not
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "mine.yaml", "report.json"});
 }
 
-TEST_CASE(
-    "a document that is not among its own files removes nothing, and no name leads out of the "
-    "folder") {
+TEST_CASE("a document that is not replaced removes nothing, and no name leads out of the folder") {
   const test::TemporaryFolder folder;
   fs::create_directory(folder / "in");
   put_text(folder / "outside.txt", "outside");
   put_text(folder / "in" / "mine.txt", "mine");
   put_text(folder / "in" / "report.json",
            R"({"files": ["report.json", "../outside.txt", "..", "", ".", 3]})");
-  put_text(folder / "in" / "list.json", R"({"files": ["mine.txt"]})");
+  put_text(folder / "in" / "runs.json", R"({"files": ["runs.json", "mine.txt"]})");
   CHECK(write_outputs(set_of(folder / "in", {}), folder / "in", {}, true).empty());
   CHECK(fs::exists(folder / "outside.txt"));
-  CHECK(fs::exists(folder / "in" / "mine.txt"));
+  CHECK(names_in(folder / "in") == std::set<std::string>{"mine.txt", "report.json", "runs.json"});
+}
+
+TEST_CASE("a file that the new document names is not removed, whoever wrote it") {
+  const test::TemporaryFolder folder;
+  const auto once = [&](bool force) {
+    std::vector<OutputFile> outputs = {{(folder / "report.json").string(), ""}};
+    Json names = file_names(outputs);
+    names.push_back("estimates.csv");
+    outputs[0].text = Json{{"files", names}}.dump();
+    return write_outputs(
+        outputs, folder.path(), {}, force, [&] { put_text(folder / "estimates.csv", "1\n"); });
+  };
+  once(false);
+  CHECK(once(true).empty());
+  CHECK(fs::exists(folder / "estimates.csv"));
 }
 
 TEST_CASE("an input of the run is not removed as an earlier run's file") {
@@ -90,10 +106,11 @@ TEST_CASE(
   write_outputs(set_of(folder.path(), {"a.yaml", "b.yaml"}), folder.path(), {}, false);
   // As left by a kill after the first of two names: a.yaml is new, report.json and the removal of b.yaml are to come.
   put_text(folder / "a.yaml", "new a");
-  put_text(folder / "report.json.tmp-1-0", R"({"files": ["report.json", "a.yaml"]})");
+  put_text(folder / "report.json.libchar-tmp-1-0", R"({"files": ["report.json", "a.yaml"]})");
   write_journal(
       folder.path(),
-      {{{"a.yaml.tmp-1-0", "a.yaml"}, {"report.json.tmp-1-0", "report.json"}}, {"b.yaml"}});
+      {{{"a.yaml.libchar-tmp-1-0", "a.yaml"}, {"report.json.libchar-tmp-1-0", "report.json"}},
+       {"b.yaml"}});
   CHECK(code_of_outputs([&] { refuse_interrupted(folder.path()); }) == "E0516");
   finish_journal(folder.path());
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
@@ -114,13 +131,18 @@ TEST_CASE("a journal that leads out of its folder, or is none, is refused") {
   }
 }
 
-TEST_CASE("two runs on one folder: the second says so and writes nothing") {
+TEST_CASE("two runs on one folder: the second waits for the first, and says so where that lasts") {
   const test::TemporaryFolder folder;
-  const FolderLock other(folder.path());
-  CHECK(code_of_outputs([&] {
-          write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, false);
-        }) == "E0515");
-  CHECK(names_in(folder.path()).empty());
+  auto other = std::make_unique<FolderLock>(folder.path());
+  CHECK(code_of_outputs([&] { const FolderLock lock(folder.path(), 0.05); }) == "E0515");
+  std::thread first([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    CHECK(names_in(folder.path()).empty());  // the second writes nothing before
+    other.reset();
+  });
+  write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, false);
+  first.join();
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
 }
 
 TEST_CASE("killed at any moment, the next run leaves a whole set and no litter") {

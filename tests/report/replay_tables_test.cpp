@@ -4,7 +4,10 @@
 #include <regex>
 #include <string>
 
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/replay_html.hpp"
+#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/replay_text.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
@@ -87,7 +90,16 @@ TEST_CASE("replay page: nanoseconds stand in front only where the rate makes the
   CHECK(test::count(ranking_of(r), folded) == 1);
   CHECK(test::count(body_of(r), "run time decides nothing here") == 1);
   CHECK(test::count(body_of(r), "ns a sample, ") == 0);
+  const auto reads = [&](const std::vector<std::string>& verdict) {
+    const ReplayView view = replay_view(r);
+    return replay_text(view).find(verdict.front()) != std::string::npos &&
+           replay_markdown(view).find(markdown_text(verdict.front())) != std::string::npos;
+  };
+  const ReplayView measured = replay_view(r);
+  REQUIRE(measured.verdict.front() != measured.steady_verdict.front());
+  CHECK(reads(measured.steady_verdict));
   r.rate_hz = 1010;
+  CHECK(reads(measured.verdict));
   CHECK(test::count(ranking_of(r), in_front) == 1);
   CHECK(test::count(body_of(r), "run time decides nothing here") == 0);
 }

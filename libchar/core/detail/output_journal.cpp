@@ -6,12 +6,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
@@ -65,13 +67,6 @@ OutputJournal read_journal(const fs::path& folder) {
   }
 }
 
-void sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // best effort: not every file system lets a folder be synchronised
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 }  // namespace
 
 void write_journal(const fs::path& folder, const OutputJournal& journal) {
@@ -96,7 +91,7 @@ void finish_journal(const fs::path& folder) {
     if (::unlink(path.c_str()) != 0 && errno != ENOENT && ::unlink(path.c_str()) != 0)
       fail_on(path, "remove this file of an earlier run");
   }
-  sync_folder(folder);
+  sync_folder(folder.string());
   if (::unlink(journal_of(folder).c_str()) != 0 && errno != ENOENT &&
       ::unlink(journal_of(folder).c_str()) != 0)
     fail_on(journal_of(folder), "remove");
@@ -107,10 +102,17 @@ bool has_journal(const fs::path& folder) {
   return fs::exists(journal_of(folder), ignored);
 }
 
-FolderLock::FolderLock(const fs::path& folder)
+FolderLock::FolderLock(const fs::path& folder, double wait_s)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0) return;  // who may not read a folder may still write into it
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(wait_s);
+  for (bool late = false;; late = Clock::now() > end) {
+    // Where a file system has no locks there is none.
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    if (late) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   ::close(descriptor_);
   throw Error({ErrorKind::output,
                "E0515",

@@ -25,10 +25,11 @@ void finish_journal(const std::filesystem::path& folder);
 /// Whether a run was interrupted while its files got their names.
 bool has_journal(const std::filesystem::path& folder);
 
-/// One writer at a time: a lock on the folder itself, which ends with the process. Throws Error(output) where another run has it.
+/// One writer at a time: a lock on the folder itself, which ends with the process. Waits for another run's, which takes milliseconds;
+/// throws Error(output) where that lasts longer than `wait_s`.
 class FolderLock {
  public:
-  explicit FolderLock(const std::filesystem::path& folder);
+  explicit FolderLock(const std::filesystem::path& folder, double wait_s = 10);
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();
