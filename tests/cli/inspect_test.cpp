@@ -144,7 +144,7 @@ TEST_CASE("inspect: a pipe has as many bytes as the file it comes from, comments
   test::RunOptions piped;
   piped.stdin_path = path;
   const auto bytes = [](const test::Ran& ran) {
-    return libchar::parse_json(ran.out, "inspect")["inputs"][0]["bytes"].get<std::uint64_t>();
+    return libchar::parse_json(ran.out, "inspect")["recordings"][0]["bytes"].get<std::uint64_t>();
   };
   CHECK(bytes(test::run({"inspect", "-", "--json"}, piped)) == std::filesystem::file_size(path));
   CHECK(bytes(test::run({"inspect", path, "--json"})) == std::filesystem::file_size(path));
