@@ -1,9 +1,12 @@
 #include "session.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "flag_names.hpp"
 #include "libchar/core/error.hpp"
@@ -46,7 +49,33 @@ libchar::Json document_head(const Session& session,
   return libchar::document_head(format, session.command, inputs);
 }
 
-int exit_code_of(Session& session, const std::function<void()>& work) {
+namespace {
+
+volatile std::sig_atomic_t g_memory_refused =
+    0;  // as `end_in_a_sentence` is called: without a word
+
+constexpr const char* kNoMemory = "E0402";
+constexpr const char* kNoThread = "E0403";
+
+// Said without taking memory: there is none.
+int refuse_for_memory() noexcept {
+  for (const std::string_view part :
+       {std::string_view("sensorchar: error "),
+        std::string_view(kNoMemory),
+        std::string_view(": not enough memory for this input; hint: read less of it with "
+                         "--channel, --from and --to\n")})
+    if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
+  return 4;
+}
+
+/// The C++ library's way and that of the pool of threads.
+bool is_of_threads(const std::exception& error) {
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+         std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+}
+
+int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     session.terminal.clear();
     say(line);
@@ -72,15 +101,43 @@ int exit_code_of(Session& session, const std::function<void()>& work) {
   } catch (const StdoutClosed&) {
     return 0;
   } catch (const std::bad_alloc&) {
-    return fail(
-        "sensorchar: error E0401: not enough memory for this input; hint: read less of it with "
-        "--channel, --from and --to",
-        4);
+    throw;
   } catch (const std::exception& error) {
+    if (is_of_threads(error))
+      return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "
+                              "raise the limit of processes (ulimit -u), or end others",
+                              kNoThread),
+                  4);
     return fail(
         fmt::format("sensorchar: internal error: {}; please report this with the command line",
                     libchar::printable(error.what())),
         1);
+  }
+}
+
+}  // namespace
+
+void notice_refused_memory() {
+  std::set_new_handler([] {
+    g_memory_refused = 1;
+    throw std::bad_alloc();
+  });
+}
+
+void end_in_a_sentence() {
+  constexpr std::string_view kDefect =
+      "sensorchar: internal error: terminated; please report this with the command line\n";
+  // What cannot be unwound is not always an exception that can still be asked.
+  if (g_memory_refused != 0) ::_exit(refuse_for_memory());
+  [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, kDefect.data(), kDefect.size());
+  ::_exit(1);
+}
+
+int exit_code_of(Session& session, const std::function<void()>& work) {
+  try {
+    return said_exit_code(session, work);
+  } catch (const std::exception&) {  // bad_alloc, at work or in saying what else went wrong
+    return refuse_for_memory();
   }
 }
 

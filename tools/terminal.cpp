@@ -95,7 +95,11 @@ Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
 }
 
 Terminal::~Terminal() {
-  clear();
+  try {
+    clear();
+  } catch (const std::exception&) {
+    // No memory for a line of blanks.
+  }
 }
 
 void Terminal::update(double fraction, std::string_view what) {

@@ -1,5 +1,6 @@
 #include "libchar/core/whole_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
@@ -10,7 +11,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "libchar/core/error.hpp"
@@ -193,19 +194,20 @@ void WholeFile::commit() {
 }
 
 void remove_litter(const std::string& folder) {
-  std::error_code stop, ignored;
-  for (std::filesystem::directory_iterator entry(folder, stop), end; !stop && entry != end;
-       entry.increment(stop)) {
-    const std::string name = entry->path().filename().string();
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(folder.c_str()), ::closedir);
+  if (!entries) return;
+  while (const dirent* entry = ::readdir(entries.get())) {
+    const std::string name = entry->d_name;
     const std::size_t mark = name.rfind(kTemporaryMark);
-    if (mark == std::string::npos || !entry->is_regular_file(ignored)) continue;
+    if (mark == std::string::npos) continue;
     const std::string number = name.substr(mark + kTemporaryMark.size());
     pid_t process = 0;
     const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
     if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
         number.find_first_not_of("-0123456789") != std::string::npos)
       continue;
-    if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry->path(), ignored);
+    // Of a folder of such a name it is none.
+    if (::kill(process, 0) != 0 && errno == ESRCH) ::unlink((folder + "/" + name).c_str());
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <optional>
+#include <system_error>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
@@ -143,7 +144,7 @@ class BinaryRows final : public RowSource {
   // the system has cached.
   void start_hash() {
     if (!hash_ || hashing_.valid()) return;
-    hashing_ = std::async(std::launch::async, [this] {
+    const auto digest = [this] {
       Sha256 sha;
       std::vector<std::byte> piece(std::size_t{1} << 20U);
       for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
@@ -154,7 +155,12 @@ class BinaryRows final : public RowSource {
         at += n;
       }
       return sha.finish();
-    });
+    };
+    try {
+      hashing_ = std::async(std::launch::async, digest);
+    } catch (const std::system_error&) {  // no further thread: when it is asked for
+      hashing_ = std::async(std::launch::deferred, digest);
+    }
   }
 
   void read_interleaved(std::size_t rows) {

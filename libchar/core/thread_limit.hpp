@@ -1,0 +1,11 @@
+#pragma once
+// No more threads than the system gives.
+
+namespace libchar {
+
+/// Tries how many threads can be made beside this one, as many as there are processors. Where there are fewer, everything in this process
+/// that works in parallel keeps to them from now on: the pool of threads underneath (oneTBB) would otherwise throw in the middle of
+/// work. For programs, at their start.
+void keep_to_threads_given();
+
+}  // namespace libchar
