@@ -14,8 +14,8 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   take_closed_streams();
   install_signal_handlers();
-  notice_refused_memory();
   std::set_terminate(end_in_a_sentence);
+  end_aborts_in_a_sentence();
   Session session;
   const std::span<char*> words(argv, static_cast<std::size_t>(argc));
   // Small enough that nothing has to be taken from the heap before somebody watches.

@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "flag_names.hpp"
+#include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -50,9 +52,6 @@ libchar::Json document_head(const Session& session,
 }
 
 namespace {
-
-volatile std::sig_atomic_t g_memory_refused =
-    0;  // as `end_in_a_sentence` is called: without a word
 
 constexpr const char* kNoMemory = "E0402";
 constexpr const char* kNoThread = "E0403";
@@ -102,6 +101,16 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     return 0;
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const std::filesystem::filesystem_error& error) {
+    if (error.code() == std::errc::not_enough_memory) throw;
+    const std::string where = error.path1().string();
+    return fail(libchar::one_line({ErrorKind::input,
+                                   "E0105",
+                                   where,
+                                   "cannot be looked at: " + error.code().message(),
+                                   "",
+                                   ""}),
+                exit_code(ErrorKind::input));
   } catch (const std::exception& error) {
     if (is_of_threads(error))
       return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "
@@ -117,20 +126,21 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
 
 }  // namespace
 
-void notice_refused_memory() {
-  std::set_new_handler([] {
-    g_memory_refused = 1;
-    throw std::bad_alloc();
-  });
-}
-
 void end_in_a_sentence() {
   constexpr std::string_view kDefect =
       "sensorchar: internal error: terminated; please report this with the command line\n";
   // What cannot be unwound is not always an exception that can still be asked.
-  if (g_memory_refused != 0) ::_exit(refuse_for_memory());
+  if (memory_was_refused()) ::_exit(refuse_for_memory());
   [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, kDefect.data(), kDefect.size());
   ::_exit(1);
+}
+
+void end_aborts_in_a_sentence() {
+  std::signal(SIGABRT, [](int) {
+    if (memory_was_refused()) ::_exit(refuse_for_memory());
+    std::signal(SIGABRT, SIG_DFL);
+    std::raise(SIGABRT);
+  });
 }
 
 int exit_code_of(Session& session, const std::function<void()>& work) {

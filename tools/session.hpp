@@ -31,10 +31,10 @@ libchar::Json document_head(const Session& session,
 /// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.
 int exit_code_of(Session& session, const std::function<void()>& work);
 
-/// From now on it is remembered that memory was refused.
-void notice_refused_memory();
-
 /// For std::set_terminate: an exception that could go nowhere (memory refused to a destructor) still ends in a sentence and an exit code.
 [[noreturn]] void end_in_a_sentence();
+
+/// Where memory was refused and a library aborts in its own way, the program ends as above.
+void end_aborts_in_a_sentence();
 
 }  // namespace sensorchar
