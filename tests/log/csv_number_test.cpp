@@ -200,6 +200,8 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(stamp("9223372036854775807", 1) == INT64_MAX);
   CHECK(stamp("-9223372036854775808", 1) == INT64_MIN);
   CHECK(stamp("1.5", 60000000000) == 90000000000);
+  // 27 digits of hours are more than 128 bits hold in nanoseconds.
+  CHECK(stamp("0.123456789012345678901234567", 3600000000000) == 444444440444);
   std::int64_t ns = 0;
   std::size_t offset = 0;
   CHECK(read_stamp("9223372036854775808", '.', 1, ns, offset) == StampFault::out_of_range);
@@ -210,4 +212,13 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(read_stamp("12:30", '.', 1, ns, offset) == StampFault::malformed);
   CHECK(read_stamp("1e", '.', 1, ns, offset) == StampFault::malformed);
   CHECK(read_stamp("-", '.', 1, ns, offset) == StampFault::malformed);
+  // Found by fuzzing: two signs in an exponent, and text behind an exponent that nothing can have.
+  for (const char* text : {"1e+-5", "1e++5", "0e99999x", "1e99999x", "0e-99999 "}) {
+    INFO(text);
+    CHECK(read_stamp(text, '.', 1000000000, ns, offset) == StampFault::malformed);
+  }
+  ns = 1;
+  CHECK(read_stamp("0e99999", '.', 1, ns, offset) == StampFault::none);
+  CHECK(ns == 0);
+  CHECK(read_stamp("1e99999", '.', 1, ns, offset) == StampFault::out_of_range);
 }
