@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Columns columns(width);
   while (!input.empty() && columns.back().size() < 400)
     for (auto& column : columns) {
-      const double any = single ? input.take<float>() : input.take<double>();
+      const double any = single ? static_cast<double>(input.take<float>()) : input.take<double>();
       column.push_back(std::isfinite(any) ? any : kMissing);
     }
   if (columns[0].size() < 2) return 0;

@@ -56,14 +56,14 @@ double judged(std::string_view text, char mark) {
 }
 
 /// The stamp in ns by 128-bit integers, for up to 24 digits without an exponent.
-std::optional<__int128> judged_stamp(const Decimal& d, std::int64_t unit_ns) {
+std::optional<csv::Int128> judged_stamp(const Decimal& d, std::int64_t unit_ns) {
   if (d.exponent || d.digits.size() > 24) return std::nullopt;
-  __int128 number = 0, scale = 1;
+  csv::Int128 number = 0, scale = 1;
   for (const char c : d.digits) number = number * 10 + (c - '0');
   for (std::size_t i = 0; i < d.behind; ++i) scale *= 10;
   number *= unit_ns;
-  __int128 whole = number / scale;
-  const __int128 rest = number % scale;
+  csv::Int128 whole = number / scale;
+  const csv::Int128 rest = number % scale;
   if (2 * rest > scale || (2 * rest == scale && whole % 2 == 1)) ++whole;
   return d.negative ? -whole : whole;
 }
