@@ -113,7 +113,7 @@ def compile_commands():
     return found, objects
 
 
-def link_command(build, floor, archive, scratch):
+def link_command(build, floor, archive, folders, scratch):
     """The command that links a floor's tests, with the archive of objects compiled alone before those of `build`; OBJECT and PROGRAM are
     to be replaced. Objects and archives are copied: `build` may be built again while this runs."""
     commands = run(["ninja", "-C", str(build), "-t", "commands", f"tests/test_{floor}"]).stdout.strip().split("\n")
@@ -122,8 +122,13 @@ def link_command(build, floor, archive, scratch):
     for name in ("libchar.a", "libcharcurves.a"):
         if not (scratch / name).exists():
             shutil.copy(build / "libchar" / name, scratch / name)
-    # An archive is looked through once, where it stands: ours goes before each that may need it.
-    words = [one for word in words for one in ([str(archive), str(scratch / word[len("libchar/"):])] if word.startswith("libchar/") else [word])]
+            # What is compiled alone must not come a second time, from the one object of its folder.
+            twice = [f"unity_{folder.split('/')[1]}_{folder.split('/')[-1]}_cxx.cxx.o" for folder in folders]
+            run(["ar", "d", str(scratch / name), *twice, *twice])  # two objects have that name
+    ours = [str(archive), str(scratch / "libchar.a"), str(scratch / "libcharcurves.a")]
+    first = next(i for i, word in enumerate(words) if word.startswith("libchar/"))
+    words = [word for word in words if not word.startswith("libchar/")]
+    words[first:first] = ["-Wl,--start-group", *ours, "-Wl,--end-group"]
     objects = [i for i, word in enumerate(words) if word.endswith(".o")]
     for i in objects:
         words[i] = shutil.copy(build / words[i], scratch / f"{floor}_{i}.o")
@@ -185,8 +190,8 @@ def cases_of(program, slowest, scratch):
 class Floor:
     """The tests of a floor: how to link them, and in which groups to run them."""
 
-    def __init__(self, name, build, archive, slowest, scratch):
-        self.link = link_command(build, name, archive, scratch)
+    def __init__(self, name, build, archive, folders, slowest, scratch):
+        self.link = link_command(build, name, archive, folders, scratch)
         program = scratch / f"sound_{name}"
         done = linked(self.link, build, program)
         if done.returncode:
@@ -292,12 +297,13 @@ def remembered(path, again):
 def run_all(wanted, done, arguments, scratch):
     build = (ROOT / arguments.build).resolve()
     wanted = [mutant for mutant in wanted if key(mutant) not in done]
-    commands, archive = build_objects({os.path.dirname(mutant["path"]) for mutant in wanted}, scratch)
+    folders = sorted({os.path.dirname(mutant["path"]) for mutant in wanted})
+    commands, archive = build_objects(folders, scratch)
     floors = {}
     for i, mutant in enumerate(wanted):
         for name in mutant["floors"]:
             if name not in floors:
-                floors[name] = Floor(name, build, archive, arguments.slowest, scratch)
+                floors[name] = Floor(name, build, archive, folders, arguments.slowest, scratch)
         begin = time.monotonic()
         result, by = judged(mutant, commands, floors, build, scratch)
         record = {**mutant, "result": result, "by": by, "seconds": round(time.monotonic() - begin, 1)}
