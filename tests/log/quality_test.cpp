@@ -72,6 +72,39 @@ TEST_CASE("mean and spread agree with the moments of the core, whatever the offs
   }
 }
 
+TEST_CASE("the kurtosis of the differences is that of their definition, with a drift as well") {
+  std::mt19937_64 random(5);
+  std::exponential_distribution<double> skewed(1);
+  for (const double drift : {0.0, 3.0}) {
+    std::vector<double> x = {100};
+    for (int i = 0; i < 5000; ++i) x.push_back(x.back() + drift + skewed(random));
+    long double mean = 0, second = 0, fourth = 0;
+    const auto n = static_cast<long double>(x.size() - 1);
+    for (std::size_t i = 1; i < x.size(); ++i) mean += (x[i] - x[i - 1]) / n;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      const long double d = x[i] - x[i - 1] - mean;
+      second += d * d / n;
+      fourth += d * d * d * d / n;
+    }
+    CHECK(meter(x).difference_kurtosis ==
+          Approx(static_cast<double>(fourth / (second * second))).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a counter is said to be one from 63 steps on, and not behind a block of noise") {
+  const auto rising = [](std::size_t n) {
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = 5 * static_cast<double>(i);
+    return x;
+  };
+  CHECK_FALSE(suggests(meter(rising(63)), "counter"));
+  CHECK(suggests(meter(rising(64)), "rises by 5 with every sample"));
+  auto noisy = gaussian(3000, 1);
+  const auto ramp = rising(20000);
+  noisy.insert(noisy.end(), ramp.begin(), ramp.end());
+  CHECK_FALSE(suggests(meter(noisy), "counter"));
+}
+
 TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {
   auto x = gaussian(50000, 1);
   CHECK(meter(x).saturated == 0);
