@@ -48,12 +48,14 @@ libchar::Json document_head(const Session& session,
 
 int exit_code_of(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
+    work_is_done();
     session.terminal.clear();
     say(line);
     return code;
   };
   try {
     work();
+    work_is_done();
     if (session.strict && !session.warned_files.empty())
       throw Error({ErrorKind::input,
                    "E0206",

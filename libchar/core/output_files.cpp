@@ -10,6 +10,7 @@
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
@@ -99,6 +100,7 @@ void give_names(std::vector<WholeFile>& files,
     if (!file.temporary().empty())
       journal.rename.emplace_back(std::filesystem::path(file.temporary()).filename().string(),
                                   std::filesystem::path(file.path()).filename().string());
+  const GivingNames naming;
   write_journal(folder, journal);
   for (WholeFile& file : files) file.temporary().empty() ? file.commit() : file.hand_over();
   finish_journal(folder);

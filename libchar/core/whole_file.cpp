@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/unfinished_files.hpp"
 
 namespace libchar {
 namespace {
@@ -75,14 +76,17 @@ WholeFile::WholeFile(std::string path, bool overwrite)
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
+    if (!temporary_.empty()) forget_unfinished(temporary_);
     temporary_ = temporary_name(path_, attempt);
+    remember_unfinished(temporary_);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
-  if (descriptor_ < 0) {
-    temporary_.clear();
-    fail("create a file in this folder");
-  }
+  if (descriptor_ >= 0) return;
+  const int problem = errno;
+  hand_over();
+  errno = problem;
+  fail("create a file in this folder");
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
@@ -94,7 +98,14 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
 
 WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  forget_unfinished(temporary_);
+}
+
+void WholeFile::hand_over() {
+  forget_unfinished(temporary_);
+  temporary_.clear();
 }
 
 void WholeFile::write(std::string_view bytes) {
@@ -132,10 +143,14 @@ void WholeFile::prepare() {
     const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
     for (int attempt = 0; attempt < 100; ++attempt) {
       const std::string name = temporary_name(path_, attempt);
+      remember_unfinished(name);
       if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
         temporary_ = name;
         break;
       }
+      const int problem = errno;
+      forget_unfinished(name);
+      errno = problem;
       if (errno != EEXIST) fail("name the finished file");
     }
   }
@@ -157,8 +172,11 @@ void WholeFile::commit() {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
     return;
   }
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
-  temporary_.clear();
+  {
+    const GivingNames naming;
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
+    hand_over();
+  }
   sync_folder(folder_of(path_));
 }
 
@@ -172,6 +190,7 @@ void sync_folder(const std::string& folder) {
 void commit_with_description(WholeFile& data, WholeFile& description) {
   data.prepare();
   description.prepare();
+  const GivingNames naming;
   if (!is_special(description.path()))
     ::unlink(
         description.path().c_str());  // prepare() has refused it where it must not be overwritten
