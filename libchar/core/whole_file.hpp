@@ -27,9 +27,11 @@ class WholeFile {
   void rewrite(std::size_t offset, std::string_view bytes);
   /// Everything of commit() that can fail for want of space or rights, short of taking the name.
   void prepare();
-  /// fsync, rename, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
+  /// fsync, the name, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
   void commit();
   const std::string& path() const { return path_; }
+  /// A device or pipe, which is written through and has its name already.
+  bool special() const { return special_; }
   /// After prepare(): the name under which the file waits for its own; empty for a device or pipe.
   const std::string& temporary() const { return temporary_; }
   /// After prepare(): somebody else gives the file its name; the destructor leaves it where it is.
@@ -37,15 +39,17 @@ class WholeFile {
 
  private:
   void flush();
+  void flush_to_disk();
+  bool link_to(const std::string& name) const;
+  bool take_free_name();
   [[noreturn]] void fail(std::string_view doing) const;
   std::string path_, temporary_, buffer_;
   int descriptor_ = -1;
-  bool overwrite_ = false;
+  bool overwrite_ = false, special_ = false;
 };
 
-/// Gives both files their names, or neither as far as POSIX allows: both are on disk before the first is renamed; an older
-/// `description` goes first and the new one comes last, so that at no instant one stands beside data that it does not describe.
-void commit_with_description(WholeFile& data, WholeFile& description);
+/// Removes temporary files that a process which is no more has left in the folder.
+void remove_litter(const std::string& folder);
 
 /// New names in the folder get to the disk: best effort, not every file system lets a folder be synchronised.
 void sync_folder(const std::string& folder);
