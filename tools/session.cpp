@@ -76,12 +76,14 @@ bool is_of_threads(const std::exception& error) {
 
 int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
+    work_is_done();
     session.terminal.clear();
     say(line);
     return code;
   };
   try {
     work();
+    work_is_done();
     if (session.strict && !session.warned_files.empty())
       throw Error({ErrorKind::input,
                    "E0206",

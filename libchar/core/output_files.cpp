@@ -7,6 +7,7 @@
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
@@ -90,6 +91,7 @@ void give_names(const std::vector<WholeFile*>& files,
                                   std::filesystem::path(file->path()).filename().string());
   for (WholeFile* file : files)
     if (file->temporary().empty()) file->commit();  // a device
+  const GivingNames naming;
   write_journal(folder, journal);
   // Until the first has its name all can still be taken back: the temporary files are theirs.
   const auto hand_over = [&] {

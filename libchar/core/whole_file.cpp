@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/unfinished_files.hpp"
 
 namespace libchar {
 namespace {
@@ -80,14 +81,17 @@ WholeFile::WholeFile(std::string path, bool overwrite)
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
+    if (!temporary_.empty()) forget_unfinished(temporary_);
     temporary_ = temporary_name(path_, attempt);
+    remember_unfinished(temporary_);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
-  if (descriptor_ < 0) {
-    temporary_.clear();
-    fail("create a file in this folder");
-  }
+  if (descriptor_ >= 0) return;
+  const int problem = errno;
+  hand_over();
+  errno = problem;
+  fail("create a file in this folder");
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
@@ -100,7 +104,14 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
 
 WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  forget_unfinished(temporary_);
+}
+
+void WholeFile::hand_over() {
+  forget_unfinished(temporary_);
+  temporary_.clear();
 }
 
 void WholeFile::write(std::string_view bytes) {
@@ -150,10 +161,16 @@ void WholeFile::prepare() {
   // A nameless file gets a temporary name first: linkat cannot replace.
   for (int attempt = 0; temporary_.empty(); ++attempt) {
     const std::string name = temporary_name(path_, attempt);
-    if (link_to(name))
+    remember_unfinished(name);
+    if (link_to(name)) {
       temporary_ = name;
-    else if (attempt == 100)
+      break;
+    }
+    forget_unfinished(name);
+    if (attempt == 100) {
+      errno = EEXIST;
       fail("name the finished file");
+    }
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
   struct stat status {};
@@ -171,6 +188,7 @@ void WholeFile::prepare() {
 bool WholeFile::take_free_name() {
   if (special_ || descriptor_ < 0 || !temporary_.empty()) return false;
   flush_to_disk();
+  const GivingNames naming;
   if (exists(path_) || !link_to(path_)) return false;
   if (::close(std::exchange(descriptor_, -1)) != 0) {
     ::unlink(path_.c_str());
@@ -187,8 +205,11 @@ void WholeFile::commit() {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
     return;
   }
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
-  temporary_.clear();
+  {
+    const GivingNames naming;
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
+    hand_over();
+  }
   remove_litter(folder_of(path_));
   sync_folder(folder_of(path_));
 }

@@ -35,7 +35,7 @@ class WholeFile {
   /// After prepare(): the name under which the file waits for its own; empty for a device or pipe.
   const std::string& temporary() const { return temporary_; }
   /// After prepare(): somebody else gives the file its name; the destructor leaves it where it is.
-  void hand_over() { temporary_.clear(); }
+  void hand_over();
 
  private:
   void flush();

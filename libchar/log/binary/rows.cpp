@@ -144,23 +144,25 @@ class BinaryRows final : public RowSource {
   // the system has cached.
   void start_hash() {
     if (!hash_ || hashing_.valid()) return;
-    const auto digest = [this] {
-      Sha256 sha;
-      std::vector<std::byte> piece(std::size_t{1} << 20U);
-      for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
-        const auto n =
-            static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
-        file_->read(at, std::span(piece).first(n));
-        sha.update({reinterpret_cast<const char*>(piece.data()), n});
-        at += n;
-      }
-      return sha.finish();
-    };
+    const auto hash = [this] { return hash_of_file(); };
     try {
-      hashing_ = std::async(std::launch::async, digest);
-    } catch (const std::system_error&) {  // no further thread: when it is asked for
-      hashing_ = std::async(std::launch::deferred, digest);
+      hashing_ = std::async(std::launch::async, hash);
+    } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
+      hashing_ = std::async(std::launch::deferred, hash);
     }
+  }
+
+  std::string hash_of_file() const {
+    Sha256 sha;
+    std::vector<std::byte> piece(std::size_t{1} << 20U);
+    for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
+      file_->read(at, std::span(piece).first(n));
+      sha.update({reinterpret_cast<const char*>(piece.data()), n});
+      at += n;
+    }
+    return sha.finish();
   }
 
   void read_interleaved(std::size_t rows) {

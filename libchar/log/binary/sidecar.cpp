@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
@@ -44,13 +45,12 @@ void check_number(const MapReader& at, std::uint64_t n) {
     at.refuse("channels", fmt::format("{} channels, more than the limit of {}", n, kMaxColumns));
 }
 
-void read_channel(const MapReader& at, Sidecar& sidecar) {
+void read_channel(const MapReader& at, std::unordered_set<std::string>& names, Sidecar& sidecar) {
   SidecarChannel channel;
   read_fields(channel_rows(), at, channel);
   if (channel.name.empty() || channel.name.size() > kMaxName)
     at.refuse("name", fmt::format("expected a name of 1 to {} bytes", kMaxName));
-  for (const SidecarChannel& other : sidecar.channels)
-    if (other.name == channel.name) at.refuse("name", "two channels have one name");
+  if (!names.insert(channel.name).second) at.refuse("name", "two channels have one name");
   if (channel.scale == 0) at.refuse("scale", "a scale of 0 makes every value the same");
   sidecar.channels.push_back(std::move(channel));
 }
@@ -70,11 +70,13 @@ void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) 
   if (node->list.empty()) at.refuse(key, "the list is empty");
   check_number(at, node->list.size());
   sidecar.named = true;
+  std::unordered_set<std::string> names;
   for (std::size_t i = 0; i < node->list.size(); ++i)
     read_channel(MapReader(node->list[i],
                            at.file(),
                            fmt::format("{}[{}]", at.path_of(key), i),
                            keys_of(channel_rows())),
+                 names,
                  sidecar);
 }
 

@@ -47,7 +47,7 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
-    if (threads > 1 && !small) start_pipeline(threads);
+    if (threads > 1 && !small) read_ahead(threads);
     info_.read_ahead = pipeline_ != nullptr;
   }
   CsvSource(const CsvSource&) = delete;
@@ -136,17 +136,16 @@ class CsvSource final : public RowSource {
   }
 
  private:
-  static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
-    return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
-  }
-
-  // Without a further thread the chunks are parsed one after the other: the same rows.
-  void start_pipeline(int threads) {
+  void read_ahead(int threads) {
     try {
       pipeline_ = std::make_unique<ChunkPipeline>(chunks_, plan_, threads);
     } catch (const std::system_error&) {
-      pipeline_.reset();
+      // No thread is to be had: parsed inside next(), then.
     }
+  }
+
+  static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
+    return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
   }
 
   // As many rows as there would be if all were as long as those in the head.
