@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <exception>
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
     CommandLine line(
         "sensorchar",
         "What sensors do to what they measure: noise, models and fusion from recordings.",
-        "sensorchar " + std::string(libchar::version()),
+        fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
         "Begin with: sensorchar inspect LOG");
     for (const VerbEntry& verb : verbs()) line.add(verb, call.session);
     if (const auto text = line.run(call.session.command)) print(*text);

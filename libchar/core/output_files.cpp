@@ -7,6 +7,7 @@
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"
 
@@ -172,8 +173,16 @@ void commit_together(const std::vector<WholeFile*>& files) {
   }
 }
 
-Json file_names(const std::vector<OutputFile>& outputs) {
-  return Json(names_of(outputs));
+void name_files(Json& document, const std::vector<OutputFile>& outputs) {
+  document["files"] = Json(names_of(outputs));
+  document["files_sha256"] = Json::object();
+  for (const OutputFile& output : outputs) {
+    if (is_document(output.path)) continue;
+    Sha256 hash;
+    hash.update(output.text);
+    document["files_sha256"][std::filesystem::path(output.path).filename().string()] =
+        hash.finish();
+  }
 }
 
 void refuse_interrupted(const std::filesystem::path& folder_or_file) {

@@ -191,7 +191,7 @@ void run_and_report(Session& session,
                                      {files[1], ""},
                                      {files[2], replay_markdown(view)},
                                      {files[3], fusion_yaml(result.learnt)}};
-  document["files"] = file_names(outputs);
+  name_files(document, outputs);
   if (estimates)
     for (const std::string& file : estimates->files())
       document["files"].push_back(fs::path(file).filename().string());
