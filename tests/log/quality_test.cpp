@@ -1,5 +1,7 @@
 #include "libchar/log/quality.hpp"
 
+#include <malloc.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -213,4 +215,34 @@ TEST_CASE("clocks, counters and sawteeth are named, noise and slow signals are n
   CHECK(counter_of([](double t) { return std::sin(0.01 * t); }).empty());
   CHECK(counter_of([](double) { return 3.0; }).empty());
   CHECK(counter_of([](double t) { return t < 5000 ? 0.0 : 1.0; }).empty());
+}
+
+TEST_CASE("a quality meter of a few samples takes little memory") {
+  if (::mallinfo2().uordblks == 0) return;  // a heap that is not glibc's (sanitizers)
+  constexpr std::size_t kMeters = 1000;
+  const std::size_t before = ::mallinfo2().uordblks;
+  std::vector<QualityMeter> meters(kMeters);
+  for (QualityMeter& meter : meters) meter.push(std::vector<double>{1, 2.5, 4});
+  const std::size_t each = (::mallinfo2().uordblks - before) / kMeters;
+  CHECK(each <= 2048);
+  CHECK(meters.front().finish().distinct_values == 3);
+}
+
+TEST_CASE("quality does not depend on the sizes of blocks, from one sample to thousands") {
+  std::vector<double> x = gaussian(20000, 1);
+  for (std::size_t i = 0; i < x.size(); i += 777) x[i] = std::nan("");
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(x[i] * 500) / 500;
+  const ChannelQuality whole = meter(x);
+  for (const std::size_t block : {1U, 7U, 300U, 2048U, 5000U}) {
+    QualityMeter m;
+    for (std::size_t i = 0; i < x.size(); i += block)
+      m.push(std::span(x).subspan(i, std::min(block, x.size() - i)));
+    const ChannelQuality parts = m.finish();
+    CHECK(parts.mean == whole.mean);
+    CHECK(parts.standard_deviation == whole.standard_deviation);
+    CHECK(parts.distinct_values == whole.distinct_values);
+    CHECK(parts.resolution == whole.resolution);
+    CHECK(parts.missing == whole.missing);
+    CHECK(parts.difference_kurtosis == whole.difference_kurtosis);
+  }
 }
