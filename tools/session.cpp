@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
 
 #include "flag_names.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace sensorchar {
@@ -46,11 +48,28 @@ libchar::Json document_head(const Session& session,
   return libchar::document_head(format, session.command, inputs);
 }
 
+void print_summary(Session& session, const std::string& output, const std::string& text) {
+  if (!libchar::writes_through(output)) return print_text(text);
+  session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
+}
+
+void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force) {
+  if (path.empty()) return;
+  for (const std::string& input : inputs) libchar::refuse_same_file(input, path);
+  libchar::check_output(path, force);
+}
+
 int exit_code_of(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     session.terminal.clear();
     say(line);
     return code;
+  };
+  const auto stopped = [&](int number) {
+    return fail(session.wrote
+                    ? "sensorchar: stopped; what had been written before is whole and stays"
+                    : "sensorchar: stopped; no output was written",
+                128 + number);
   };
   try {
     work();
@@ -64,11 +83,10 @@ int exit_code_of(Session& session, const std::function<void()>& work) {
     return 0;
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
-    if (stop_signal() != 0)
-      return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
+    if (stop_signal() != 0) return stopped(stop_signal());
     return fail(libchar::one_line(with_flags(error.problem())), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
-    return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
+    return stopped(cancelled.signal);
   } catch (const StdoutClosed&) {
     return 0;
   } catch (const std::bad_alloc&) {
@@ -76,6 +94,14 @@ int exit_code_of(Session& session, const std::function<void()>& work) {
         "sensorchar: error E0401: not enough memory for this input; hint: read less of it with "
         "--channel, --from and --to",
         4);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(libchar::one_line({ErrorKind::input,
+                                   "E0101",
+                                   error.path1().string(),
+                                   "cannot look at it: " + error.code().message(),
+                                   "",
+                                   ""}),
+                3);
   } catch (const std::exception& error) {
     return fail(
         fmt::format("sensorchar: internal error: {}; please report this with the command line",

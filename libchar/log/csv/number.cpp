@@ -215,6 +215,8 @@ Cell read_cell(std::string_view text, char point) {
     cell.kind =
         Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
     cell.number = digits[0] == '-' ? -0.0 : 0.0;
+    cell.too_small = digits.substr(0, digits.find_first_of("eE")).find_first_of("123456789") !=
+                     std::string_view::npos;
     return cell;
   }
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
