@@ -117,7 +117,7 @@ struct Characterization {
   std::vector<std::string> command;  ///< as typed
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
   std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
-  double seconds = 0;  ///< measured; kept apart from everything else in the outputs
+  double seconds = 0;  ///< measured; kept apart from everything else in the outputs, NaN: left out
 };
 
 /// Reads the log once (a second time only when a remedy asks for it) and computes what the report

@@ -10,6 +10,7 @@
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
 
 namespace libchar {
 namespace {
@@ -33,23 +34,15 @@ std::string read_document_text(const std::string& path) {
     ~Closer() { ::close(descriptor); }
   } closer{descriptor};
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0 || S_ISDIR(status.st_mode))
-    cannot_read(path, "is a folder, a file was expected");
+  if (::fstat(descriptor, &status) != 0)
+    cannot_read(path, std::string("cannot be read: ") + std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) cannot_read(path, "is a folder, a file was expected");
   if (!S_ISREG(status.st_mode)) cannot_read(path, "is no regular file");
   if (static_cast<std::size_t>(status.st_size) > kMaxDocumentBytes)
     cannot_read(path,
                 fmt::format("{} bytes exceed the limit of {}", status.st_size, kMaxDocumentBytes),
                 "is this a log? a model or scene file is a short text");
-  std::string text(static_cast<std::size_t>(status.st_size), '\0');
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t got = ::read(descriptor, text.data() + done, text.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  text.resize(done);
-  return text;
+  return rest_of_file(descriptor, path, kMaxDocumentBytes);
 }
 
 }  // namespace libchar

@@ -1,15 +1,12 @@
 #include "libchar/core/output_files.hpp"
 
-#include <signal.h>
-
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
@@ -28,6 +25,9 @@ void make_folder(const std::filesystem::path& folder) {
                  "",
                  ""});
 }
+
+/// Of a document that is replaced; a larger one is none of ours.
+constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
 
 bool is_document(const std::filesystem::path& path) {
   return path.extension() == ".json";
@@ -51,8 +51,8 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
   for (const OutputFile& output : outputs) {
     now.insert(fs::path(output.path).filename().string());
     if (!is_document(output.path)) continue;
-    std::ifstream file(output.path, std::ios::binary);
-    before.merge(files_named_in(Json::parse(file, nullptr, false)));
+    if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
+      before.merge(files_named_in(Json::parse(file_text(output.path, kMostBytes), nullptr, false)));
     now.merge(files_named_in(Json::parse(output.text, nullptr, false)));
   }
   std::vector<std::string> stale;
@@ -65,23 +65,6 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
   return stale;
 }
 
-/// Temporary files (WholeFile) that a process which is no more has left.
-void remove_litter(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const std::size_t mark = name.rfind(kTemporaryMark);
-    if (mark == std::string::npos || !entry.is_regular_file(ignored)) continue;
-    const std::string number = name.substr(mark + kTemporaryMark.size());
-    pid_t process = 0;
-    const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
-    if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
-        number.find_first_not_of("-0123456789") != std::string::npos)
-      continue;
-    if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), ignored);
-  }
-}
-
 std::vector<std::string> names_of(const std::vector<OutputFile>& outputs) {
   std::vector<std::string> names;
   for (const OutputFile& output : outputs)
@@ -89,19 +72,49 @@ std::vector<std::string> names_of(const std::vector<OutputFile>& outputs) {
   return names;
 }
 
-/// All names at once, as far as a file system can: the journal first, then what it says.
-void give_names(std::vector<WholeFile>& files,
+std::filesystem::path folder_of(const WholeFile& file) {
+  const auto folder = std::filesystem::path(file.path()).parent_path();
+  return folder.empty() ? "." : folder;  // the one we are in
+}
+
+/// All names at once, as far as a file system can: the journal first, then what it says. The folder is locked.
+void give_names(const std::vector<WholeFile*>& files,
                 const std::vector<std::string>& stale,
                 const std::filesystem::path& folder) {
+  for (WholeFile* file : files) file->prepare();
   OutputJournal journal;
   journal.remove = stale;
-  for (const WholeFile& file : files)
-    if (!file.temporary().empty())
-      journal.rename.emplace_back(std::filesystem::path(file.temporary()).filename().string(),
-                                  std::filesystem::path(file.path()).filename().string());
+  for (const WholeFile* file : files)
+    if (!file->temporary().empty())
+      journal.rename.emplace_back(std::filesystem::path(file->temporary()).filename().string(),
+                                  std::filesystem::path(file->path()).filename().string());
+  for (WholeFile* file : files)
+    if (file->temporary().empty()) file->commit();  // a device
   write_journal(folder, journal);
-  for (WholeFile& file : files) file.temporary().empty() ? file.commit() : file.hand_over();
+  // Until the first has its name all can still be taken back: the temporary files are theirs.
+  const auto hand_over = [&] {
+    for (WholeFile* file : files) file->hand_over();
+  };
+  try {
+    run_journal(folder, journal);
+  } catch (...) {
+    if (has_journal(folder)) hand_over();
+    throw;
+  }
+  hand_over();
+}
+
+/// Files of one folder. Devices and pipes are written through and need no journal: nor may they stand where one can be written.
+void commit_set(const std::vector<WholeFile*>& files, const std::filesystem::path& folder) {
+  const auto special = [](const WholeFile* file) { return file->special(); };
+  if (files.size() == 1 || std::all_of(files.begin(), files.end(), special)) {
+    for (WholeFile* file : files) file->commit();
+    return;
+  }
+  const FolderLock lock(folder);
   finish_journal(folder);
+  remove_litter(folder);
+  give_names(files, {}, folder);
 }
 
 }  // namespace
@@ -130,7 +143,7 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
                                        const std::filesystem::path& into,
                                        const std::vector<std::string>& inputs,
                                        bool force,
-                                       const std::function<void()>& before_names) {
+                                       const std::vector<WholeFile*>& streamed) {
   const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
   make_folder(folder);
   const FolderLock lock(folder);
@@ -144,18 +157,38 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
   const auto stale = force ? stale_files(outputs) : std::vector<std::string>{};
   for (const std::string& name : stale)
     for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
-  for (WholeFile& file : files) file.prepare();
-  if (before_names) before_names();
-  give_names(files, stale, folder);
+  std::vector<WholeFile*> all;
+  for (WholeFile& file : files) all.push_back(&file);
+  all.insert(all.end(), streamed.begin(), streamed.end());
+  give_names(all, stale, folder);
   return stale;
+}
+
+void commit_together(const std::vector<WholeFile*>& files) {
+  if (files.size() == 1) return files.front()->commit();
+  for (WholeFile* file : files) file->prepare();
+  std::vector<std::filesystem::path> folders;
+  for (const WholeFile* file : files)
+    if (std::find(folders.begin(), folders.end(), folder_of(*file)) == folders.end())
+      folders.push_back(folder_of(*file));
+  for (const auto& folder : folders) {
+    std::vector<WholeFile*> set;
+    for (WholeFile* file : files)
+      if (folder_of(*file) == folder) set.push_back(file);
+    commit_set(set, folder);
+  }
 }
 
 Json file_names(const std::vector<OutputFile>& outputs) {
   return Json(names_of(outputs));
 }
 
-void refuse_interrupted(const std::filesystem::path& folder) {
-  if (!has_journal(folder)) return;
+void refuse_interrupted(const std::filesystem::path& folder_or_file) {
+  std::error_code ignored;
+  const bool whole = std::filesystem::is_directory(folder_or_file, ignored);
+  auto folder = whole ? folder_or_file : folder_or_file.parent_path();
+  if (folder.empty()) folder = ".";
+  if (whole ? !has_journal(folder) : !journal_names(folder, folder_or_file.filename())) return;
   throw Error(
       {ErrorKind::output,
        "E0516",

@@ -2,11 +2,11 @@
 // The files of one job: all of them or none.
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "libchar/core/json.hpp"
+#include "libchar/core/whole_file.hpp"
 
 namespace libchar {
 
@@ -32,17 +32,23 @@ void foresee_outputs(const std::vector<std::string>& paths,
 /// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
 /// meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names as its files ("files") and
 /// the new one does not is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run
-/// keeps writing there. `before_names` runs when everything is on disk. Returns the names that were removed.
+/// keeps writing there. `streamed` are files of the set that were written piece by piece, in the same folder. Returns the names
+/// that were removed.
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
                                        const std::filesystem::path& folder,
                                        const std::vector<std::string>& inputs,
                                        bool force,
-                                       const std::function<void()>& before_names = {});
+                                       const std::vector<WholeFile*>& streamed = {});
+
+/// Gives files that were written piece by piece their names together, as `write_outputs` does; those of another folder than the
+/// first file's follow as a set of their own. Throws Error(output).
+void commit_together(const std::vector<WholeFile*>& files);
 
 /// Names of the files in their folder, for "files" of a document among them: what a later run may remove.
 Json file_names(const std::vector<OutputFile>& outputs);
 
-/// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others.
-void refuse_interrupted(const std::filesystem::path& folder);
+/// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
+/// file, where it is one of them.
+void refuse_interrupted(const std::filesystem::path& folder_or_file);
 
 }  // namespace libchar

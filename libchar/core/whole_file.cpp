@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "libchar/core/error.hpp"
@@ -138,8 +140,8 @@ WholeFile::WholeFile(std::string path, bool overwrite)
 
 bool WholeFile::open_through() {
   const int own = own_descriptor(path_);
-  through_ = own >= 0 || is_special(path_);
-  if (!through_) return false;
+  special_ = own >= 0 || is_special(path_);
+  if (!special_) return false;
   descriptor_ =
       own >= 0 ? ::fcntl(own, F_DUPFD_CLOEXEC, 3) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) fail("open for writing");
@@ -156,7 +158,7 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
       begin_(other.begin_),
       flushed_(other.flushed_),
       overwrite_(other.overwrite_),
-      through_(other.through_) {}
+      special_(other.special_) {}
 
 WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -201,21 +203,31 @@ void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
   }
 }
 
+void WholeFile::flush_to_disk() {
+  flush();
+  if (!special_ && ::fsync(descriptor_) != 0) fail("flush to disk");
+}
+
+// False where the name is taken.
+bool WholeFile::link_to(const std::string& name) const {
+  const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
+  if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+    return true;
+  if (errno != EEXIST) fail("name the finished file");
+  return false;
+}
+
 void WholeFile::prepare() {
   if (descriptor_ < 0) return;
-  flush();
-  if (through_) return;
-  if (::fsync(descriptor_) != 0) fail("flush to disk");
-  if (temporary_.empty()) {  // give the nameless file a temporary name first: linkat cannot replace
-    const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      const std::string name = temporary_name(path_, attempt);
-      if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-        temporary_ = name;
-        break;
-      }
-      if (errno != EEXIST) fail("name the finished file");
-    }
+  flush_to_disk();
+  if (special_) return;
+  // A nameless file gets a temporary name first: linkat cannot replace.
+  for (int attempt = 0; temporary_.empty(); ++attempt) {
+    const std::string name = temporary_name(path_, attempt);
+    if (link_to(name))
+      temporary_ = name;
+    else if (attempt == 100)
+      fail("name the finished file");
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
   struct stat status {};
@@ -229,7 +241,21 @@ void WholeFile::prepare() {
   }
 }
 
+// Where nothing has the name a nameless file gets it at once, and no kill can leave it under a temporary one.
+bool WholeFile::take_free_name() {
+  if (special_ || descriptor_ < 0 || !temporary_.empty()) return false;
+  flush_to_disk();
+  if (exists(path_) || !link_to(path_)) return false;
+  if (::close(std::exchange(descriptor_, -1)) != 0) {
+    ::unlink(path_.c_str());
+    fail("close");
+  }
+  sync_folder(folder_of(path_));
+  return true;
+}
+
 void WholeFile::commit() {
+  if (take_free_name()) return;
   prepare();
   if (descriptor_ >= 0) {  // a device or pipe
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
@@ -237,6 +263,7 @@ void WholeFile::commit() {
   }
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
   temporary_.clear();
+  remove_litter(folder_of(path_));
   sync_folder(folder_of(path_));
 }
 
@@ -250,26 +277,28 @@ void check_output(const std::string& path, bool overwrite) {
   const WholeFile trial(path, overwrite);  // discarded: nothing appears under the name
 }
 
+void remove_litter(const std::string& folder) {
+  std::error_code stop, ignored;
+  for (std::filesystem::directory_iterator entry(folder, stop), end; !stop && entry != end;
+       entry.increment(stop)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t mark = name.rfind(kTemporaryMark);
+    if (mark == std::string::npos || !entry->is_regular_file(ignored)) continue;
+    const std::string number = name.substr(mark + kTemporaryMark.size());
+    pid_t process = 0;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
+    if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
+        number.find_first_not_of("-0123456789") != std::string::npos)
+      continue;
+    if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry->path(), ignored);
+  }
+}
+
 void sync_folder(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
-}
-
-void commit_with_description(WholeFile& data, WholeFile& description) {
-  data.prepare();
-  description.prepare();
-  if (!description.through())
-    ::unlink(
-        description.path().c_str());  // prepare() has refused it where it must not be overwritten
-  data.commit();
-  try {
-    description.commit();
-  } catch (...) {
-    if (!data.through()) ::unlink(data.path().c_str());
-    throw;
-  }
 }
 
 void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite) {

@@ -32,11 +32,11 @@ class WholeFile {
   void rewrite(std::size_t offset, std::string_view bytes);
   /// Everything of commit() that can fail for want of space or rights, short of taking the name.
   void prepare();
-  /// fsync, rename, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
+  /// fsync, the name, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
   void commit();
   const std::string& path() const { return path_; }
-  /// A device, a pipe or an open file of this process: no name is given to it.
-  bool through() const { return through_; }
+  /// A device, a pipe or an open file of this process, which is written through and has its name already.
+  bool special() const { return special_; }
   /// After prepare(): the name under which the file waits for its own; empty for a device or pipe.
   const std::string& temporary() const { return temporary_; }
   /// After prepare(): somebody else gives the file its name; the destructor leaves it where it is.
@@ -45,17 +45,19 @@ class WholeFile {
  private:
   bool open_through();
   void flush();
+  void flush_to_disk();
+  bool link_to(const std::string& name) const;
+  bool take_free_name();
   [[noreturn]] void fail(std::string_view doing) const;
   std::string path_, temporary_, buffer_;
   int descriptor_ = -1;
   std::int64_t begin_ =
       0;  ///< where our first byte stands in the file; negative where nothing can be gone back to
-  bool flushed_ = false, overwrite_ = false, through_ = false;
+  bool flushed_ = false, overwrite_ = false, special_ = false;
 };
 
-/// Gives both files their names, or neither as far as POSIX allows: both are on disk before the first is renamed; an older
-/// `description` goes first and the new one comes last, so that at no instant one stands beside data that it does not describe.
-void commit_with_description(WholeFile& data, WholeFile& description);
+/// Removes temporary files that a process which is no more has left in the folder.
+void remove_litter(const std::string& folder);
 
 /// The path leads to a device, a pipe or an open file of this process (/dev/stdout): what stands beside it is no place for files.
 bool writes_through(const std::string& path);

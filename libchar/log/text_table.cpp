@@ -1,8 +1,7 @@
 #include "libchar/log/text_table.hpp"
 
-#include <fstream>
-
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/log/csv/delimiter.hpp"
 #include "libchar/log/csv/line.hpp"
@@ -13,11 +12,7 @@ namespace libchar {
 namespace {
 
 std::optional<std::string> whole_text(const std::string& path, std::size_t max_bytes) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error({ErrorKind::input, "E0101", path, "cannot be opened", "", ""});
-  std::string text(max_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  std::string text = file_text(path, max_bytes + 1);
   return text.size() > max_bytes ? std::nullopt : std::optional(text);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/output_files.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -34,8 +35,11 @@ class LogWriter {
   /// What only the end of reading knew better (the rate); before finish(). CSV has written its
   /// stamps by then and keeps them.
   virtual void refine(const LogInfo& info) { static_cast<void>(info); }
-  /// Completes and names the file (and its sidecar).
-  virtual void finish() = 0;
+  /// Everything but the names: what is left to write is written. The files, the log first, which last as long as the writer: for who
+  /// commits them together with others.
+  virtual std::vector<WholeFile*> complete() = 0;
+  /// Completes the file (and its sidecar) and gives it its name.
+  void finish() { commit_together(complete()); }
   /// The files written, the log first.
   virtual std::vector<std::string> files() const = 0;
   /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for

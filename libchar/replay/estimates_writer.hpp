@@ -26,6 +26,8 @@ class EstimatesWriter final : public EstimateSink {
   void block(const std::vector<std::vector<double>>& columns) override;
   /// The files that `finish` gives their names.
   std::vector<std::string> files() const;
+  /// Everything but the names: for who commits the files together with others. Throws Error(output).
+  std::vector<WholeFile*> complete() { return writer_->complete(); }
   /// The file gets its name now. Returns the files that were written; throws Error(output).
   std::vector<std::string> finish();
 

@@ -335,7 +335,7 @@ class Replay {
 
   // After everything else: what the algorithms hold then is of no interest.
   void time_again(ReplayResult& result) {
-    if (kept_.empty()) return;
+    if (kept_.empty() || !options_.timing) return;
     const auto timed_enough = [](const AlgorithmRun& run) {
       return !run.alive() || run.timed_blocks() >= kLeastTimed;
     };
@@ -575,6 +575,18 @@ std::vector<std::string> explain_replay(const Scene& scene,
   return Replay(scene, options, progress, {}).explain();
 }
 
+namespace {
+
+void forget_timing(ReplayResult& result) {
+  result.seconds = kMissing;
+  for (AlgorithmResult& algorithm : result.algorithms) {
+    algorithm.ns_per_sample = algorithm.learning_s = kMissing;
+    algorithm.peak_bytes.reset();
+  }
+}
+
+}  // namespace
+
 ReplayResult replay(const Scene& scene,
                     const ReplayOptions& options,
                     Progress& progress,
@@ -582,6 +594,7 @@ ReplayResult replay(const Scene& scene,
   const auto start = std::chrono::steady_clock::now();
   ReplayResult out = Replay(scene, options, progress, workspace).run();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!options.timing) forget_timing(out);
   return out;
 }
 

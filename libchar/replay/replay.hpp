@@ -36,6 +36,8 @@ struct ReplayOptions {
   /// processor time that leave-one-out of one algorithm may take, by the declared cost of its steps; beyond it runs on
   /// stretches of the evaluation, or not at all. Infinite: no limit
   double budget_s = 10;
+  bool timing =
+      true;  ///< measure run times and memory; without them the same input gives the same bytes of a report
   std::size_t block = 0;  ///< instants at once; 0: by length. Results do not depend on it
 };
 

@@ -220,7 +220,7 @@ Json json_report(const Characterization& result) {
 }
 
 void add_times(Json& document, const Characterization& result) {
-  document["measured"] = {{"seconds", result.seconds}};
+  if (std::isfinite(result.seconds)) document["measured"] = {{"seconds", result.seconds}};
 }
 
 }  // namespace libchar

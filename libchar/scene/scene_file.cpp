@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/fields.hpp"
+#include "libchar/core/file_text.hpp"
 #include "libchar/core/json_reader.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
@@ -201,12 +203,9 @@ bool looks_like_scene(const std::string& path) {
   const std::string small = ascii_lower(path);
   for (const char* suffix : {".yaml", ".yml", ".json"})
     if (small.ends_with(suffix)) return true;
-  if (read_once(path)) return false;
-  std::string front(4096, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(front.data(), static_cast<std::streamsize>(front.size()));
-  front.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  return ("\n" + front).find("\nformat: scene") != std::string::npos;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  return ("\n" + file_text(path, 4096)).find("\nformat: scene") != std::string::npos;
 }
 
 bool is_scene_file(const std::string& path) {
@@ -218,6 +217,7 @@ bool is_scene_file(const std::string& path) {
 }
 
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options) {
+  refuse_interrupted(path);
   return parse_scene(read_document_text(path), path, options);
 }
 

@@ -110,7 +110,7 @@ std::string resolve_scene_file(const std::string& text,
   // As the system walks it: "link/.." is not always ".".
   const fs::path whole = fs::path(folder.scene).parent_path() / path;
   std::error_code problem, root_problem;
-  if (folder.may_be_absent && !fs::exists(whole, problem)) return whole.string();
+  if (folder.may_be_absent && !fs::exists(whole, problem) && !problem) return whole.string();
   check_kind(named, whole);
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
@@ -147,7 +147,14 @@ fs::path whole_path(const fs::path& path, std::error_code& problem) {
 std::string path_for_scene(const std::string& file, const std::string& scene) {
   std::error_code problem;
   const fs::path root = whole_path(folder_of(scene), problem);
-  const fs::path target = whole_path(file, problem);
+  const fs::path target = problem ? root : whole_path(file, problem);
+  if (problem)
+    throw Error({ErrorKind::input,
+                 "E0732",
+                 scene,
+                 fmt::format("cannot look at {}: {}", printable(file), problem.message()),
+                 "",
+                 ""});
   const fs::path relative = target.lexically_relative(root);
   const std::string name =
       relative.empty() || leaves(relative) ? target.string() : relative.string();

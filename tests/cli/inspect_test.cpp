@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -134,4 +135,17 @@ TEST_CASE("the suggested command names each list once, and works") {
       test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains(" --names 'a b,c' --units deg/s,g --time-column c0"));
+}
+
+TEST_CASE("inspect: a pipe has as many bytes as the file it comes from, comments and header too") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "log.csv").string();
+  std::ofstream(path) << "# a comment\n# another\nt[s],x\n0,1\n0.5,2\n1,3\n1.5,2\n";
+  test::RunOptions piped;
+  piped.stdin_path = path;
+  const auto bytes = [](const test::Ran& ran) {
+    return libchar::parse_json(ran.out, "inspect")["recordings"][0]["bytes"].get<std::uint64_t>();
+  };
+  CHECK(bytes(test::run({"inspect", "-", "--json"}, piped)) == std::filesystem::file_size(path));
+  CHECK(bytes(test::run({"inspect", path, "--json"})) == std::filesystem::file_size(path));
 }

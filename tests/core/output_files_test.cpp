@@ -82,8 +82,9 @@ TEST_CASE("a file that the new document names is not removed, whoever wrote it")
     Json names = file_names(outputs);
     names.push_back("estimates.csv");
     outputs[0].text = Json{{"files", names}}.dump();
-    return write_outputs(
-        outputs, folder.path(), {}, force, [&] { put_text(folder / "estimates.csv", "1\n"); });
+    WholeFile estimates((folder / "estimates.csv").string(), force);
+    estimates.write("1\n");
+    return write_outputs(outputs, folder.path(), {}, force, {&estimates});
   };
   once(false);
   CHECK(once(true).empty());
@@ -143,6 +144,60 @@ TEST_CASE("two runs on one folder: the second waits for the first, and says so w
   write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, false);
   first.join();
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
+}
+
+TEST_CASE("data and description come together or not at all, whatever stood there before") {
+  const test::TemporaryFolder folder;
+  const fs::path data = folder / "x.bin", text = folder / "x.bin.json";
+  const auto commit = [&](const std::string& content, bool force) {
+    return code_of_outputs([&] {
+      WholeFile a(data.string(), force), b(text.string(), force);
+      a.write(content);
+      b.write(content);
+      if (content == "blocked") fs::create_directory(text);  // what comes in between
+      commit_together({&a, &b});
+    });
+  };
+  CHECK(commit("blocked", false) == "E0501");
+  fs::remove(text);
+  CHECK(names_in(folder.path()).empty());
+  CHECK(commit("one", false) == "");
+  CHECK(commit("two", false) == "E0503");
+  CHECK(test::slurp(data) + test::slurp(text) == "oneone");
+  CHECK(commit("two", true) == "");
+  CHECK(test::slurp(data) + test::slurp(text) == "twotwo");
+  fs::remove(text);
+  CHECK(commit("blocked", true) == "E0501");
+  CHECK(test::slurp(data) == "two");
+  fs::remove(text);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"x.bin"});
+}
+
+TEST_CASE("files of two folders and devices are committed together as far as there are sets") {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "in");
+  WholeFile a((folder / "a").string()), b((folder / "in" / "b").string()), c("/dev/null");
+  for (WholeFile* file : {&a, &b, &c}) file->write("x");
+  commit_together({&a, &b, &c});
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a", "in"});
+  CHECK(names_in(folder / "in") == std::set<std::string>{"b"});
+}
+
+TEST_CASE("one of a pair that an interrupted run has left is not read; its neighbours are") {
+  const test::TemporaryFolder folder;
+  write_journal(folder.path(), {{{"log.bin.libchar-tmp-1-0", "log.bin"}}, {"old.yaml"}});
+  CHECK(code_of_outputs([&] { refuse_interrupted(folder / "log.bin"); }) == "E0516");
+  CHECK(code_of_outputs([&] { refuse_interrupted(folder / "old.yaml"); }) == "E0516");
+  CHECK_NOTHROW(refuse_interrupted(folder / "other.bin"));
+}
+
+TEST_CASE("the next run that replaces a file removes what a killed one has left of it") {
+  const test::TemporaryFolder folder;
+  put_text(folder / "a.csv.libchar-tmp-999999999-0", "litter");
+  put_text(folder / "a.csv.libchar-tmp-mine", "not ours");
+  write_whole_file((folder / "a.csv").string(), "new");
+  write_whole_file((folder / "a.csv").string(), "newer", true);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.csv", "a.csv.libchar-tmp-mine"});
 }
 
 TEST_CASE("killed at any moment, the next run leaves a whole set and no litter") {

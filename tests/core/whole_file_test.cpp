@@ -141,38 +141,6 @@ TEST_CASE("an input is never its own output, under no name") {
   CHECK_NOTHROW(refuse_same_file("/dev/null", "/dev/null"));
 }
 
-TEST_CASE("data and description come together or not at all") {
-  const test::TemporaryFolder folder;
-  const std::string data = (folder / "x.bin").string(), text = data + ".json";
-  {
-    WholeFile a(data), b(text);
-    a.write("data");
-    b.write("description");
-    std::filesystem::create_directory(text);  // what comes in between
-    CHECK_THROWS_AS(commit_with_description(a, b), Error);
-    CHECK_FALSE(std::filesystem::exists(data));
-    std::filesystem::remove(text);
-  }
-  {
-    WholeFile a(data), b(text);
-    a.write("data");
-    b.write("description");
-    commit_with_description(a, b);
-  }
-  CHECK(test::slurp(data) == "data");
-  CHECK(test::slurp(text) == "description");
-  {  // a folder in the description's place: the older pair of names is not touched
-    std::filesystem::remove(text);
-    WholeFile a(data, true), b(text, true);
-    a.write("newer");
-    std::filesystem::create_directory(text);
-    CHECK_THROWS_AS(commit_with_description(a, b), Error);
-    CHECK(test::slurp(data) == "data");
-    std::filesystem::remove(text);
-  }
-  CHECK(entries(folder) == 1);
-}
-
 TEST_CASE("what replaces a file has its rights, and a read-only one is not replaced") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "a.txt").string();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -38,7 +39,7 @@ namespace fs = std::filesystem;
 struct CharacterizeVerb {
   std::vector<std::string> logs;
   std::string folder, limits;
-  bool json = false, force = false, verify = false, pool = false, lot = false;
+  bool json = false, force = false, verify = false, pool = false, lot = false, no_timing = false;
   std::uint64_t seed = 1;
   AnalysisOptions analysis;
 };
@@ -79,6 +80,7 @@ Characterization characterized(Session& session,
   Characterization result = characterize(log, options, session.terminal);
   result.command = session.command;
   result.settings = settings_of(options);
+  if (verb.no_timing) result.seconds = std::numeric_limits<double>::quiet_NaN();
   if (verb.verify) {
     VerifyOptions how;
     how.seed = verb.seed;
@@ -294,6 +296,9 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
       .required();
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
+  options.add_flag("--no-timing",
+                   verb->no_timing,
+                   "without the time it took: the same input and options give the same bytes");
   options.add_flag(
       "--verify",
       verb->verify,

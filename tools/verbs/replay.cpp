@@ -39,7 +39,7 @@ struct ReplayVerb {
   std::string folder, estimates, scene_file;
   std::vector<std::string> algorithms, settings;
   bool explain = false, list = false, force = false, json = false, no_allan = false,
-       no_skip = false;
+       no_skip = false, no_timing = false;
   std::optional<double> window_s, budget_s;
 };
 
@@ -103,6 +103,7 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
           {"allan", !verb.no_allan},
           {"budget_s", verb.budget_s.value_or(ReplayOptions().budget_s)},
           {"no_skip", verb.no_skip},
+          {"no_timing", verb.no_timing},
           {"no_faults", verb.source.no_faults},
           {"faults", std::move(faults)}};
 }
@@ -128,6 +129,7 @@ ReplayOptions options_of(const ReplayVerb& verb) {
   options.window_s = verb.window_s.value_or(0);
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
+  options.timing = !verb.no_timing;
   if (verb.budget_s) options.budget_s = *verb.budget_s;
   return options;
 }
@@ -197,10 +199,10 @@ void run_and_report(Session& session,
     for (const std::string& file : estimates->files())
       document["files"].push_back(fs::path(file).filename().string());
   outputs[1].text = dump_json(document);
-  const auto removed = write_outputs(outputs, folder, inputs, verb.force, [&] {
-    if (estimates)
-      for (const std::string& file : estimates->finish()) files.push_back(file);
-  });
+  std::vector<WholeFile*> streamed;
+  if (estimates) streamed = estimates->complete();
+  for (const WholeFile* file : streamed) files.push_back(file->path());
+  const auto removed = write_outputs(outputs, folder, inputs, verb.force, streamed);
   if (verb.json) return print(dump_json(document));
   print_text(replay_text(view));
   std::string written = "\nwrote";
@@ -257,6 +259,9 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_flag("--explain",
                    verb->explain,
                    "print the plan: what would be read, learnt, run, skipped and why");
+  options.add_flag("--no-timing",
+                   verb->no_timing,
+                   "without run times and memory: the same scene gives the same bytes");
   options.add_flag("--no-skip",
                    verb->no_skip,
                    "do all work whether an output needs it or not; the numbers are the same");

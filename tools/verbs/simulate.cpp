@@ -242,12 +242,11 @@ SimulationSummary write_recording(Session& session,
   stream(session, verb, simulation, *writer);
   session.terminal.clear();
   session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
-  writer->finish();
+  std::vector<WholeFile*> outputs = writer->complete();
+  if (scene_file) outputs.push_back(&*scene_file);
+  commit_together(outputs);
   std::vector<std::string> files = writer->files();
-  if (scene_file) {
-    scene_file->commit();
-    files.push_back(verb.scene_path);
-  }
+  if (scene_file) files.push_back(verb.scene_path);
   session.terminal.clear();
   return {&simulation, ArraySimulator(simulation).draws(), files, info.channels.size()};
 }

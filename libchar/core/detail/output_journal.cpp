@@ -3,19 +3,20 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/core/whole_file.hpp"
 
@@ -24,17 +25,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
+
 fs::path journal_of(const fs::path& folder) {
   return folder / ".libchar-outputs.json";
 }
 
-[[noreturn]] void fail_on(const fs::path& path, const char* doing) {
+constexpr const char* kRunAgain = "run it again: it first finishes what this run has begun";
+
+[[noreturn]] void fail_on(const fs::path& path, const char* doing, const char* hint = "") {
   throw Error({ErrorKind::output,
                "E0501",
                path.string(),
                fmt::format("cannot {}: {}", doing, std::strerror(errno)),
                "",
-               ""});
+               hint});
+}
+
+void remove_file(const fs::path& path, const char* doing) {
+  // Twice, as names are given.
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT && ::unlink(path.c_str()) != 0)
+    fail_on(path, doing, kRunAgain);
 }
 
 /// The journal is a file in somebody's folder: no name in it leads out of that folder.
@@ -47,11 +58,9 @@ std::string name_in(const Json& value) {
 
 OutputJournal read_journal(const fs::path& folder) {
   const fs::path path = journal_of(folder);
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
+  const std::string text = file_text(path.string(), kMostBytes);
   try {
-    const Json document = Json::parse(text.str());
+    const Json document = Json::parse(text);
     OutputJournal journal;
     for (const Json& pair : document.at("rename"))
       journal.rename.emplace_back(name_in(pair.at(0)), name_in(pair.at(1)));
@@ -76,30 +85,45 @@ void write_journal(const fs::path& folder, const OutputJournal& journal) {
   write_whole_file(journal_of(folder).string(), document.dump() + "\n", true);
 }
 
-void finish_journal(const fs::path& folder) {
-  if (!has_journal(folder)) return;
-  const OutputJournal journal = read_journal(folder);
+void run_journal(const fs::path& folder, const OutputJournal& journal) {
+  bool begun = false;
   for (const auto& [from, to] : journal.rename) {
     const fs::path source = folder / from, target = folder / to;
     // A second attempt: what failed once may have been a signal or a busy server.
-    if (::rename(source.c_str(), target.c_str()) != 0 && errno != ENOENT &&
-        ::rename(source.c_str(), target.c_str()) != 0)
-      fail_on(target, "rename into place");
+    if (::rename(source.c_str(), target.c_str()) == 0 || errno == ENOENT ||
+        ::rename(source.c_str(), target.c_str()) == 0) {
+      begun = true;
+      continue;
+    }
+    const int error = errno;
+    if (!begun) ::unlink(journal_of(folder).c_str());
+    errno = error;
+    fail_on(target, "rename into place", begun ? kRunAgain : "");
   }
-  for (const std::string& name : journal.remove) {
-    const fs::path path = folder / name;
-    if (::unlink(path.c_str()) != 0 && errno != ENOENT && ::unlink(path.c_str()) != 0)
-      fail_on(path, "remove this file of an earlier run");
-  }
+  for (const std::string& name : journal.remove)
+    remove_file(folder / name, "remove this file of an earlier run");
   sync_folder(folder.string());
-  if (::unlink(journal_of(folder).c_str()) != 0 && errno != ENOENT &&
-      ::unlink(journal_of(folder).c_str()) != 0)
-    fail_on(journal_of(folder), "remove");
+  remove_file(journal_of(folder), "remove this list of what was to be done");
+}
+
+void finish_journal(const fs::path& folder) {
+  if (has_journal(folder)) run_journal(folder, read_journal(folder));
 }
 
 bool has_journal(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::exists(journal_of(folder), ignored);
+  struct stat status {};
+  if (::lstat(journal_of(folder).c_str(), &status) == 0) return true;
+  // Where there is no folder, or one that nobody may look into, there is nothing to finish.
+  if (errno == ENOENT || errno == ENOTDIR) return false;
+  fail_on(journal_of(folder), "look for this list of what an interrupted run has left");
+}
+
+bool journal_names(const fs::path& folder, const std::string& name) {
+  if (!has_journal(folder)) return false;
+  const OutputJournal journal = read_journal(folder);
+  const auto renamed = [&](const auto& pair) { return pair.second == name; };
+  return std::any_of(journal.rename.begin(), journal.rename.end(), renamed) ||
+         std::find(journal.remove.begin(), journal.remove.end(), name) != journal.remove.end();
 }
 
 FolderLock::FolderLock(const fs::path& folder, double wait_s)

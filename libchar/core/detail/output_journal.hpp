@@ -18,12 +18,18 @@ struct OutputJournal {
 /// On disk when it returns. Throws Error(output).
 void write_journal(const std::filesystem::path& folder, const OutputJournal& journal);
 
-/// Does what the folder's journal says and removes it; nothing where there is none. What is done already is passed over, so that it can
-/// be done again after a kill. Throws Error(output) and leaves the journal where a name cannot be given.
+/// Does what was written down and removes the journal. What is done already is passed over, so that it can be done again after a kill.
+/// Throws Error(output) where a name cannot be given: then the journal stays, unless nothing has been done yet.
+void run_journal(const std::filesystem::path& folder, const OutputJournal& journal);
+
+/// Does what the folder's journal says, as `run_journal`; nothing where there is none.
 void finish_journal(const std::filesystem::path& folder);
 
-/// Whether a run was interrupted while its files got their names.
+/// Whether a run was interrupted while its files got their names. Throws Error(output) where that cannot be known.
 bool has_journal(const std::filesystem::path& folder);
+
+/// Whether it was to change the file of this name.
+bool journal_names(const std::filesystem::path& folder, const std::string& name);
 
 /// One writer at a time: a lock on the folder itself, which ends with the process. Waits for another run's, which takes milliseconds;
 /// throws Error(output) where that lasts longer than `wait_s`.

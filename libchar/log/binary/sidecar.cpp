@@ -10,6 +10,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/fields.hpp"
 #include "libchar/core/json_reader.hpp"
+#include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
@@ -201,6 +202,7 @@ Sidecar parse_sidecar(std::string_view text, const std::string& file, bool json)
 }
 
 Sidecar read_sidecar(const std::string& path) {
+  refuse_interrupted(path);
   const BinaryFile file(path);
   if (file.size() > kMaxBytes)
     throw Error(

@@ -52,12 +52,15 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
   ::poll(&waiting, 1, kPatience_ms);
   ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK);
   struct stat status {};
-  const bool known = ::fstat(descriptor_, &status) == 0;
-  if (known && S_ISDIR(status.st_mode)) {
+  const int looked = ::fstat(descriptor_, &status);
+  if (looked != 0 || S_ISDIR(status.st_mode)) {
+    const std::string why = looked != 0
+                                ? "cannot be looked at: " + std::string(std::strerror(errno))
+                                : "is a folder, a file was expected";
     ::close(descriptor_);
-    refuse(path_, "is a folder, a file was expected");
+    refuse(path_, why);
   }
-  regular_ = known && S_ISREG(status.st_mode);
+  regular_ = S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
   if (size_ > 0)
     block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers

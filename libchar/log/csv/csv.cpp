@@ -104,7 +104,7 @@ class CsvSource final : public RowSource {
     return dialect_.time_column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
                                      : fmt::format("{}:{}", info_.file, line_of(block, i));
   }
-  std::uint64_t bytes_read() const override { return consumed_; }
+  std::uint64_t bytes_read() const override { return dialect_.data_offset + consumed_; }
   std::uint64_t bytes_total() const override { return chunks_.size(); }
 
   std::string sha256() override {

@@ -60,9 +60,9 @@ class CsvWriter final : public LogWriter {
     }
   }
 
-  void finish() override {
+  std::vector<WholeFile*> complete() override {
     flush();
-    file_.commit();
+    return {&file_};
   }
   std::vector<std::string> files() const override { return {file_.path()}; }
   std::vector<std::string> losses() const override {

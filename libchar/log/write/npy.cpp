@@ -52,10 +52,10 @@ class NpyWriter final : public LogWriter {
   void write(std::span<const std::span<const double>> columns) override { values_->write(columns); }
   void refine(const LogInfo& info) override { rate_ = info.time.rate_hz; }
 
-  void finish() override {
+  std::vector<WholeFile*> complete() override {
     values_->finish();
     file_.rewrite(0, header(values_->rows()));
-    file_.commit();
+    return {&file_};
   }
   std::vector<std::string> files() const override { return {file_.path()}; }
 

@@ -66,11 +66,11 @@ class RawWriter final : public LogWriter {
     sidecar_.t0_ns = info.time.start_ns;
   }
 
-  void finish() override {
+  std::vector<WholeFile*> complete() override {
     values_->finish();
     sidecar_.rows = values_->rows();
     beside_.write(sidecar_json(sidecar_));
-    commit_with_description(file_, beside_);
+    return {&file_, &beside_};
   }
   std::vector<std::string> files() const override { return {file_.path(), beside_.path()}; }
 
