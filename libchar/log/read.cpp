@@ -126,7 +126,7 @@ void warn_of_units(const ReadOptions& options, Warnings& warnings) {
                    ? fmt::format("column {} has no finite value", info.channels[0].name)
                    : fmt::format("none of {} columns has a finite value", info.channels.size()),
                "",
-               "`channels` chooses others, `from_s` and `to_s` another stretch"});
+               "`channels` chooses others"});
 }
 
 // Passes blocks on and remembers which channels had a value at all.
@@ -209,7 +209,9 @@ LogInfo read_log(const std::string& path,
     if (!time.start_ns) time.start_ns = info.time.start_ns;
   }
   info.time = time;
-  if (info.samples > 0 && std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
+  const bool whole = !options.from_s && !options.to_s;
+  if (whole && info.samples > 0 &&
+      std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
     refuse_empty(info);
   for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)
     if (!watch.seen[c])

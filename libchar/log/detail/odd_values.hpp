@@ -14,7 +14,7 @@ inline constexpr std::string_view kInfiniteValues = "infinities, taken as missin
 inline constexpr std::string_view kNumbersOutOfRange =
     "numbers out of the range of a double, taken as missing samples";
 inline constexpr std::string_view kNumbersTooSmall =
-    "numbers nearer to zero than the least double, read as 0";
+    "numbers with an exponent below those of doubles, read as 0";
 
 /// "empty or NaN cells, taken as missing samples (gyro_x 3, gyro_y 1)".
 std::string missing_cells(const std::vector<Channel>& channels,
