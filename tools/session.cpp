@@ -13,6 +13,7 @@
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace sensorchar {
@@ -51,10 +52,21 @@ libchar::Json document_head(const Session& session,
   return libchar::document_head(format, session.command, inputs);
 }
 
+void print_summary(Session& session, const std::string& output, const std::string& text) {
+  if (!libchar::writes_through(output)) return print_text(text);
+  session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
+}
+
+void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force) {
+  if (path.empty()) return;
+  for (const std::string& input : inputs) libchar::refuse_same_file(input, path);
+  libchar::check_output(path, force);
+}
+
 namespace {
 
-constexpr const char* kNoMemory = "E0402";
-constexpr const char* kNoThread = "E0403";
+constexpr const char* kNoMemory = "E0403";
+constexpr const char* kNoThread = "E0419";
 
 // Said without taking memory: there is none.
 int refuse_for_memory() noexcept {
@@ -81,6 +93,12 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     say(line);
     return code;
   };
+  const auto stopped = [&](int number) {
+    return fail(session.wrote
+                    ? "sensorchar: stopped; what had been written before is whole and stays"
+                    : "sensorchar: stopped; no output was written",
+                128 + number);
+  };
   try {
     work();
     work_is_done();
@@ -94,25 +112,23 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     return 0;
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
-    if (stop_signal() != 0)
-      return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
+    if (stop_signal() != 0) return stopped(stop_signal());
     return fail(libchar::one_line(with_flags(error.problem())), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
-    return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
+    return stopped(cancelled.signal);
   } catch (const StdoutClosed&) {
     return 0;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::filesystem::filesystem_error& error) {
     if (error.code() == std::errc::not_enough_memory) throw;
-    const std::string where = error.path1().string();
     return fail(libchar::one_line({ErrorKind::input,
-                                   "E0105",
-                                   where,
-                                   "cannot be looked at: " + error.code().message(),
+                                   "E0101",
+                                   error.path1().string(),
+                                   "cannot look at it: " + error.code().message(),
                                    "",
                                    ""}),
-                exit_code(ErrorKind::input));
+                3);
   } catch (const std::exception& error) {
     if (is_of_threads(error))
       return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "

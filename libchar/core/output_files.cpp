@@ -129,8 +129,17 @@ void check_outputs(const std::vector<std::string>& paths,
   make_folder(folder);
   for (const std::string& path : paths) {
     for (const std::string& input : inputs) refuse_same_file(input, path);
-    const WholeFile trial(path, force);  // discarded: nothing appears under the name
+    check_output(path, force);
   }
+}
+
+void foresee_outputs(const std::vector<std::string>& paths,
+                     const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs,
+                     bool force) {
+  std::error_code ignored;
+  const auto there = std::filesystem::status(folder.empty() ? "." : folder, ignored).type();
+  if (there != std::filesystem::file_type::not_found) check_outputs(paths, folder, inputs, force);
 }
 
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,

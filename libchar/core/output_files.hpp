@@ -21,6 +21,13 @@ void check_outputs(const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs,
                    bool force);
 
+/// The same where nothing is made yet: files of a folder that does not exist cannot be in the way. For results whose other names are known
+/// only once they are there.
+void foresee_outputs(const std::vector<std::string>& paths,
+                     const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs,
+                     bool force);
+
 /// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
 /// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
 /// meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names as its files ("files") and

@@ -111,8 +111,9 @@ double parse_rate_hz(std::string_view text) {
   return value;
 }
 
-std::uint64_t parse_bytes(std::string_view text) {
-  const std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
+std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {
+  std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
+  if (lowest > 0) expected += fmt::format(", not below {} bytes", lowest);
   const double value = with_unit(text,
                                  {{"", 1},
                                   {"B", 1},
@@ -127,7 +128,7 @@ std::uint64_t parse_bytes(std::string_view text) {
                                   {"MB", 1e6},
                                   {"GB", 1e9}},
                                  expected);
-  if (!(value >= 0 && value <= 9007199254740992.0) ||
+  if (!(value >= static_cast<double>(lowest) && value <= 9007199254740992.0) ||
       value != static_cast<double>(static_cast<std::uint64_t>(value)))
     refuse(text, expected);
   return static_cast<std::uint64_t>(value);

@@ -27,7 +27,7 @@ double parse_duration_s(std::string_view text);
 double parse_rate_hz(std::string_view text);
 
 /// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB,
-/// MB, GB of 1000).
-std::uint64_t parse_bytes(std::string_view text);
+/// MB, GB of 1000). Not below `lowest`: a bare 10 is rather a forgotten unit.
+std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest = 0);
 
 }  // namespace libchar

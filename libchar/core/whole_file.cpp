@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -36,10 +37,77 @@ std::string temporary_name(const std::string& path, int attempt) {
   return fmt::format("{}{}{}-{}", path, kTemporaryMark, ::getpid(), attempt);
 }
 
-// A device or pipe (/dev/stdout, /dev/full) cannot be replaced by renaming: it is written through.
+// A device or pipe (/dev/null, /dev/full) cannot be replaced by renaming: it is written through.
 bool is_special(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+std::string real_folder_of(const std::string& path) {
+  char* const real = ::realpath(folder_of(path).c_str(), nullptr);
+  std::string result = real == nullptr ? "" : real;
+  std::free(real);
+  return result;
+}
+
+// The open file of this process that a path means (/dev/stdout, /dev/fd/3, a link to one of them), or -1. Such a
+// name is no place for another file: what was opened is written to, where it stands.
+int own_descriptor(std::string path) {
+  const std::string own = real_folder_of("/proc/self/fd/.");
+  for (int links = 0; links < 40 && !own.empty(); ++links) {
+    char target[4096];
+    const ssize_t n = ::readlink(path.c_str(), target, sizeof target);
+    if (n <= 0 || n == sizeof target) return -1;
+    if (real_folder_of(path) == own) {
+      const std::string number = path.substr(path.rfind('/') + 1);
+      int descriptor = -1;
+      const auto read = std::from_chars(number.data(), number.data() + number.size(), descriptor);
+      return read.ec == std::errc{} && read.ptr == number.data() + number.size() ? descriptor : -1;
+    }
+    const std::string next(target, static_cast<std::size_t>(n));
+    path = next.front() == '/' ? next : folder_of(path) + "/" + next;
+  }
+  return -1;
+}
+
+[[noreturn]] void refuse(std::string code,
+                         const std::string& path,
+                         std::string what,
+                         std::string hint) {
+  throw Error({ErrorKind::output, std::move(code), path, std::move(what), "", std::move(hint)});
+}
+
+// What can be said of a name before anything is opened.
+void refuse_name(const std::string& path, bool overwrite) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
+    refuse("E0502", path, "is a folder, a file was expected", "name a file inside it");
+  if (::lstat(path.c_str(), &status) != 0) return;
+  if (!overwrite)
+    refuse("E0503",
+           path,
+           "exists already and is left as it is",
+           "choose another name or pass `overwrite`");
+  // Renaming asks for the folder's rights alone; who made a file read-only meant the file. An administrator may
+  // write everything, so the bits are looked at too.
+  if (S_ISREG(status.st_mode) &&
+      ((status.st_mode & 0222U) == 0 || ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0))
+    refuse("E0517",
+           path,
+           "is read-only and is left as it is",
+           "choose another name, or make it writable first");
+}
+
+// A new file in the place of an older one is as private as that was: owner, group and rights are kept, and where the
+// group cannot be, it gets no rights.
+void keep_rights(int descriptor, const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+  mode_t mode = status.st_mode & 0777U;
+  if (::fchown(descriptor, status.st_uid, status.st_gid) != 0 &&
+      ::fchown(descriptor, static_cast<uid_t>(-1), status.st_gid) != 0)
+    mode &= ~mode_t{070};
+  [[maybe_unused]] const int kept = ::fchmod(descriptor, mode);
 }
 
 }  // namespace
@@ -55,29 +123,9 @@ void WholeFile::fail(std::string_view doing) const {
 
 WholeFile::WholeFile(std::string path, bool overwrite)
     : path_(std::move(path)), overwrite_(overwrite) {
-  if (path_.empty())
-    throw Error({ErrorKind::output, "E0502", "", "an output file needs a name", "", ""});
-  special_ = is_special(path_);
-  if (special_) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) fail("open for writing");
-    return;
-  }
-  struct stat status {};
-  if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
-    throw Error({ErrorKind::output,
-                 "E0502",
-                 path_,
-                 "is a folder, a file was expected",
-                 "",
-                 "name a file inside it"});
-  if (!overwrite_ && exists(path_))
-    throw Error({ErrorKind::output,
-                 "E0503",
-                 path_,
-                 "exists already and is left as it is",
-                 "",
-                 "choose another name or pass `overwrite`"});
+  if (path_.empty()) refuse("E0502", "", "an output file needs a name", "");
+  if (open_through()) return;
+  refuse_name(path_, overwrite_);
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
@@ -87,11 +135,25 @@ WholeFile::WholeFile(std::string path, bool overwrite)
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
-  if (descriptor_ >= 0) return;
-  const int problem = errno;
-  hand_over();
-  errno = problem;
-  fail("create a file in this folder");
+  if (descriptor_ < 0) {
+    const int problem = errno;
+    hand_over();
+    errno = problem;
+    fail("create a file in this folder");
+  }
+  keep_rights(descriptor_, path_);
+}
+
+bool WholeFile::open_through() {
+  const int own = own_descriptor(path_);
+  special_ = own >= 0 || is_special(path_);
+  if (!special_) return false;
+  descriptor_ =
+      own >= 0 ? ::fcntl(own, F_DUPFD_CLOEXEC, 3) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0) fail("open for writing");
+  const bool appends = (::fcntl(descriptor_, F_GETFL) & O_APPEND) != 0;
+  begin_ = appends ? -1 : ::lseek(descriptor_, 0, SEEK_CUR);
+  return true;
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
@@ -99,6 +161,8 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
       temporary_(std::exchange(other.temporary_, {})),
       buffer_(std::move(other.buffer_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
+      begin_(other.begin_),
+      flushed_(other.flushed_),
       overwrite_(other.overwrite_),
       special_(other.special_) {}
 
@@ -126,14 +190,26 @@ void WholeFile::flush() {
     if (n < 0) fail("write");
     done += static_cast<std::size_t>(n);
   }
+  flushed_ = flushed_ || !buffer_.empty();
   buffer_.clear();
 }
 
 void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
+  if (!flushed_) {
+    buffer_.replace(offset, bytes.size(), bytes);
+    return;
+  }
+  if (begin_ < 0)
+    refuse("E0501",
+           path_,
+           "this format says at its beginning how long it is, and a pipe cannot be gone back in",
+           "write to a file, or as CSV");
   flush();
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t n = ::pwrite(
-        descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    const ssize_t n = ::pwrite(descriptor_,
+                               bytes.data() + done,
+                               bytes.size() - done,
+                               begin_ + static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail("write");
     done += static_cast<std::size_t>(n);
@@ -212,6 +288,16 @@ void WholeFile::commit() {
   }
   remove_litter(folder_of(path_));
   sync_folder(folder_of(path_));
+}
+
+bool writes_through(const std::string& path) {
+  return own_descriptor(path) >= 0 || is_special(path);
+}
+
+void check_output(const std::string& path, bool overwrite) {
+  // A device or pipe is not even opened: who reads it would take that for the whole of it.
+  if (writes_through(path)) return;
+  const WholeFile trial(path, overwrite);  // discarded: nothing appears under the name
 }
 
 void remove_litter(const std::string& folder) {

@@ -89,6 +89,9 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
               {"log_format", log.format},
               {"format", log.format},
               {"rows", log.rows},
+              {"rows_used", log.rows_used},
+              {"rows_dropped", log.rows_dropped},
+              {"rows_outside", log.rows_outside},
               {"samples", log.samples},
               {"channels", Json::array()}};
   for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i)

@@ -37,7 +37,7 @@ Aligned<T> aligned(std::size_t n) {
                      : nullptr;
   if (memory == nullptr)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0403",
                  "",
                  fmt::format("not enough memory for a Fourier transform of {} values", n),
                  "",
@@ -69,7 +69,7 @@ struct RealFft::State {
 RealFft::RealFft(std::size_t n) : state_(std::make_unique<State>()) {
   if (n == 0)
     throw Error(
-        {ErrorKind::numeric, "", "", "a Fourier transform needs at least one value", "", ""});
+        {ErrorKind::numeric, "E0413", "", "a Fourier transform needs at least one value", "", ""});
   state_->n = n;
   state_->values = aligned<double>(n);
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
@@ -325,7 +325,7 @@ struct Dct::State {
 Dct::Dct(std::size_t n) {
   if (n == 0)
     throw Error(
-        {ErrorKind::numeric, "", "", "a cosine transform needs at least one value", "", ""});
+        {ErrorKind::numeric, "E0413", "", "a cosine transform needs at least one value", "", ""});
   state_ = std::make_unique<State>(n);
 }
 Dct::~Dct() = default;
@@ -360,7 +360,7 @@ std::span<const double> Dct::transform(std::span<const double> y) {
   const std::size_t n = state_->fft.size();
   if (y.size() != n)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0413",
                  "",
                  fmt::format("a cosine transform of {} values was given {}", n, y.size()),
                  "",
@@ -389,7 +389,7 @@ TrigonometricSums::TrigonometricSums(std::size_t n, Kind kind) : state_(std::mak
   const bool sines = kind == Kind::sines;
   if (n < (sines ? 2 : 1))
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0413",
                  "",
                  fmt::format("trigonometric sums need at least {} values", sines ? 2 : 1),
                  "",

@@ -44,7 +44,7 @@ TEST_CASE("verify: a changed result, a missing one, another log are said, exit 6
   auto ran = bench.verify();
   CHECK(ran.code == 6);
   CHECK_THAT(ran.out, Contains("changed   " + model.string()));
-  CHECK_THAT(ran.err, Contains("E0518"));
+  CHECK_THAT(ran.err, Contains("E0520"));
   files::remove(model);
   CHECK_THAT(bench.verify().out, Contains("missing   " + model.string()));
   REQUIRE(test::run({"characterize", bench.log, "-c", "gyro_z", "-o", bench.out, "--force"}).code ==
@@ -69,7 +69,7 @@ TEST_CASE("verify: inputs that lie elsewhere are found from a folder") {
 
 TEST_CASE("verify: a folder without a report, and documents of other kinds, are refused") {
   const test::TemporaryFolder folder;
-  CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0517"));
+  CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0519"));
   std::ofstream(folder / "x.json") << R"({"files": 3, "tool": 4, "input": "x"})";
   const auto odd = test::run({"verify", folder.path().string()});
   CHECK(odd.code == 0);

@@ -110,7 +110,10 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
 
 // A folder that a failing run has made goes again.
 struct MadeFolder {
-  explicit MadeFolder(const fs::path& folder) : path(folder), old(fs::exists(folder)) {}
+  explicit MadeFolder(const fs::path& folder) : path(folder) {
+    std::error_code ignored;
+    old = fs::status(folder, ignored).type() != fs::file_type::not_found;
+  }
   MadeFolder(const MadeFolder&) = delete;
   MadeFolder& operator=(const MadeFolder&) = delete;
   ~MadeFolder() {
@@ -118,7 +121,7 @@ struct MadeFolder {
     if (!old && fs::is_empty(path, ignored)) fs::remove(path, ignored);
   }
   fs::path path;
-  bool old;
+  bool old = false;
 };
 
 ReplayOptions options_of(const ReplayVerb& verb) {

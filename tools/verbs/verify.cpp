@@ -63,7 +63,7 @@ void run_verify(Session& session, const VerifyVerb& verb) {
       checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
   if (broken != checks.end())
     throw Error({ErrorKind::check,
-                 "E0518",
+                 "E0520",
                  broken->document,
                  "what it was written with is changed or missing",
                  "",

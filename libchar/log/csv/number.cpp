@@ -215,6 +215,11 @@ Cell read_cell(std::string_view text, char point) {
     cell.kind =
         Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
     cell.number = digits[0] == '-' ? -0.0 : 0.0;
+    // 700 zeros written out are somebody's way of rounding; an exponent that no double has is lost digits.
+    const std::size_t exponent = digits.find_first_of("eE");
+    cell.too_small =
+        exponent != std::string_view::npos &&
+        digits.substr(0, exponent).find_first_of("123456789") != std::string_view::npos;
     return cell;
   }
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
