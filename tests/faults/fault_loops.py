@@ -97,8 +97,16 @@ class Bench:
     def __init__(self, program, shim, heap, quick):
         self.program, self.shim, self.heap, self.quick = program, shim, heap, quick
         fast = Path("/dev/shm")
-        self.may_mount = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode == 0
         self.root = Path(tempfile.mkdtemp(prefix="libchar-faults-", dir=fast if os.access(fast, os.W_OK) else None))
+        self.may_mount = self.try_mount()
+
+    def try_mount(self):
+        """Only an administrator may make small disks, and not in every container."""
+        folder = self.root / "disk"
+        folder.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "libchar-faults", folder], capture_output=True).returncode != 0:
+            return False
+        return subprocess.run(["umount", folder], capture_output=True).returncode == 0
 
     def run(self, folder, words, fault=""):
         log = Path(str(folder) + ".count")

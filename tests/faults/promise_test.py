@@ -19,7 +19,7 @@ from pathlib import Path
 from fault_loops import VERBS, inputs
 
 # What the loader, the C library, TBB (how many processors?) and the terminal look at.
-SYSTEM = ("/lib", "/usr/lib", "/etc/ld.so", "/usr/share/locale", "/proc/self/", "/proc/sys/", "/proc/meminfo", "/proc/cpuinfo", "/proc/cgroups", "/proc/mounts",
+SYSTEM = ("/lib", "/usr/", "/etc/ld.so", "/etc/ssl/", "/proc/self/", "/proc/sys/", "/proc/meminfo", "/proc/cpuinfo", "/proc/cgroups", "/proc/mounts",
           "/sys/devices/system/", "/sys/fs/cgroup", "/sys/kernel/mm", "/dev/null", "/dev/tty")
 NEVER = {"socket", "connect", "bind", "listen", "accept", "accept4", "sendto", "sendmsg", "fork", "vfork", "ptrace", "chmod", "fchmodat", "chown", "lchown", "symlink",
          "symlinkat", "mknod", "mknodat", "mount", "setuid", "kexec_load", "memfd_create"}
