@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <utility>
 
@@ -31,7 +32,8 @@ std::pair<double, std::string_view> leading_number(std::string_view text,
   const std::string_view magnitude = digits.starts_with('-') ? digits.substr(1) : digits;
   const bool octal_looking =
       magnitude.size() > 1 && magnitude[0] == '0' && magnitude[1] >= '0' && magnitude[1] <= '9';
-  if (digits.empty() || !may_follow(digits[0]) || octal_looking) refuse(text, expected);
+  if (digits.empty() || !may_follow(digits[0]) || octal_looking || text.starts_with("+-"))
+    refuse(text, expected);
   double value = 0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (status != std::errc() || magnitude.empty() ||
@@ -46,7 +48,7 @@ double with_unit(std::string_view text, Units units, const std::string& expected
   const auto [value, unit] = leading_number(text, expected);
   for (const auto& [name, factor] : units) {
     // Divided where that is exact in decimal: 250 ms is 250/1000, the double nearest to 0.25.
-    if (unit == name) return factor < 1 ? value / (1 / factor) : value * factor;
+    if (unit == name) return factor < 1 ? value / std::round(1 / factor) : value * factor;
   }
   refuse(text, expected);
 }
