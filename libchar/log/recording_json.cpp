@@ -44,8 +44,7 @@ Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs) {
   Json head = {{"format", format}, {"version", 1}};
-  head["tool"] = {
-      {"name", "sensorchar"}, {"version", std::string(version())}, {"build", build()}};
+  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(version())}, {"build", build()}};
   head["command"] = texts(command);
   head["input"] = Json::array();
   head["warnings"] = Json::array();
