@@ -120,7 +120,7 @@ std::vector<ResultCheck> check_results(const std::string& folder_or_document,
   }
   if (out.empty())
     throw Error({ErrorKind::input,
-                 "E0519",
+                 "E0556",
                  folder_or_document,
                  folder
                      ? "holds no document that names its files (report.json, runs.json, lot.json)"

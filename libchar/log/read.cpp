@@ -20,6 +20,7 @@
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
+#include "libchar/log/reading_fields.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -161,11 +162,11 @@ LogInfo read_log(const std::string& path,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress) {
-  if (options.rate_hz && !(*options.rate_hz > 0 && std::isfinite(*options.rate_hz)))
+  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
     throw Error({ErrorKind::usage,
                  "E0201",
                  "`rate_hz`",
-                 "the rate must be a positive number of hertz",
+                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
                  shortest(*options.rate_hz),
                  ""});
   const auto source = format_of(path, options).open(path, options);

@@ -98,7 +98,8 @@ void keep_every(std::span<const double> fine, std::uint64_t step, std::span<doub
 
 void check(const ArraySimulation& s) {
   if (s.sensors.empty()) refuse("there is no sensor to simulate");
-  if (!(s.rate_hz > 0) || !std::isfinite(s.rate_hz)) refuse("the sampling rate must be above 0 Hz");
+  if (!(s.rate_hz >= 1e-9 && s.rate_hz <= 1e12))
+    refuse("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
   if (s.samples == 0)
     refuse("there is no sample to simulate", "give a duration or a number of samples");
   if (s.oversampling == 0 || s.oversampling > 1024) refuse("oversampling must be from 1 to 1024");

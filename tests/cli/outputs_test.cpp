@@ -198,3 +198,33 @@ kill -TERM $pid; sleep 0.1; exec 3>&-; wait $pid)";
   CHECK(ran.code == 143);
   CHECK_THAT(ran.err, Contains("stopped; what had been written before is whole"));
 }
+
+TEST_CASE("closed streams: every verb that writes gives the same bytes, no message among them") {
+  const test::TemporaryFolder folder;
+  const fs::path log = folder / "log.csv";
+  write_log(log);
+  std::ofstream(log, std::ios::app) << "20,5\n20,6\n20.01,\n";  // for warnings and notes
+  std::ofstream(folder / "m.sensor.yaml") << kModel;
+  const std::string at = folder.path().string(), program = test::program();
+  for (const auto& [words, file] : std::vector<std::pair<std::string, std::string>>{
+           {"allan log.csv -o out.csv", "out.csv"},
+           {"psd log.csv -o out.csv", "out.csv"},
+           {"fit log.csv -o out.txt", "out.txt"},
+           {"convert log.csv -o out.csv", "out.csv"},
+           {"convert log.csv -o out.npy", "out.npy"},
+           {"characterize log.csv -o out", "out/curves.csv"},
+           {"model m.sensor.yaml -o out.txt", "out.txt"},
+           {"simulate m.sensor.yaml --samples 100 -o out.csv", "out.csv"}}) {
+    const auto bytes = [&](const std::string& closed) {
+      test::run_words(
+          {"/bin/sh", "-c", "cd " + at + " && " + program + " " + words + " --force" + closed});
+      const std::string text = test::slurp(folder / file);
+      fs::remove_all(folder / file);
+      return text;
+    };
+    const std::string open = bytes("");
+    INFO(words);
+    CHECK_FALSE(open.empty());
+    for (const char* closed : {" >&- 2>&-", " <&- >&- 2>&-", " 2>&-"}) CHECK(bytes(closed) == open);
+  }
+}

@@ -69,7 +69,7 @@ TEST_CASE("verify: inputs that lie elsewhere are found from a folder") {
 
 TEST_CASE("verify: a folder without a report, and documents of other kinds, are refused") {
   const test::TemporaryFolder folder;
-  CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0519"));
+  CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0556"));
   std::ofstream(folder / "x.json") << R"({"files": 3, "tool": 4, "input": "x"})";
   const auto odd = test::run({"verify", folder.path().string()});
   CHECK(odd.code == 0);

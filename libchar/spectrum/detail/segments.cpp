@@ -160,14 +160,14 @@ void check_options(const WelchOptions& options) {
   if (!(options.overlap >= 0 && options.overlap < 1))
     throw Error({ErrorKind::usage,
                  "E0201",
-                 "",
+                 "`overlap`",
                  "the overlap of segments is a fraction of a segment, from 0 to below 1",
                  fmt::format("{}", options.overlap),
                  ""});
   if (options.segment != 0 && options.segment < kShortestSegment)
     throw Error({ErrorKind::usage,
                  "E0201",
-                 "",
+                 "`segment`",
                  fmt::format("a segment needs at least {} samples", kShortestSegment),
                  fmt::format("{}", options.segment),
                  ""});
