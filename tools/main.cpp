@@ -1,5 +1,6 @@
 #include <malloc.h>
 
+#include "allowed_threads.hpp"
 #include "libchar/core/version.hpp"
 #include "verb.hpp"
 
@@ -8,6 +9,7 @@ int main(int argc, char** argv) {
   // Blocks of a few megabytes come and go all the time: kept instead of given back to the system, they need no new pages.
   mallopt(M_MMAP_THRESHOLD, 256 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  const auto threads = keep_to_allowed_threads();
   take_closed_streams();
   install_signal_handlers();
   Session session;
