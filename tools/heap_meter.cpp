@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
-#include <new>
 
 #if !defined(__SANITIZE_ADDRESS__) && defined(__GLIBC__)
 
@@ -66,11 +65,6 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
   *block = counted(__libc_memalign(alignment, size));
   return *block != nullptr ? 0 : ENOMEM;
 }
-}
-
-// FFTW aborts where it gets no memory, by this function of its own: here it is an exception like any other refusal.
-extern "C" [[noreturn]] void fftw_assertion_failed(const char*, int, const char*) {
-  throw std::bad_alloc();
 }
 
 namespace sensorchar {

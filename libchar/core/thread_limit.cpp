@@ -1,6 +1,9 @@
 #include "libchar/core/thread_limit.hpp"
 
+#include <malloc.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -37,12 +40,24 @@ std::size_t threads_given(std::size_t most) {
   return threads.size();
 }
 
+bool address_space_is_limited() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
 }  // namespace
 
 void keep_to_threads_given() {
+  const bool limited = address_space_is_limited();
+  // A heap a thread takes 64 MB of addresses each, and where there are none left every allocation tries again.
+  if (limited) ::mallopt(M_ARENA_MAX, 1);
   const std::size_t wanted = std::max(1U, std::thread::hardware_concurrency()) - 1;
   const std::size_t given = threads_given(wanted);
-  if (given == wanted) return;
+  if (given == wanted) {
+    // At once, while there is room for their stacks.
+    if (limited) tbb::parallel_for(std::size_t{0}, 4 * wanted, [](std::size_t) {});
+    return;
+  }
   // For good: where it ends the pool wants its threads at once, in a destructor.
   static auto* const control =
       new tbb::global_control(tbb::global_control::max_allowed_parallelism, given + 1);

@@ -8,10 +8,17 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+
+// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
+// FFTW asserts anything in a release build. What the planner held is lost: the process has no memory anyway.
+extern "C" void fftw_assertion_failed(const char*, int, const char*) {
+  throw std::bad_alloc();
+}
 
 namespace libchar {
 namespace {
