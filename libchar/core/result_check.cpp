@@ -48,6 +48,12 @@ const Json& member(const Json& object, const char* key) {
   return object.is_object() && object.contains(key) ? object[key] : kNothing;
 }
 
+const Json& list_at(const Json& object, const char* key) {
+  static const Json kEmpty = Json::array();
+  const Json& value = member(object, key);
+  return value.is_array() ? value : kEmpty;
+}
+
 CheckedFile checked_input(const Json& input, const std::string& inputs_in) {
   CheckedFile out{text_at(input, "path"), true, FileState::unknown};
   if (out.path == "standard input") return out;
@@ -61,10 +67,10 @@ ResultCheck check_document(const fs::path& path,
                            const std::string& inputs_in) {
   const Json& tool = member(document, "tool");
   ResultCheck out{path.string(), text_at(tool, "version"), text_at(tool, "build"), {}};
-  for (const Json& input : member(document, "input"))
+  for (const Json& input : list_at(document, "input"))
     out.files.push_back(checked_input(input, inputs_in));
   const Json& digests = member(document, "files_sha256");
-  for (const Json& name : member(document, "files")) {
+  for (const Json& name : list_at(document, "files")) {
     if (!name.is_string()) continue;
     const fs::path file = path.parent_path() / fs::path(name.get<std::string>()).filename();
     out.files.push_back(
