@@ -27,6 +27,7 @@ options = arguments.parse_args()
 
 MASKS = [
     (re.compile(r'"(seconds|ns_per_sample|ns_per_sample_ci95|peak_bytes|bytes_per_second|own_bytes|resident_bytes|learning_s|run_s)": *(\[[^\]]*\]|[^,}\n]*)'), r'"\1": MASKED'),
+    (re.compile(r'"build": *"[^"]*"'), '"build": MASKED'),
     (re.compile(r'"measured": *\{[^{}]*\}', re.S), '"measured": MASKED'),
     (re.compile(r"^[WE]\d{8} [\d:.]+ +\d+ ", re.M), "W "),  # a warning of Ceres: time and thread
 ]

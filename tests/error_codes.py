@@ -42,6 +42,11 @@ for number, line in enumerate(lines, 1):
     lines[number - 1] = f"| {code} | {row[2]} | {row[3]} | {where} |"
     if kinds[code] and kinds[code] != rows[code][0]:
         faults.append(f"{page}:{number}: {code} ends with exit codes {sorted(kinds[code])}, not {sorted(rows[code][0])}")
+for folder in ("libchar", "tools"):
+    for path in sorted((root / folder).rglob("*.cpp")):
+        text = path.read_text()
+        for bare in re.finditer(r'ErrorKind::\w+,\s*""', text):
+            faults.append(f"{path.relative_to(root)}:{text[:bare.start()].count(chr(10)) + 1}: an error without a code")
 for code in sorted(set(files) - set(rows)):
     faults.append(f"{page}: {code} is not there; it is raised in {', '.join(sorted(files[code]))}")
 if list(rows) != sorted(rows):

@@ -17,7 +17,7 @@ using namespace libchar;
                          const std::string& what,
                          const std::string& got,
                          const std::string& hint) {
-  throw Error({ErrorKind::usage, "", option, what, got, hint});
+  throw Error({ErrorKind::usage, "E0201", option, what, got, hint});
 }
 
 std::vector<std::string> words(const std::string& list) {

@@ -204,7 +204,7 @@ Option VerbOptions::add_rate(const std::string& names,
 Option VerbOptions::add_bytes(const std::string& names,
                               std::uint64_t& bytes,
                               const std::string& help) {
-  const auto read = [&bytes](const std::string& text) { bytes = libchar::parse_bytes(text); };
+  const auto read = [&bytes](const std::string& text) { bytes = libchar::parse_bytes(text, 1024); };
   return add_parsed(names, "BYTES", read, help);
 }
 

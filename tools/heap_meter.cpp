@@ -4,6 +4,7 @@
 
 #include <malloc.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 
@@ -12,11 +13,14 @@
 namespace {
 
 thread_local std::int64_t held = 0, peak = 0;
+std::atomic<bool> refused{false};
 
 void* counted(void* block) {
   if (block != nullptr) {
     held += static_cast<std::int64_t>(malloc_usable_size(block));
     if (held > peak) peak = held;
+  } else {
+    refused.store(true, std::memory_order_relaxed);
   }
   return block;
 }
@@ -49,7 +53,7 @@ void* realloc(void* old, std::size_t size) {
   void* block = __libc_realloc(old, size);
   // Size 0 frees; a failure keeps the old block.
   if (block != nullptr || size == 0) held -= before;
-  return counted(block);
+  return size == 0 ? block : counted(block);
 }
 void* memalign(std::size_t alignment, std::size_t size) {
   return counted(__libc_memalign(alignment, size));
@@ -82,12 +86,20 @@ libchar::HeapMeter* heap_meter() {
   return &meter;
 }
 
+bool memory_was_refused() {
+  return refused;
+}
+
 }  // namespace sensorchar
 
 #else
 
 libchar::HeapMeter* sensorchar::heap_meter() {
   return nullptr;
+}
+
+bool sensorchar::memory_was_refused() {
+  return false;
 }
 
 #endif

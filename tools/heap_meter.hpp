@@ -9,4 +9,7 @@ namespace sensorchar {
 /// nullptr where the heap cannot be counted (under sanitizers, which bring their own).
 libchar::HeapMeter* heap_meter();
 
+/// Whether the system has refused memory so far; false where the heap cannot be counted.
+bool memory_was_refused();
+
 }  // namespace sensorchar

@@ -1,5 +1,10 @@
+#include <fmt/format.h>
 #include <malloc.h>
 
+#include <exception>
+#include <span>
+
+#include "libchar/core/thread_limit.hpp"
 #include "libchar/core/version.hpp"
 #include "verb.hpp"
 
@@ -10,15 +15,24 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   take_closed_streams();
   install_signal_handlers();
+  std::set_terminate(end_in_a_sentence);
+  end_aborts_in_a_sentence();
   Session session;
-  session.command.assign(argv, argv + argc);
-  return exit_code_of(session, [&] {
+  const std::span<char*> words(argv, static_cast<std::size_t>(argc));
+  // Small enough that nothing has to be taken from the heap before somebody watches.
+  struct Call {
+    Session& session;
+    std::span<char*> words;
+  } const call{session, words};
+  return exit_code_of(session, [&call] {
+    call.session.command.assign(call.words.begin(), call.words.end());
+    libchar::keep_to_threads_given();
     CommandLine line(
         "sensorchar",
         "What sensors do to what they measure: noise, models and fusion from recordings.",
-        "sensorchar " + std::string(libchar::version()),
+        fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
         "Begin with: sensorchar inspect LOG");
-    for (const VerbEntry& verb : verbs()) line.add(verb, session);
-    if (const auto text = line.run(session.command)) print(*text);
+    for (const VerbEntry& verb : verbs()) line.add(verb, call.session);
+    if (const auto text = line.run(call.session.command)) print(*text);
   });
 }

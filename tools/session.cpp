@@ -1,13 +1,19 @@
 #include "session.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "flag_names.hpp"
+#include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace sensorchar {
@@ -46,14 +52,56 @@ libchar::Json document_head(const Session& session,
   return libchar::document_head(format, session.command, inputs);
 }
 
-int exit_code_of(Session& session, const std::function<void()>& work) {
+void print_summary(Session& session, const std::string& output, const std::string& text) {
+  if (!libchar::writes_through(output)) return print_text(text);
+  session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
+}
+
+void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force) {
+  if (path.empty()) return;
+  for (const std::string& input : inputs) libchar::refuse_same_file(input, path);
+  libchar::check_output(path, force);
+}
+
+namespace {
+
+constexpr const char* kNoMemory = "E0403";
+constexpr const char* kNoThread = "E0419";
+
+// Said without taking memory: there is none.
+int refuse_for_memory() noexcept {
+  for (const std::string_view part :
+       {std::string_view("sensorchar: error "),
+        std::string_view(kNoMemory),
+        std::string_view(": not enough memory for this input; hint: read less of it with "
+                         "--channel, --from and --to\n")})
+    if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
+  return 4;
+}
+
+/// The C++ library's way and that of the pool of threads.
+bool is_of_threads(const std::exception& error) {
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+         std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+}
+
+int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
+    work_is_done();
     session.terminal.clear();
     say(line);
     return code;
   };
+  const auto stopped = [&](int number) {
+    return fail(session.wrote
+                    ? "sensorchar: stopped; what had been written before is whole and stays"
+                    : "sensorchar: stopped; no output was written",
+                128 + number);
+  };
   try {
     work();
+    work_is_done();
     if (session.strict && !session.warned_files.empty())
       throw Error({ErrorKind::input,
                    "E0206",
@@ -64,23 +112,60 @@ int exit_code_of(Session& session, const std::function<void()>& work) {
     return 0;
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
-    if (stop_signal() != 0)
-      return fail("sensorchar: stopped; no output was written", 128 + stop_signal());
+    if (stop_signal() != 0) return stopped(stop_signal());
     return fail(libchar::one_line(with_flags(error.problem())), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
-    return fail("sensorchar: stopped; no output was written", 128 + cancelled.signal);
+    return stopped(cancelled.signal);
   } catch (const StdoutClosed&) {
     return 0;
   } catch (const std::bad_alloc&) {
-    return fail(
-        "sensorchar: error E0401: not enough memory for this input; hint: read less of it with "
-        "--channel, --from and --to",
-        4);
+    throw;
+  } catch (const std::filesystem::filesystem_error& error) {
+    if (error.code() == std::errc::not_enough_memory) throw;
+    return fail(libchar::one_line({ErrorKind::input,
+                                   "E0101",
+                                   error.path1().string(),
+                                   "cannot look at it: " + error.code().message(),
+                                   "",
+                                   ""}),
+                3);
   } catch (const std::exception& error) {
+    if (is_of_threads(error))
+      return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "
+                              "raise the limit of processes (ulimit -u), or end others",
+                              kNoThread),
+                  4);
     return fail(
         fmt::format("sensorchar: internal error: {}; please report this with the command line",
                     libchar::printable(error.what())),
         1);
+  }
+}
+
+}  // namespace
+
+void end_in_a_sentence() {
+  constexpr std::string_view kDefect =
+      "sensorchar: internal error: terminated; please report this with the command line\n";
+  // What cannot be unwound is not always an exception that can still be asked.
+  if (memory_was_refused()) ::_exit(refuse_for_memory());
+  [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, kDefect.data(), kDefect.size());
+  ::_exit(1);
+}
+
+void end_aborts_in_a_sentence() {
+  std::signal(SIGABRT, [](int) {
+    if (memory_was_refused()) ::_exit(refuse_for_memory());
+    std::signal(SIGABRT, SIG_DFL);
+    std::raise(SIGABRT);
+  });
+}
+
+int exit_code_of(Session& session, const std::function<void()>& work) {
+  try {
+    return said_exit_code(session, work);
+  } catch (const std::exception&) {  // bad_alloc, at work or in saying what else went wrong
+    return refuse_for_memory();
   }
 }
 

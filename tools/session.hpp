@@ -14,6 +14,7 @@ namespace sensorchar {
 struct Session {
   std::vector<std::string> command;  ///< argv as given
   Terminal terminal;
+  bool wrote = false;                     ///< something has its name already, should the rest fail
   bool strict = false;                    ///< warnings end the run with exit code 3
   std::vector<std::string> warned_files;  ///< files that had warnings, in order
 };
@@ -27,8 +28,21 @@ libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);
 
+/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note.
+void print_summary(Session& session, const std::string& output, const std::string& text);
+
+/// A file that cannot be written is refused before the work is done: it is an input, stands already, or its folder cannot be written.
+/// An empty path is stdout.
+void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force);
+
 /// Runs `work` and turns whatever happened into one message and an exit code: 0 ok, 1 internal, 2
 /// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.
 int exit_code_of(Session& session, const std::function<void()>& work);
+
+/// For std::set_terminate: an exception that could go nowhere (memory refused to a destructor) still ends in a sentence and an exit code.
+[[noreturn]] void end_in_a_sentence();
+
+/// Where memory was refused and a library aborts in its own way, the program ends as above.
+void end_aborts_in_a_sentence();
 
 }  // namespace sensorchar

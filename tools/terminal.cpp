@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,15 +15,39 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
+#include "libchar/core/unfinished_files.hpp"
 
 namespace sensorchar {
 namespace {
 
-volatile std::sig_atomic_t g_stop_signal =
-    0;  // the one global: a signal handler has nowhere else to write
+// A signal handler has nowhere else to write and to look.
+volatile std::sig_atomic_t g_stop_signal = 0;
+volatile std::sig_atomic_t g_line_drawn = 0;
+
+void write_text(std::string_view text) {
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+/// Ends the program from within a handler, unless outputs get their names right now: then the timer asks again.
+void end_now(int) {
+  const libchar::Discarded discarded = libchar::discard_unfinished();
+  if (discarded == libchar::Discarded::not_now) return;
+  if (g_line_drawn != 0) write_text("\r\x1b[K");
+  write_text(discarded == libchar::Discarded::nothing_written
+                 ? "sensorchar: stopped; no output was written\n"
+                 : "sensorchar: stopped\n");
+  ::_exit(128 + g_stop_signal);
+}
+
+void start_timer(suseconds_t first_us, suseconds_t then_us) {
+  const itimerval when = {{0, then_us}, {0, first_us}};
+  ::setitimer(ITIMER_REAL, &when, nullptr);
+}
 
 void remember(int number) {
+  const bool again = g_stop_signal != 0;
   g_stop_signal = number;
+  start_timer(again ? 1 : 150000, 50000);
 }
 
 // Returns errno, 0 when everything was written.
@@ -51,14 +76,21 @@ void install_signal_handlers() {
   struct sigaction action {};
   action.sa_handler = remember;
   ::sigemptyset(&action.sa_mask);
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::sigaddset(&action.sa_mask, number);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
     ::sigaction(number, nullptr, &before);
     if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);  // nohup stays nohup
   }
+  action.sa_handler = end_now;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGALRM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void work_is_done() {
+  std::signal(SIGALRM, SIG_IGN);
 }
 
 int stop_signal() {
@@ -95,7 +127,11 @@ Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
 }
 
 Terminal::~Terminal() {
-  clear();
+  try {
+    clear();
+  } catch (const std::exception&) {
+    // No memory for a line of blanks.
+  }
 }
 
 void Terminal::update(double fraction, std::string_view what) {
@@ -112,6 +148,7 @@ void Terminal::update(double fraction, std::string_view what) {
       escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
   write_all(STDERR_FILENO, "\r" + line + rest);
   shown_ = places;
+  g_line_drawn = 1;
 }
 
 void Terminal::clear() {
@@ -119,6 +156,7 @@ void Terminal::clear() {
   write_all(STDERR_FILENO,
             escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
   shown_ = 0;
+  g_line_drawn = 0;
 }
 
 void Terminal::warn(const libchar::Warnings& warnings, std::string_view file) {

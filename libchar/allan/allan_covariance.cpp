@@ -124,7 +124,7 @@ std::uint64_t stride_of(const AllanCurve& curve, const AllanPoint& point) {
 AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
   if (!deviation_row(curve.type).is_allan())
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0202",
                  "",
                  "the covariance is known for Allan variances only",
                  std::string(name_of(curve.type)),

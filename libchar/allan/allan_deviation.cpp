@@ -142,7 +142,7 @@ AllanPoint point_of(const Totals& total,
 [[noreturn]] void too_short(const DeviationRow& f, std::uint64_t samples) {
   const std::uint64_t needed = f.span(1);
   throw Error({ErrorKind::numeric,
-               "",
+               "E0401",
                "",
                std::string(f.word) + " needs at least " + std::to_string(needed) +
                    " consecutive samples; none of its terms fits the " + std::to_string(samples) +
@@ -174,7 +174,7 @@ std::span<const double> without_gaps(std::span<const double> record, AllanCurve&
 
 [[noreturn]] void none_fits(const AllanCurve& curve) {
   throw Error({ErrorKind::numeric,
-               "",
+               "E0401",
                "",
                "no averaging time that was asked for fits the record of " +
                    significant(static_cast<double>(curve.samples) * curve.dt_s, 4) + " s",
@@ -185,13 +185,13 @@ std::span<const double> without_gaps(std::span<const double> record, AllanCurve&
 void check(double dt_s, const AllanOptions& options) {
   if (!(dt_s > 0) || !std::isfinite(dt_s))
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0201",
                  "",
                  "the sampling interval must be a positive number of seconds",
                  shortest(dt_s),
                  ""});
   if (options.grid == TauGrid::list && options.taus_s.empty())
-    throw Error({ErrorKind::usage, "", "", "no averaging time is listed", "", ""});
+    throw Error({ErrorKind::usage, "E0201", "", "no averaging time is listed", "", ""});
 }
 
 std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,

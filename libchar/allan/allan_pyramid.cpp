@@ -412,7 +412,7 @@ AllanCurve AllanPyramid::finish(double dt_s) && {
   if (curve.points.empty())
     throw Error(
         {ErrorKind::numeric,
-         "",
+         "E0401",
          "",
          "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
              std::to_string(curve.samples) + " of this record",

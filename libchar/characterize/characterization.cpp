@@ -73,7 +73,7 @@ void drop_temperature(Characterization& result) {
 
 void check_columns(const Recording& recording) {
   const auto refuse = [](const std::string& what) {
-    throw Error({ErrorKind::usage, "", "", what, "", ""});
+    throw Error({ErrorKind::usage, "E0706", "", what, "", ""});
   };
   if (recording.info.channels.size() != recording.samples.size())
     refuse(fmt::format("a recording has {} columns of samples for {} channels",

@@ -228,7 +228,7 @@ Lot lot_of(Devices devices, const LotOptions& options) {
   for (const Characterization& one : devices) channels += one.channels.size();
   if (channels < 2)
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  "",
                  "one channel is no lot",
                  "",

@@ -35,7 +35,16 @@ if(LIBCHAR_SANITIZE)
   target_link_options(libchar_flags INTERFACE -fsanitize=${sanitizers})
 endif()
 if(LIBCHAR_FUZZ)
-  target_compile_options(libchar_flags INTERFACE -fsanitize=fuzzer-no-link)
+  target_compile_options(libchar_flags INTERFACE $<$<CXX_COMPILER_ID:Clang>:-fsanitize=fuzzer-no-link>)
+endif()
+# What stands between a defect and an attacker's log (docs/security.md): for the library and the programs, not for tests. The
+# sanitizers have their own.
+add_library(libchar_hardening INTERFACE)
+if(NOT LIBCHAR_SANITIZE AND NOT LIBCHAR_FUZZ)
+  target_compile_options(
+    libchar_hardening INTERFACE -fstack-protector-strong -fstack-clash-protection -fcf-protection
+                                $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>) # needs optimization
+  target_link_options(libchar_hardening INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)

@@ -24,6 +24,17 @@ constexpr std::size_t kPiece = std::size_t{1} << 16U;
                ""});
 }
 
+struct OpenFile {
+  explicit OpenFile(const std::string& path)
+      : descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor < 0) fail_to("opened", path);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { ::close(descriptor); }
+  int descriptor;
+};
+
 }  // namespace
 
 std::string rest_of_file(int descriptor, const std::string& path, std::size_t most) {
@@ -41,15 +52,19 @@ std::string rest_of_file(int descriptor, const std::string& path, std::size_t mo
   }
 }
 
+void for_pieces_of_file(const std::string& path,
+                        std::size_t piece_bytes,
+                        const std::function<void(std::string_view)>& take) {
+  const OpenFile file(path);
+  for (;;) {
+    const std::string piece = rest_of_file(file.descriptor, path, piece_bytes);
+    if (piece.empty()) return;
+    take(piece);
+  }
+}
+
 std::string file_text(const std::string& path, std::size_t most) {
-  struct Closer {
-    int descriptor;
-    ~Closer() {
-      if (descriptor >= 0) ::close(descriptor);
-    }
-  } file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (file.descriptor < 0) fail_to("opened", path);
-  return rest_of_file(file.descriptor, path, most);
+  return rest_of_file(OpenFile(path).descriptor, path, most);
 }
 
 }  // namespace libchar

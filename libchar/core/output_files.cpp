@@ -7,6 +7,8 @@
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
@@ -90,6 +92,7 @@ void give_names(const std::vector<WholeFile*>& files,
                                   std::filesystem::path(file->path()).filename().string());
   for (WholeFile* file : files)
     if (file->temporary().empty()) file->commit();  // a device
+  const GivingNames naming;
   write_journal(folder, journal);
   // Until the first has its name all can still be taken back: the temporary files are theirs.
   const auto hand_over = [&] {
@@ -126,8 +129,17 @@ void check_outputs(const std::vector<std::string>& paths,
   make_folder(folder);
   for (const std::string& path : paths) {
     for (const std::string& input : inputs) refuse_same_file(input, path);
-    const WholeFile trial(path, force);  // discarded: nothing appears under the name
+    check_output(path, force);
   }
+}
+
+void foresee_outputs(const std::vector<std::string>& paths,
+                     const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs,
+                     bool force) {
+  std::error_code ignored;
+  const auto there = std::filesystem::status(folder.empty() ? "." : folder, ignored).type();
+  if (there != std::filesystem::file_type::not_found) check_outputs(paths, folder, inputs, force);
 }
 
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
@@ -170,8 +182,16 @@ void commit_together(const std::vector<WholeFile*>& files) {
   }
 }
 
-Json file_names(const std::vector<OutputFile>& outputs) {
-  return Json(names_of(outputs));
+void name_files(Json& document, const std::vector<OutputFile>& outputs) {
+  document["files"] = Json(names_of(outputs));
+  document["files_sha256"] = Json::object();
+  for (const OutputFile& output : outputs) {
+    if (is_document(output.path)) continue;
+    Sha256 hash;
+    hash.update(output.text);
+    document["files_sha256"][std::filesystem::path(output.path).filename().string()] =
+        hash.finish();
+  }
 }
 
 void refuse_interrupted(const std::filesystem::path& folder_or_file) {

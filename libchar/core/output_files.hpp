@@ -21,6 +21,13 @@ void check_outputs(const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs,
                    bool force);
 
+/// The same where nothing is made yet: files of a folder that does not exist cannot be in the way. For results whose other names are known
+/// only once they are there.
+void foresee_outputs(const std::vector<std::string>& paths,
+                     const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs,
+                     bool force);
+
 /// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
 /// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
 /// meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names as its files ("files") and
@@ -37,8 +44,9 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
 /// first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
-/// Names of the files in their folder, for "files" of a document among them: what a later run may remove.
-Json file_names(const std::vector<OutputFile>& outputs);
+/// Into a document among them: "files", their names in the folder (what a later run may remove), and "files_sha256", the digest of each
+/// but the documents themselves (what `check_results` looks at).
+void name_files(Json& document, const std::vector<OutputFile>& outputs);
 
 /// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
 /// file, where it is one of them.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <utility>
 
@@ -31,7 +32,8 @@ std::pair<double, std::string_view> leading_number(std::string_view text,
   const std::string_view magnitude = digits.starts_with('-') ? digits.substr(1) : digits;
   const bool octal_looking =
       magnitude.size() > 1 && magnitude[0] == '0' && magnitude[1] >= '0' && magnitude[1] <= '9';
-  if (digits.empty() || !may_follow(digits[0]) || octal_looking) refuse(text, expected);
+  if (digits.empty() || !may_follow(digits[0]) || octal_looking || text.starts_with("+-"))
+    refuse(text, expected);
   double value = 0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (status != std::errc() || magnitude.empty() ||
@@ -46,7 +48,7 @@ double with_unit(std::string_view text, Units units, const std::string& expected
   const auto [value, unit] = leading_number(text, expected);
   for (const auto& [name, factor] : units) {
     // Divided where that is exact in decimal: 250 ms is 250/1000, the double nearest to 0.25.
-    if (unit == name) return factor < 1 ? value / (1 / factor) : value * factor;
+    if (unit == name) return factor < 1 ? value / std::round(1 / factor) : value * factor;
   }
   refuse(text, expected);
 }
@@ -131,8 +133,9 @@ Interval parse_range(std::string_view text, RangeOf what) {
   return range;
 }
 
-std::uint64_t parse_bytes(std::string_view text) {
-  const std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
+std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {
+  std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
+  if (lowest > 0) expected += fmt::format(", not below {} bytes", lowest);
   const double value = with_unit(text,
                                  {{"", 1},
                                   {"B", 1},
@@ -147,7 +150,7 @@ std::uint64_t parse_bytes(std::string_view text) {
                                   {"MB", 1e6},
                                   {"GB", 1e9}},
                                  expected);
-  if (!(value >= 0 && value <= 9007199254740992.0) ||
+  if (!(value >= static_cast<double>(lowest) && value <= 9007199254740992.0) ||
       value != static_cast<double>(static_cast<std::uint64_t>(value)))
     refuse(text, expected);
   return static_cast<std::uint64_t>(value);

@@ -35,7 +35,7 @@ enum class RangeOf { duration_s, rate_hz };
 Interval parse_range(std::string_view text, RangeOf what = RangeOf::duration_s);
 
 /// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB,
-/// MB, GB of 1000).
-std::uint64_t parse_bytes(std::string_view text);
+/// MB, GB of 1000). Not below `lowest`: a bare 10 is rather a forgotten unit.
+std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest = 0);
 
 }  // namespace libchar

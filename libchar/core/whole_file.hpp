@@ -2,6 +2,8 @@
 // Output files are whole or absent: written under no name (or a temporary one) in the target's folder, flushed to disk and
 // given their name only by commit().
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +15,9 @@ inline constexpr std::string_view kTemporaryMark = ".libchar-tmp-";
 
 class WholeFile {
  public:
-  /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false, or when the folder cannot be written.
+  /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false or the file is read-only, or when the folder
+  /// cannot be written. A file that is overwritten hands on its owner, group and rights. A device, a pipe or an open file of this
+  /// process (/dev/stdout) is written through as bytes come: it can be neither replaced nor kept back.
   explicit WholeFile(std::string path, bool overwrite = false);
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -23,21 +27,23 @@ class WholeFile {
 
   void write(std::string_view bytes);
   void write(const void* data, std::size_t size) { write({static_cast<const char*>(data), size}); }
-  /// Replaces `size` bytes at `offset`, all of which were written before (for headers that hold a count).
+  /// Replaces bytes at `offset`, all of which were written before (for headers that hold a count). Throws Error(output) where more was
+  /// written than is kept back and the file is a pipe.
   void rewrite(std::size_t offset, std::string_view bytes);
   /// Everything of commit() that can fail for want of space or rights, short of taking the name.
   void prepare();
   /// fsync, the name, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
   void commit();
   const std::string& path() const { return path_; }
-  /// A device or pipe, which is written through and has its name already.
+  /// A device, a pipe or an open file of this process, which is written through and has its name already.
   bool special() const { return special_; }
   /// After prepare(): the name under which the file waits for its own; empty for a device or pipe.
   const std::string& temporary() const { return temporary_; }
   /// After prepare(): somebody else gives the file its name; the destructor leaves it where it is.
-  void hand_over() { temporary_.clear(); }
+  void hand_over();
 
  private:
+  bool open_through();
   void flush();
   void flush_to_disk();
   bool link_to(const std::string& name) const;
@@ -45,11 +51,19 @@ class WholeFile {
   [[noreturn]] void fail(std::string_view doing) const;
   std::string path_, temporary_, buffer_;
   int descriptor_ = -1;
-  bool overwrite_ = false, special_ = false;
+  std::int64_t begin_ =
+      0;  ///< where our first byte stands in the file; negative where nothing can be gone back to
+  bool flushed_ = false, overwrite_ = false, special_ = false;
 };
 
 /// Removes temporary files that a process which is no more has left in the folder.
 void remove_litter(const std::string& folder);
+
+/// The path leads to a device, a pipe or an open file of this process (/dev/stdout): what stands beside it is no place for files.
+bool writes_through(const std::string& path);
+
+/// Throws what the constructor of WholeFile would, before any work is done for the file; leaves nothing behind.
+void check_output(const std::string& path, bool overwrite);
 
 /// New names in the folder get to the disk: best effort, not every file system lets a folder be synchronised.
 void sync_folder(const std::string& folder);

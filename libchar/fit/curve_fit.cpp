@@ -45,7 +45,7 @@ constexpr double kDigitised =
     1e-6;  ///< relative scatter below which differences of fit mean nothing
 
 [[noreturn]] void refuse(const std::string& what, const std::string& got = "") {
-  throw Error({ErrorKind::input, "", "", what, got, ""});
+  throw Error({ErrorKind::input, "E0803", "", what, got, ""});
 }
 
 void check(const DigitisedCurve& curve) {
@@ -388,7 +388,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
                     double scale) {
   if (curve.x.size() < count_of(offered)) {
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0401",
                  "",
                  fmt::format("{} points of the curve are fewer than the {} noise terms to fit",
                              curve.x.size(),

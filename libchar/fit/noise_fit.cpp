@@ -56,7 +56,7 @@ void require_enough(std::size_t bins, const TermSet& terms) {
   const std::size_t wanted = count_of(terms);
   if (wanted == 0) {
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0201",
                  "",
                  "no noise term was asked for",
                  "",
@@ -65,7 +65,7 @@ void require_enough(std::size_t bins, const TermSet& terms) {
   if (bins >= wanted) return;
   throw Error(
       {ErrorKind::numeric,
-       "",
+       "E0401",
        "",
        fmt::format(
            "{} bins of the spectrum are fewer than the {} noise terms to fit", bins, wanted),

@@ -204,7 +204,7 @@ PowerBinner::PowerBinner(std::uint64_t block) {
   // 64 means of at least one sample, of which the lowest quarter of the band is used.
   if (block < kMeansPerBlock) {
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0201",
                  "",
                  "the block of the power binner must have at least 64 samples",
                  std::to_string(block),

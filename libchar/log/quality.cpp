@@ -18,29 +18,37 @@ constexpr std::size_t kBlock = 2048;  // stays in the first-level cache while it
 constexpr std::size_t kDistinct = 4096;
 constexpr std::uint64_t kSaturatedRun = 3;
 
-// The first kDistinct different values, in a table of open addressing; NaN marks an empty slot.
+// The first kDistinct different values, in a table of open addressing that grows with them (a log of many channels and few rows needs
+// little); NaN marks an empty slot.
 class DistinctValues {
  public:
-  DistinctValues() : slots_(kSlots, kMissing) { values_.reserve(kDistinct); }
   bool full() const { return values_.size() == kDistinct; }
   const std::vector<double>& values() const { return values_; }
 
   void add(double value) {
     value += 0.0;  // -0 and +0 are one value
-    std::size_t slot = (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - kBits);
-    while (slots_[slot] != value) {
-      if (std::isnan(slots_[slot])) {
-        slots_[slot] = value;
-        values_.push_back(value);
-        return;
-      }
-      slot = (slot + 1) % kSlots;
-    }
+    if (2 * values_.size() >= slots_.size()) grow();
+    double& slot = slot_of(value);
+    if (!std::isnan(slot)) return;
+    slot = value;
+    values_.push_back(value);
   }
 
  private:
-  static constexpr int kBits = 13;
-  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
+  static constexpr int kLeastBits = 4;
+
+  double& slot_of(double value) {
+    std::size_t slot = (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_);
+    while (slots_[slot] != value && !std::isnan(slots_[slot])) slot = (slot + 1) % slots_.size();
+    return slots_[slot];
+  }
+  void grow() {
+    bits_ = slots_.empty() ? kLeastBits : bits_ + 1;
+    slots_.assign(std::size_t{1} << bits_, kMissing);
+    for (const double value : values_) slot_of(value) = value;
+  }
+
+  int bits_ = 0;
   std::vector<double> slots_;
   std::vector<double> values_;
 };
@@ -217,11 +225,11 @@ struct DifferenceMoments {
 // Noise steps back every second time and is ruled out in the first block.
 class CounterWatch {
  public:
-  void block(const double* x, const double* before, const bool* starts, std::size_t n) {
+  void block(const double* x, const double* before, const unsigned char* starts, std::size_t n) {
     if (!possible_) return;
     if (steps_ == 0) learn(x, before, starts, n);
     for (std::size_t i = 0; i < n; ++i)
-      if (starts == nullptr || !starts[i]) step(x[i] - before[i], x[i]);
+      if (starts == nullptr || starts[i] == 0) step(x[i] - before[i], x[i]);
     possible_ = static_cast<double>(std::min(up_.count, down_.count)) <= 0.25 * steps() ||
                 static_cast<double>(same_) >= kMost * steps();
   }
@@ -265,10 +273,10 @@ class CounterWatch {
   double steps() const { return static_cast<double>(steps_); }
 
   // The usual step is the median of the first block.
-  void learn(const double* x, const double* before, const bool* starts, std::size_t n) {
+  void learn(const double* x, const double* before, const unsigned char* starts, std::size_t n) {
     std::vector<double> d;
     for (std::size_t i = 0; i < n; ++i)
-      if (starts == nullptr || !starts[i]) d.push_back(x[i] - before[i]);
+      if (starts == nullptr || starts[i] == 0) d.push_back(x[i] - before[i]);
     if (d.empty()) return;
     const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
     std::nth_element(d.begin(), middle, d.end());
@@ -354,12 +362,15 @@ struct QualityMeter::State {
   bool joined = false;  // previous is the sample right before
   bool float32 = true;
   bool any_fraction = false;
-  double held[1 + kBlock];  // the sample before the block, then samples until the block is full
-  bool starts[kBlock];  // sample i does not follow sample i-1 directly (missing samples between)
+  // The sample before the block, then samples until the block is full; with it whether a sample does not follow the one before directly
+  // (missing samples between). Room for as many as came so far.
+  std::vector<double> held;
+  std::vector<unsigned char> starts;
   std::size_t used = 0;
   bool any_start = false;
 
   void push(std::span<const double> samples);
+  void make_room(std::size_t n);
   void hold(const double* x, std::size_t n);
   void process_held();
   void process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks);
@@ -383,10 +394,11 @@ void QualityMeter::State::push(std::span<const double> samples) {
         continue;
       }
     }
+    make_room(n);
     if (!any_missing(x, n)) {
-      std::memcpy(held + 1 + used, x, n * sizeof(double));
-      std::memset(starts + used, 0, n);
-      starts[used] = !joined;
+      std::memcpy(held.data() + 1 + used, x, n * sizeof(double));
+      std::memset(starts.data() + used, 0, n);
+      starts[used] = joined ? 0 : 1;
       any_start |= !joined;
       joined = true;
       used += n;
@@ -398,6 +410,13 @@ void QualityMeter::State::push(std::span<const double> samples) {
   }
 }
 
+void QualityMeter::State::make_room(std::size_t n) {
+  if (starts.size() >= used + n) return;
+  const std::size_t room = std::min(kBlock, std::bit_ceil(used + n));
+  starts.resize(room);
+  held.resize(1 + room);
+}
+
 void QualityMeter::State::hold(const double* x, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     if (std::isnan(x[i])) {
@@ -405,7 +424,7 @@ void QualityMeter::State::hold(const double* x, std::size_t n) {
       joined = false;
       continue;
     }
-    starts[used] = !joined;
+    starts[used] = joined ? 0 : 1;
     any_start |= !joined;
     held[1 + used++] = x[i];
     joined = true;
@@ -415,23 +434,23 @@ void QualityMeter::State::hold(const double* x, std::size_t n) {
 void QualityMeter::State::process_held() {
   if (used == 0) return;
   const std::size_t n = used;
-  const double* const x = held + 1;
+  const double* const x = held.data() + 1;
   held[0] = previous;
-  const double* before = held;
+  const double* before = held.data();
   std::size_t breaks = 0;
   double without_breaks[kBlock];
   if (any_start) {  // a difference across missing samples counts as zero
-    std::copy_n(held, n, without_breaks);
+    std::copy_n(held.data(), n, without_breaks);
     for (std::size_t i = 0; i < n; ++i)
-      if (starts[i]) {
+      if (starts[i] != 0) {
         without_breaks[i] = x[i];
         ++breaks;
       }
     before = without_breaks;
   }
   const BlockSums sums = sums_of(x, before, n, x[0]);
-  runs(x, held, n, sums.repeats);
-  counter.block(x, held, starts, n);
+  runs(x, held.data(), n, sums.repeats);
+  counter.block(x, held.data(), starts.data(), n);
   process(x, sums, n, breaks);
   used = 0;
   any_start = false;
@@ -466,7 +485,7 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
     return;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    const bool start = any_start && starts[i];
+    const bool start = any_start && starts[i] != 0;
     run = x[i] - before[i] == 0 && !start ? run + 1 : 1;
     longest_run = std::max(longest_run, run);
   }

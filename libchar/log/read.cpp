@@ -10,14 +10,17 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <thread>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
+#include "libchar/log/reading_fields.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -54,7 +57,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
     const auto words = format_words();
     throw Error(
         {ErrorKind::usage,
-         "",
+         "E0202",
          path,
          "unknown log format",
          options.format,
@@ -86,7 +89,7 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
     for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c)
       read += (c == 0 ? "" : ", ") + channels[c].name;
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  flag,
                  fmt::format("{} given, and {} channel{} read: {}{}",
                              count,
@@ -105,6 +108,26 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
     if (!options.names.empty()) channels[c].name = options.names[c];
     if (!options.units.empty()) channels[c].unit = options.units[options.units.size() == 1 ? 0 : c];
   }
+}
+
+// Some quantities have units that nobody listed; a slip must not look like one of them.
+void warn_of_units(const ReadOptions& options, Warnings& warnings) {
+  for (const std::string& unit : options.units)
+    if (!find_unit(unit))
+      warnings.add("unknown_unit",
+                   "units in `units` that are not known: kept as written, nothing is converted",
+                   unit);
+}
+
+[[noreturn]] void refuse_empty(const LogInfo& info) {
+  throw Error({ErrorKind::input,
+               "E0318",
+               info.file,
+               info.channels.size() == 1
+                   ? fmt::format("column {} has no finite value", info.channels[0].name)
+                   : fmt::format("none of {} columns has a finite value", info.channels.size()),
+               "",
+               "`channels` chooses others"});
 }
 
 // Passes blocks on and remembers which channels had a value at all.
@@ -139,11 +162,11 @@ LogInfo read_log(const std::string& path,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress) {
-  if (options.rate_hz && !(*options.rate_hz > 0 && std::isfinite(*options.rate_hz)))
+  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
     throw Error({ErrorKind::usage,
-                 "",
-                 "",
-                 "the rate must be a positive number of hertz",
+                 "E0201",
+                 "`rate_hz`",
+                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
                  shortest(*options.rate_hz),
                  ""});
   const auto source = format_of(path, options).open(path, options);
@@ -166,6 +189,9 @@ LogInfo read_log(const std::string& path,
   LogInfo info = source->info();
   name_channels(info.channels, options);
   info.rows = known.rows;
+  info.rows_used = known.rows_used;
+  info.rows_dropped = known.rows_dropped;
+  info.rows_outside = known.rows_outside;
   info.samples = known.samples;
   if (known.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
   if (known.samples == 0 && (options.from_s || options.to_s))
@@ -185,11 +211,16 @@ LogInfo read_log(const std::string& path,
     if (!time.start_ns) time.start_ns = info.time.start_ns;
   }
   info.time = time;
+  const bool whole = !options.from_s && !options.to_s;
+  if (whole && info.samples > 0 &&
+      std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
+    refuse_empty(info);
   for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)
     if (!watch.seen[c])
       warnings.add("no_finite_value",
                    "channels without any finite value",
                    "channel " + info.channels[c].name);
+  warn_of_units(options, warnings);
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());
   info.warnings = std::move(warnings);

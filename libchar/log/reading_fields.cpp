@@ -30,7 +30,7 @@ const Fields<ReadOptions>& reading_fields() {
           "channels", {.meaning = "names or c0, c1… of those to read", .otherwise = "all"}),
       field<&ReadOptions::rate_hz>(
           "rate_hz",
-          {.unit = "Hz", .range = kPositive, .meaning = "sampling rate of a log without stamps"}),
+          {.unit = "Hz", .range = kRates, .meaning = "sampling rate of a log without stamps"}),
       field<&ReadOptions::delimiter>(
           "delimiter", {.meaning = "auto, tab, space or one character (CSV)", .otherwise = "auto"}),
       field<&ReadOptions::decimal>(

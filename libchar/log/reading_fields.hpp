@@ -6,6 +6,9 @@
 
 namespace libchar {
 
+/// Sampling rates that are read and simulated, in Hz.
+inline constexpr NumberRange kRates{1e-9, 1e12, false};
+
 /// How the samples of a file are to be read; threads, block size and hash change no result and have no key.
 const Fields<ReadOptions>& reading_fields();
 

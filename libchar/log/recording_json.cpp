@@ -46,7 +46,7 @@ Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs) {
   Json head = {{"format", format}, {"version", 1}};
-  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(version())}};
+  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(version())}, {"build", build()}};
   head["command"] = texts(command);
   head["input"] = Json::array();
   head["warnings"] = Json::array();
@@ -101,6 +101,9 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
               {"log_format", log.format},
               {"format", log.format},
               {"rows", log.rows},
+              {"rows_used", log.rows_used},
+              {"rows_dropped", log.rows_dropped},
+              {"rows_outside", log.rows_outside},
               {"samples", log.samples},
               {"channels", Json::array()}};
   for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i)

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/whole_file.hpp"
 #include "libchar/log/detail/format.hpp"
 
 namespace libchar {
@@ -58,6 +59,16 @@ LogFormat format_to_write(const std::string& path, const WriteOptions& options) 
 
 bool writes_stamps(const std::string& path, const WriteOptions& options) {
   return format_to_write(path, options).writes_stamps && options.time_column;
+}
+
+void check_log_output(const std::string& path, const WriteOptions& options) {
+  LogInfo any;
+  any.channels = {{"x", "", false}};
+  // A pipe is not opened: who reads it would take that for the whole of it.
+  if (writes_through(path))
+    format_to_write_of(path, options);
+  else
+    open_log_writer(path, any, options);  // discarded: nothing appears under its names
 }
 
 std::unique_ptr<LogWriter> open_log_writer(const std::string& path,

@@ -53,6 +53,9 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const LogInfo& info,
                                            const WriteOptions& options = {});
 
+/// Throws what opening the writer would for the name, the options and the files that are there, before any work; leaves nothing behind.
+void check_log_output(const std::string& path, const WriteOptions& options);
+
 /// The format that `path` and `options` ask for.
 LogFormat format_to_write(const std::string& path, const WriteOptions& options);
 

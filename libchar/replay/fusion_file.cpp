@@ -443,10 +443,11 @@ LearntFusion parse_fusion_file(std::string_view text, const std::string& path) {
 
 LearntFusion read_fusion_file(const std::string& path) {
   namespace fs = std::filesystem;
-  if (!fs::is_directory(path)) return parse_fusion_file(read_document_text(path), path);
+  std::error_code ignored;  // what cannot be looked at is told when it is opened
+  if (!fs::is_directory(path, ignored)) return parse_fusion_file(read_document_text(path), path);
   refuse_interrupted(path);
   const std::string inside = (fs::path(path) / "fusion.yaml").string();
-  if (!fs::exists(inside))
+  if (fs::status(inside, ignored).type() == fs::file_type::not_found)
     throw Error({ErrorKind::input,
                  "E0931",
                  path,

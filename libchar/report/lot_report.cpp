@@ -229,7 +229,7 @@ std::vector<OutputFile> lot_files(const LotReport& report, const std::filesystem
   std::vector<OutputFile> out = {{(folder / "lot.html").string(), lot_html(report)},
                                  {(folder / "lot.json").string(), ""}};
   Json document = lot_json(report);
-  document["files"] = file_names(out);
+  name_files(document, out);
   out[1].text = dump_json(document);
   return out;
 }

@@ -29,7 +29,7 @@ std::vector<OutputFile> report_files(const CharacterizationView& view,
         {(folder / (name + ".sensor.yaml")).string(),
          model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
   }
-  document["files"] = file_names(outputs);
+  name_files(document, outputs);
   outputs[1].text = dump_json(document);
   return outputs;
 }

@@ -212,7 +212,7 @@ std::vector<OutputFile> runs_files(const RunsReport& report, const std::filesyst
         {(folder / (unused_file_name_for(c.channel.name, taken) + ".sensor.yaml")).string(),
          model_yaml(model_of(report, c))});
   Json document = runs_json(report);
-  document["files"] = file_names(out);
+  name_files(document, out);
   out[1].text = dump_json(document);
   return out;
 }

@@ -146,7 +146,8 @@ void add_models(const SensorRecording& r, Scene& scene) {
     for (SceneSensor& sensor : scene.sensors) {
       const fs::path file =
           fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
-      if (!fs::exists(file))
+      std::error_code ignored;  // what is there and cannot be looked at is told when it is opened
+      if (fs::status(file, ignored).type() == fs::file_type::not_found)
         refuse_words("`models`",
                      fmt::format("there is no model of sensor {}", printable(sensor.name, 40)),
                      file.string(),

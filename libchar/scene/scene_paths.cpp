@@ -133,10 +133,21 @@ std::string resolve_scene_file(const std::string& text,
   return whole.string();
 }
 
+namespace {
+
+/// Without links and dots, as far as it exists and can be looked at; the folder we are in may be gone.
+fs::path whole_path(const fs::path& path, std::error_code& problem) {
+  const fs::path absolute = fs::absolute(path, problem);
+  const fs::path whole = problem ? fs::path() : fs::weakly_canonical(absolute, problem);
+  return problem ? path.lexically_normal() : whole;
+}
+
+}  // namespace
+
 std::string path_for_scene(const std::string& file, const std::string& scene) {
   std::error_code problem;
-  const fs::path root = fs::weakly_canonical(fs::absolute(folder_of(scene)), problem);
-  const fs::path target = problem ? root : fs::weakly_canonical(fs::absolute(file), problem);
+  const fs::path root = whole_path(folder_of(scene), problem);
+  const fs::path target = problem ? root : whole_path(file, problem);
   if (problem)
     throw Error({ErrorKind::input,
                  "E0732",
@@ -166,7 +177,7 @@ void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& ou
   for (const std::string& output : outputs) {
     for (const std::string& input : inputs) refuse_same_file(input, output);
     std::error_code problem;
-    const fs::path whole = fs::weakly_canonical(fs::absolute(output), problem);
+    const fs::path whole = whole_path(output, problem);
     bool twice = !seen.insert(problem ? output : whole.string()).second;
     for (const std::string& other : outputs)  // two names of one existing file
       twice = twice || (&other < &output && fs::equivalent(other, output, problem) && !problem);

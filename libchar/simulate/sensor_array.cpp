@@ -25,6 +25,23 @@ constexpr std::uint64_t kTemperatureIndex = 1U << 20U;  // its random stream, aw
   throw Error({ErrorKind::input, "E0554", "", std::move(what), "", std::move(hint)});
 }
 
+/// All that is made is drawn, also what is renewed before a sample has seen it.
+constexpr double kMostRenewals = 1000;
+
+void check_hold(const char* key,
+                const std::optional<double>& hold_s,
+                const std::string& sensor,
+                double rate_hz) {
+  if (!hold_s || *hold_s * rate_hz * kMostRenewals >= 1) return;
+  refuse(
+      fmt::format("sensor {}: {} of {} s renews the noise more than {} times between two samples",
+                  sensor,
+                  key,
+                  *hold_s,
+                  kMostRenewals),
+      fmt::format("leave {} out: noise is then made anew for each sample", key));
+}
+
 void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
   if (sensor.h.size() != s.truth.size())
     refuse(fmt::format("sensor {} weighs {} truth signals, and there are {}",
@@ -38,6 +55,8 @@ void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
                        *sensor.model.bandwidth_hz,
                        rate),
            "leave bandwidth_hz out: nothing of it would be seen");
+  check_hold("white_hold_s", sensor.model.white_hold_s, sensor.name, rate);
+  check_hold("flicker_hold_s", sensor.model.flicker_hold_s, sensor.name, rate);
 }
 
 void check_signals(const ArraySimulation& s) {
@@ -79,7 +98,8 @@ void keep_every(std::span<const double> fine, std::uint64_t step, std::span<doub
 
 void check(const ArraySimulation& s) {
   if (s.sensors.empty()) refuse("there is no sensor to simulate");
-  if (!(s.rate_hz > 0) || !std::isfinite(s.rate_hz)) refuse("the sampling rate must be above 0 Hz");
+  if (!(s.rate_hz >= 1e-9 && s.rate_hz <= 1e12))
+    refuse("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
   if (s.samples == 0)
     refuse("there is no sample to simulate", "give a duration or a number of samples");
   if (s.oversampling == 0 || s.oversampling > 1024) refuse("oversampling must be from 1 to 1024");

@@ -8,10 +8,17 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+
+// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
+// FFTW asserts anything in a release build. What the planner held is lost: the process has no memory anyway.
+extern "C" void fftw_assertion_failed(const char*, int, const char*) {
+  throw std::bad_alloc();
+}
 
 namespace libchar {
 namespace {
@@ -37,7 +44,7 @@ Aligned<T> aligned(std::size_t n) {
                      : nullptr;
   if (memory == nullptr)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0403",
                  "",
                  fmt::format("not enough memory for a Fourier transform of {} values", n),
                  "",
@@ -69,7 +76,7 @@ struct RealFft::State {
 RealFft::RealFft(std::size_t n) : state_(std::make_unique<State>()) {
   if (n == 0)
     throw Error(
-        {ErrorKind::numeric, "", "", "a Fourier transform needs at least one value", "", ""});
+        {ErrorKind::numeric, "E0413", "", "a Fourier transform needs at least one value", "", ""});
   state_->n = n;
   state_->values = aligned<double>(n);
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
@@ -325,7 +332,7 @@ struct Dct::State {
 Dct::Dct(std::size_t n) {
   if (n == 0)
     throw Error(
-        {ErrorKind::numeric, "", "", "a cosine transform needs at least one value", "", ""});
+        {ErrorKind::numeric, "E0413", "", "a cosine transform needs at least one value", "", ""});
   state_ = std::make_unique<State>(n);
 }
 Dct::~Dct() = default;
@@ -360,7 +367,7 @@ std::span<const double> Dct::transform(std::span<const double> y) {
   const std::size_t n = state_->fft.size();
   if (y.size() != n)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0413",
                  "",
                  fmt::format("a cosine transform of {} values was given {}", n, y.size()),
                  "",
@@ -389,7 +396,7 @@ TrigonometricSums::TrigonometricSums(std::size_t n, Kind kind) : state_(std::mak
   const bool sines = kind == Kind::sines;
   if (n < (sines ? 2 : 1))
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0413",
                  "",
                  fmt::format("trigonometric sums need at least {} values", sines ? 2 : 1),
                  "",

@@ -111,7 +111,7 @@ std::uint64_t choose_segment(std::span<const double> record,
     // Halving may step over a last chance: any run of eight.
     if (usable_segments(runs, layout_of(kShortestSegment, options.overlap)) == 0)
       throw Error({ErrorKind::numeric,
-                   "",
+                   "E0401",
                    "",
                    fmt::format("a spectrum needs at least {} consecutive samples; the longest "
                                "stretch without a missing one has {}",
@@ -263,7 +263,7 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
   const std::string got = significant(seconds, 6) + "s";
   if (!(rate_hz > 0))
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  "`segment`",
                  "a time needs the sampling rate, which this log does not say",
                  got,
@@ -271,7 +271,7 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
   const double samples = std::round(seconds * rate_hz);
   if (!(samples >= kShortestSegment && samples < 1e12))
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0201",
                  "`segment`",
                  fmt::format("at {} Hz this is {} samples, and a segment needs at least {}",
                              significant(rate_hz, 6),

@@ -148,7 +148,7 @@ void WelchStream::State::check_shared(const SharedBlocks& blocks) const {
   if (halves && blocks.length() == layout.hop) return;
   throw Error(
       {ErrorKind::usage,
-       "",
+       "E0201",
        "",
        fmt::format("a spectrum with segments of {} samples cannot share blocks", layout.segment),
        std::to_string(blocks.length()),
@@ -178,7 +178,7 @@ WelchStream::WelchStream(const WelchOptions& options) {
   check_options(options);
   if (options.segment == 0)
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  "",
                  "a streamed spectrum needs the length of its segments beforehand",
                  "",
@@ -218,7 +218,7 @@ Spectrum WelchStream::finish(double rate_hz) const {
   s.add_rest(whole);
   if (whole.used() == 0)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0401",
                  "",
                  fmt::format("a spectrum with segments of {} samples needs as many without a "
                              "missing one; none was found in {} samples",

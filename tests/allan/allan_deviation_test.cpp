@@ -158,6 +158,15 @@ TEST_CASE("grids") {
   CHECK(dense.size() > 1050);
   CHECK(std::is_sorted(dense.begin(), dense.end()));
   CHECK(dense.back() <= 2500);
+  // Beyond 1000 the factors are even on a logarithmic axis: ten times as long is one of them.
+  AllanOptions long_grid;
+  long_grid.grid = TauGrid::dense;
+  long_grid.tau_min_s = 900;
+  const auto far = allan_deviation(white(20001, 3), 1, long_grid).points;
+  REQUIRE(far.back().m == 10000);
+  for (std::size_t k = 101; k < far.size(); ++k)
+    CHECK(static_cast<double>(far[k].m) / static_cast<double>(far[k - 1].m) ==
+          Approx(static_cast<double>(far[101].m) / static_cast<double>(far[100].m)).epsilon(2e-3));
 
   AllanOptions options;
   options.grid = TauGrid::list;

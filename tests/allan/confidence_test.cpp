@@ -145,6 +145,27 @@ TEST_CASE("correlation of octaves against the tables") {
   }
 }
 
+TEST_CASE("degrees of freedom of the total deviation where the others have none") {
+  // SP 1065, 5.4.6: b T/tau - c, with b, c = 1.5, 0 (white), 1.17, 0.22 (flicker), 0.93, 0.36 (walk).
+  const auto dof = [](const Mixture& theta, std::uint64_t m) {
+    return equivalent_dof(DeviationType::totdev, theta, m, 999, 1, 1);
+  };
+  CHECK(dof(kWhite, 1000) == Approx(1.5).epsilon(1e-12));
+  CHECK(dof(kWhite, 750) == Approx(2).epsilon(1e-12));
+  CHECK(dof(kFlicker, 750) == Approx(1.168 * 4 / 3 - 0.222).epsilon(1e-12));
+  CHECK(dof(kFlicker, 1000) == 1);  // never fewer
+  CHECK(dof(kWalk, 750) == 1);
+}
+
+TEST_CASE("the covariance that is remembered is that of the curve") {
+  const Mixture theta = {1, 0.1, 1e-3, 0, 0};
+  const AllanCurve a = octaves(1024), b = octaves(1024, 0, 2), c = octaves(2048);
+  AllanCovarianceCache cache;
+  for (const AllanCurve* curve : {&a, &b, &c, &a, &b, &c})
+    CHECK(cache.of(*curve)->at(theta) == allan_covariance(*curve, theta));
+  CHECK(cache.of(a) == cache.of(a));
+}
+
 TEST_CASE("covariance against every pair of terms, N = 256, all five terms") {
   for (const Mixture& theta :
        {kWhite, kFlicker, kWalk, Mixture{0, 0, 0, 1, 0}, Mixture{1, 0.5, 0.1, 2, 0.01}})

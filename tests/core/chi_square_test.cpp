@@ -95,3 +95,10 @@ TEST_CASE("chi-square density, on both sides of where the expansion begins") {
   CHECK(chi_square_density(1e11 - 0.66, 1e11) == Approx(8.9206205807981496e-7).epsilon(1e-13));
   CHECK(chi_square_density(1e6, 1e6) == Approx(chi_square_density(1e6 + 1, 1e6 + 1)).epsilon(1e-6));
 }
+
+TEST_CASE("without degrees of freedom nothing is improbable") {
+  CHECK(chi_square_tail(5, 0) == 1);
+  CHECK(chi_square_tail(5, std::nan("")) == 1);
+  CHECK(chi_square_tail(0, 3) == 1);
+  CHECK(chi_square_tail(-1, 3) == 1);
+}

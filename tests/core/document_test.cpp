@@ -106,6 +106,12 @@ TEST_CASE("schema: refusals name place, key and the nearest valid key") {
   CHECK(schema_refusal("alpha: 1e-05\n", number).empty());
   CHECK(schema_refusal("beta: 1\n", number).find("alpha is missing") != std::string::npos);
   CHECK(schema_refusal("alpha: null\n", number).find("alpha is missing") != std::string::npos);
+  // A refusal quotes what stands there, and stands where that is.
+  const auto refuse = [](const MapReader& m) { m.refuse("alpha", "no", "hint"); };
+  CHECK_THAT(schema_refusal("beta: 1\nalpha: hello\n", refuse),
+             Catch::StartsWith("f:2:8") && Catch::Contains("alpha: no; got \"hello\""));
+  CHECK_THAT(schema_refusal("beta: 1\n", refuse),
+             Catch::StartsWith("f:1:1") && !Catch::Contains("got"));
   CHECK_FALSE(schema_refusal("alpha: 1.0\n", [](const MapReader& m) { m.count("alpha"); }).empty());
   CHECK(schema_refusal("alpha: 18446744073709551615\n", [](const MapReader& m) {
           CHECK(m.count("alpha") == 18446744073709551615ULL);

@@ -118,3 +118,18 @@ TEST_CASE(
   CHECK(back["bad"][1] == "° fine\n");
   CHECK(back["k\\xFF"] == 1);
 }
+
+TEST_CASE("one string that is not UTF-8 is found wherever it stands, and no other is touched") {
+  const std::string fine = "\"°\" \\ \n";
+  for (const Json& j : {Json(Json::array({fine, Json::array({1, "\xB0"})})),
+                        Json{{"a", {{"b", fine}, {"c", "\xB0"}}}},
+                        Json::array({Json{{"a", 1}, {"\xB0", fine}}}),
+                        Json("\xB0")}) {
+    const std::string text = dump_json(j);
+    CHECK_THAT(text, Catch::Contains("\\\\xB0"));
+    CHECK_THAT(text, !Catch::Contains("\xEF\xBF\xBD"));
+    const Json back = parse_json(text, "f");
+    if (text.find("°") != std::string::npos) CHECK_THAT(back.dump(), Catch::Contains("\\\"°\\\""));
+  }
+  CHECK_THROWS(dump_json(Json{{"a", {{"b", {std::nan("")}}}}}));
+}

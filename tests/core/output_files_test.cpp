@@ -38,7 +38,9 @@ std::set<std::string> names_in(const fs::path& folder) {
 std::vector<OutputFile> set_of(const fs::path& folder, const std::vector<std::string>& names) {
   std::vector<OutputFile> outputs = {{(folder / "report.json").string(), ""}};
   for (const std::string& name : names) outputs.push_back({(folder / name).string(), name + "\n"});
-  outputs[0].text = Json{{"files", file_names(outputs)}}.dump();
+  Json document;
+  name_files(document, outputs);
+  outputs[0].text = document.dump();
   return outputs;
 }
 
@@ -79,9 +81,7 @@ TEST_CASE("a file that the new document names is not removed, whoever wrote it")
   const test::TemporaryFolder folder;
   const auto once = [&](bool force) {
     std::vector<OutputFile> outputs = {{(folder / "report.json").string(), ""}};
-    Json names = file_names(outputs);
-    names.push_back("estimates.csv");
-    outputs[0].text = Json{{"files", names}}.dump();
+    outputs[0].text = Json{{"files", {"report.json", "estimates.csv"}}}.dump();
     WholeFile estimates((folder / "estimates.csv").string(), force);
     estimates.write("1\n");
     return write_outputs(outputs, folder.path(), {}, force, {&estimates});

@@ -1,10 +1,13 @@
 #include "libchar/core/whole_file.hpp"
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <thread>
 
 #include "libchar/core/error.hpp"
 #include "tests/support/shared.hpp"
@@ -136,4 +139,81 @@ TEST_CASE("an input is never its own output, under no name") {
   CHECK_NOTHROW(refuse_same_file(path, other));
   CHECK_NOTHROW(refuse_same_file("-", path));
   CHECK_NOTHROW(refuse_same_file("/dev/null", "/dev/null"));
+}
+
+TEST_CASE("what replaces a file has its rights, and a read-only one is not replaced") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.txt").string();
+  const auto rights = [&] {
+    struct stat status {};
+    REQUIRE(::stat(path.c_str(), &status) == 0);
+    return status.st_mode & 07777U;
+  };
+  for (const unsigned mode : {0600U, 0640U, 0666U, 0755U}) {
+    write_whole_file(path, "old", true);
+    REQUIRE(::chmod(path.c_str(), mode) == 0);
+    write_whole_file(path, "new", true);
+    CHECK(rights() == mode);
+  }
+  REQUIRE(::chmod(path.c_str(), 0444) == 0);
+  CHECK(kind_of([&] { write_whole_file(path, "newer", true); }) == ErrorKind::output);
+  CHECK(kind_of([&] { check_output(path, true); }) == ErrorKind::output);
+  CHECK(test::slurp(path) == "new");
+  CHECK(rights() == 0444);
+  CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("an open file of this process is written through, under each of its names") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "stdout.txt").string(), link = (folder / "link").string();
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  REQUIRE(file >= 0);
+  REQUIRE(::write(file, "before ", 7) == 7);
+  const std::string number = std::to_string(file);
+  std::filesystem::create_symlink("/dev/fd/" + number, link);
+  for (const std::string& name : {"/dev/fd/" + number, "/proc/self/fd/" + number, link}) {
+    CHECK(writes_through(name));
+    CHECK_NOTHROW(check_output(name, false));
+    WholeFile through(name, true);
+    through.write("0123 ");
+    through.rewrite(0, "abcd");
+    through.write(std::string(600'000, 'x'));
+    through.rewrite(1, "BC");
+    through.commit();
+  }
+  ::close(file);
+  const std::string written = "aBCd " + std::string(600'000, 'x');
+  CHECK(test::slurp(path) == "before " + written + written + written);
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK_FALSE(writes_through(path));
+  CHECK(entries(folder) == 2);
+}
+
+TEST_CASE("a pipe is not opened to see whether it could be, and cannot be gone back in") {
+  const test::TemporaryFolder folder;
+  const std::string pipe = (folder / "pipe").string();
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_NOTHROW(check_output(pipe, false));  // would wait for a reader
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  WholeFile file(pipe);
+  file.write("0000");
+  file.rewrite(0, "1234");
+  file.commit();
+  char got[8] = {};
+  CHECK(::read(reader, got, sizeof got) == 4);
+  CHECK(std::string(got) == "1234");
+  std::thread drain([&] {
+    ::fcntl(reader, F_SETFL, 0);
+    char bytes[65536];
+    while (::read(reader, bytes, sizeof bytes) > 0) {
+    }
+  });
+  {
+    WholeFile large(pipe);
+    large.write(std::string(1'000'000, 'x'));
+    CHECK(kind_of([&] { large.rewrite(0, "1234"); }) == ErrorKind::output);
+  }
+  drain.join();
+  ::close(reader);
+  CHECK(entries(folder) == 1);
 }

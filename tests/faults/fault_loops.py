@@ -7,7 +7,9 @@ A verb runs over the results of an earlier run, with other inputs. After each fa
 files or the new ones and no others. After each kill: the old files, the new ones, or a journal that makes the new ones of what is there; and
 the next run ends well and leaves nothing else. Prints counts per verb and the commands of what is wrong; exit 1 where something is.
 
-  --quick   a few places of each kind, as ctest runs it
+A log that shrinks or grows under the reader, a limit of a file's size, and a disk that is full (where tmpfs may be mounted) are tried as well.
+
+  --quick   a few places of each kind in four verbs, as ctest runs it
   --heap N  places in which memory is refused, of the hundreds of thousands there are (default: 600 a verb)
 """
 
@@ -16,6 +18,7 @@ import json
 import math
 import os
 import random
+import resource
 import shutil
 import subprocess
 import sys
@@ -23,7 +26,9 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-KINDS = ["write", "open", "read", "fsync", "rename", "link", "close", "stat", "mmap", "unlink", "mkdir", "malloc", "thread", "kill"]
+KINDS = ["write", "open", "read", "fsync", "rename", "link", "close", "stat", "mmap", "unlink", "mkdir", "malloc", "thread", "kill", "shrink", "grow", "fsize",
+         "space"]
+CALLS = KINDS[:13]
 CODES = {0, 2, 3, 4, 5}
 JOURNAL = ".libchar-outputs.json"
 MARK = ".libchar-tmp-"
@@ -63,20 +68,21 @@ def inputs(seed):
     }
 
 
-# Name: words; "PREPARE" words run once before, without faults. What a verb writes is below out/ or in out.*.
+# Name: words; "PREPARE" words run once before, without faults. What a verb writes is below out/ or in out.*;
+# where that is a file and a folder, they are two sets, whole each.
 VERBS = {
     "inspect": {"words": ["inspect", "log.csv", "--json"]},
     "allan": {"words": ["allan", "log.csv", "-c", "c0", "-o", "out.csv", "--force"]},
     "psd": {"words": ["psd", "log.csv", "-c", "c0", "-o", "out.csv", "--force"]},
-    "fit": {"words": ["fit", "log.csv", "--models", "out", "-o", "out.txt", "--force"]},
+    "fit": {"sets": True, "words": ["fit", "log.csv", "--models", "out", "-o", "out.txt", "--force"]},
     "characterize": {"words": ["characterize", "log.csv", "-o", "out", "--no-timing", "--force"]},
-    "model": {"words": ["model", "a.sensor.yaml", "--to", "kalibr", "-o", "out.yaml", "--force"]},
+    "model": {"words": ["model", "a.sensor.yaml", "--to", "sdf", "-o", "out.sdf", "--force"]},
     "simulate": {"words": ["simulate", "a.sensor.yaml", "-o", "out.csv", "--duration", "5", "--force"]},
     "simulate raw": {"words": ["simulate", "a.sensor.yaml", "-o", "out.f64", "--duration", "5", "--force"]},
     "convert npy": {"words": ["convert", "log.csv", "-o", "out.npy", "--order", "planar", "--force"]},
     "convert raw": {"words": ["convert", "log.csv", "-o", "out.f64", "--force"]},
     "replay": {"words": ["replay", "s.scene.yaml", "-o", "out", "--estimates", "csv", "--no-timing", "--force"]},
-    "replay log": {"words": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "--write-scene", "out.scene.yaml", "-o", "out",
+    "replay log": {"sets": True, "words": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "--write-scene", "out.scene.yaml", "-o", "out",
                              "--no-timing", "--force"]},
     "fuse": {"prepare": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "-o", "run", "--no-timing"],
              "words": ["fuse", "array.csv", "--with", "run", "-o", "out.csv", "--force"]},
@@ -84,22 +90,38 @@ VERBS = {
 }
 
 
+QUICK = ["characterize", "simulate raw", "convert npy", "replay"]
+
+
 class Bench:
     def __init__(self, program, shim, heap, quick):
         self.program, self.shim, self.heap, self.quick = program, shim, heap, quick
         fast = Path("/dev/shm")
         self.root = Path(tempfile.mkdtemp(prefix="libchar-faults-", dir=fast if os.access(fast, os.W_OK) else None))
+        self.may_mount = self.try_mount()
+
+    def try_mount(self):
+        """Only an administrator may make small disks, and not in every container."""
+        folder = self.root / "disk"
+        folder.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "libchar-faults", folder], capture_output=True).returncode != 0:
+            return False
+        return subprocess.run(["umount", folder], capture_output=True).returncode == 0
 
     def run(self, folder, words, fault=""):
         log = Path(str(folder) + ".count")
-        environment = dict(os.environ, LIBCHAR_FAULT=fault, LIBCHAR_FAULT_LOG=str(log), LD_PRELOAD=str(self.shim))
+        environment = dict(os.environ, LIBCHAR_FAULT=fault, LIBCHAR_FAULT_LOG=str(log), LD_PRELOAD=str(self.shim),
+                           LIBCHAR_FAULT_FILE=next((word for word in words if word in inputs(1)), ""))
+        size = int(fault.split(":")[1]) if fault.startswith("fsize:") else None
+        limit = None if size is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
         try:
-            ran = subprocess.run([self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
+            ran = subprocess.run([self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
+                                 preexec_fn=limit)
         except subprocess.TimeoutExpired:
             return None, {}
         counts = {}
         if log.exists():
-            counts = {name: int(count) for name, count in (line.split() for line in log.read_text().splitlines())}
+            counts = {name: int(count) for name, count in (line.split() for line in log.read_text().splitlines() if len(line.split()) == 2)}
             log.unlink()
         return ran, counts
 
@@ -107,6 +129,15 @@ class Bench:
 def files_of(folder):
     """What is there apart from inputs: name → bytes."""
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file() and p.name not in inputs(1)}
+
+
+def sets_of(files):
+    """A set is what one folder holds: out.txt beside out/a, out/b are two."""
+    return {str(Path(name).parent) for name in files}
+
+
+def part(files, folder):
+    return {name: text for name, text in files.items() if str(Path(name).parent) == folder}
 
 
 def finished(folder):
@@ -157,34 +188,63 @@ class Verb:
         shutil.copytree(self.template, folder)
         return folder
 
+    def copy_on_small_disk(self, number, pages):
+        """A file system of its own with the earlier results, and so many pages of 4096 bytes left."""
+        folder = self.bench.root / f"{self.template.name}.{number}"
+        folder.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "libchar-faults", folder], check=True)
+        shutil.copytree(self.template, folder, dirs_exist_ok=True)
+        used = os.statvfs(folder)
+        size = 4096 * (used.f_blocks - used.f_bfree + pages) * (used.f_frsize // 4096)
+        subprocess.run(["mount", "-o", f"remount,size={size}", folder], check=True)
+        return folder
+
     def places(self, kind):
+        if kind in ("fsize", "space"):
+            return self.sizes(kind)
         count = self.counts.get(kind, 0)
-        most = 4 if self.bench.quick else self.bench.heap if kind == "malloc" else count
+        most = 1 if self.bench.quick else self.bench.heap if kind == "malloc" else count
         if self.bench.quick and kind == "kill":
-            most = 12
+            most = 6
         if count <= most:
             return list(range(1, count + 1))
         # Each once at the beginning, then in growing steps to the end.
         step = (math.log(count) - math.log(1)) / most
         return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)} | {count * k // most for k in range(1, most)})
 
+    def sizes(self, kind):
+        """Bytes a file may have, or pages that a full disk has left: from nothing to more than enough."""
+        if kind == "space" and (not self.bench.may_mount or self.name in ("inspect", "compare")):
+            return []
+        largest = max((len(text) for text in self.new.values()), default=1000)
+        if kind == "space":
+            pages = sum(2 + len(text) // 4096 for text in self.new.values()) + 4
+            return sorted({round(pages * k / 8) for k in range(9)} if self.bench.quick else set(range(pages + 1)))
+        return sorted({0, 1, 100, 5000, largest // 2, largest - 1, largest})
+
     def faults(self, kinds):
         for kind in kinds:
             for place in self.places(kind):
                 yield kind, f"{kind}:{place}"
-                if kind != "kill":
+                if kind in CALLS:
                     yield kind, f"{kind}:{place}+"
 
     def wrong(self, number, kind, fault):
         """What is wrong after this fault: "" where nothing is; and what stands there."""
-        folder = self.copy(str(number))
+        folder = self.copy_on_small_disk(number, int(fault.split(":")[1])) if kind == "space" else self.copy(str(number))
         try:
             ran, counts = self.bench.run(folder, self.words, fault)
             if ran is None:
                 return "hangs", "hangs"
             return self.after_kill(folder, ran) if kind == "kill" else self.after_fault(folder, ran, kind, fault)
         finally:
+            if kind == "space":
+                subprocess.run(["umount", folder], check=True)
             shutil.rmtree(folder, ignore_errors=True)
+
+    def sets_are_whole(self, now):
+        sets = sets_of(self.old | self.new | now)
+        return VERBS[self.name].get("sets") and all(part(now, s) in (part(self.old, s), part(self.new, s)) for s in sets)
 
     def state(self, folder):
         now = files_of(folder)
@@ -192,11 +252,13 @@ class Verb:
             return "new"
         if now == self.old:
             return "old"
+        if self.sets_are_whole(now):
+            return "old and new sets"
         if any(name.endswith(JOURNAL) for name in now):
             finished(folder)
             now = files_of(folder)
             now = {name: text for name, text in now.items() if MARK not in name}
-            if now == self.new:
+            if now == self.new or self.sets_are_whole(now):
                 return "to be finished"
         odd = sorted(n for n in now if now[n] not in (self.old.get(n), self.new.get(n)))
         return "mixed: " + ", ".join(odd or [n for n in set(self.old) ^ set(self.new) if n in now] or sorted(set(now) ^ set(self.new)) or ["old and new"])
@@ -209,14 +271,21 @@ class Verb:
             return f"exit {ran.returncode}: {err.strip()[:200]}", state
         if "internal error" in err or "terminate called" in err:
             return err.strip()[:200], state
-        if state.startswith("mixed"):
+        if state.startswith("mixed") and kind not in ("shrink", "grow"):
             return f"exit {ran.returncode}, {state}; {err.strip()[:200]}", state
+        if kind in ("shrink", "grow"):
+            # Other input, other numbers: what is asked is that the run ends well or with a sentence, and leaves no other names.
+            names, allowed = set(files_of(folder)), (set(self.old), set(self.new))
+            if names not in allowed:
+                return f"exit {ran.returncode}, names {sorted(names)}", "other names"
+            said = sum(" error " in line or ": error" in line for line in lines) == (ran.returncode != 0)
+            return "" if said else f"exit {ran.returncode}: {err.strip()[:200]}", "ended"
         if ran.returncode == 0:
             if state != "new" and self.new != self.old:
                 return f"exit 0 and {state}", state
             return ("other text on stdout" if ran.stdout != self.out else ""), state
         # Nothing can be said where nothing can be written.
-        mute = kind == "write" and fault.endswith("+") and not lines
+        mute = kind == "write" and fault.endswith("+")
         if not mute and sum(" error " in line or ": error" in line for line in lines) != 1:
             return f"exit {ran.returncode} with {len(lines)} lines: {err.strip()[:200]}", state
         return "", state
@@ -261,7 +330,7 @@ def main():
     bench = Bench(os.path.abspath(options.program), os.path.abspath(options.shim), options.heap, options.quick)
     cases, bad = 0, 0
     try:
-        for name in options.verb or VERBS:
+        for name in options.verb or (QUICK if options.quick else VERBS):
             verb = Verb(bench, name)
             faults = list(verb.faults(options.kind or KINDS))
             if options.list:

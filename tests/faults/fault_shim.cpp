@@ -2,8 +2,9 @@
 //   LIBCHAR_FAULT=KIND:N    the N-th call (from 1) of KIND after the beginning of main fails
 //   LIBCHAR_FAULT=KIND:N+   that one and all after it
 //   LIBCHAR_FAULT_LOG=FILE  how often each kind was called, as KIND COUNT lines, and whether a fault came about
+//   LIBCHAR_FAULT_FILE=FILE the file that shrinks or grows
 // Kinds: write open read fsync rename link close stat mmap unlink mkdir malloc thread, and kill: SIGKILL before the N-th call that changes
-// a file system (write, open, fsync, rename, link, unlink, mkdir, truncate). What glibc does inside itself is not seen.
+// a file system (write, open, fsync, rename, link, unlink, mkdir, truncate); shrink, grow: before the N-th read FILE loses its second half, or gets it once more. What glibc does inside itself is not seen.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -48,6 +49,8 @@ enum Kind {
   kMalloc,
   kThread,
   kKill,
+  kShrink,
+  kGrow,
   kKinds
 };
 constexpr const char* kNames[kKinds] = {"write",
@@ -63,7 +66,9 @@ constexpr const char* kNames[kKinds] = {"write",
                                         "mkdir",
                                         "malloc",
                                         "thread",
-                                        "kill"};
+                                        "kill",
+                                        "shrink",
+                                        "grow"};
 // What these fail with in life: a full disk, too many files, a broken disk, no memory.
 constexpr int kErrors[kKinds] = {ENOSPC,
                                  EMFILE,
@@ -78,6 +83,8 @@ constexpr int kErrors[kKinds] = {ENOSPC,
                                  EACCES,
                                  ENOMEM,
                                  EAGAIN,
+                                 0,
+                                 0,
                                  0};
 
 std::atomic<long> counts[kKinds];
@@ -99,6 +106,26 @@ void changes() {
   if (!armed.load(std::memory_order_relaxed)) return;
   const long n = ++counts[kKill];
   if (kind == kKill && n == at) ::kill(::getpid(), SIGKILL);
+}
+
+// Somebody else writes to the file that is being read.
+void moves() {
+  if (!armed.load(std::memory_order_relaxed)) return;
+  const long n = ++counts[kShrink];
+  counts[kGrow] = n;
+  const char* path = ::getenv("LIBCHAR_FAULT_FILE");
+  if (n != at || (kind != kShrink && kind != kGrow) || path == nullptr) return;
+  const int file = static_cast<int>(::syscall(SYS_openat, AT_FDCWD, path, O_RDWR | O_CLOEXEC, 0));
+  const long size = ::syscall(SYS_lseek, file, 0, SEEK_END), half = size / 2;
+  came_about = size > 0;
+  if (kind == kShrink) {
+    ::syscall(SYS_ftruncate, file, half);
+  } else {
+    static char second[1 << 16];
+    const long got = ::syscall(SYS_pread64, file, second, sizeof second, half);
+    ::syscall(SYS_pwrite64, file, second, got > 0 ? got : 0, size);
+  }
+  ::syscall(SYS_close, file);
 }
 
 template <typename F>
@@ -210,10 +237,12 @@ size_t fwrite(const void* data, size_t size, size_t count, FILE* stream) {
 }
 
 ssize_t read(int file, void* data, size_t size) {
+  moves();
   if (fails(kRead)) return -1;
   return ::syscall(SYS_read, file, data, size);
 }
 ssize_t pread64(int file, void* data, size_t size, off64_t offset) {
+  moves();
   if (fails(kRead)) return -1;
   return ::syscall(SYS_pread64, file, data, size, offset);
 }

@@ -168,6 +168,55 @@ TEST_CASE("a cell is one finite number, missing, infinite or wrong") {
   CHECK(read_cell("--1", '.').offset == 0);
 }
 
+TEST_CASE("a cell that is no number is told with reason and place") {
+  struct Wrong {
+    const char* text;
+    std::size_t offset;
+    const char* reason;
+  };
+  for (const Wrong& wrong : {Wrong{"--1", 0, "two signs"},
+                             Wrong{"-+1", 0, "two signs"},
+                             Wrong{"1e", 0, "cut off in its exponent"},
+                             Wrong{"1e-", 0, "cut off in its exponent"},
+                             Wrong{"-", 0, "without digits"},
+                             Wrong{".", 0, "without digits"},
+                             Wrong{"1_0", 1, "underscore"},
+                             Wrong{"1,000.5", 1, "thousands separator"},
+                             Wrong{"1.2.3", 3, "second decimal mark"},
+                             Wrong{"12abc", 2, "expected to end here"},
+                             Wrong{"1e5x", 3, "expected to end here"},
+                             Wrong{"-abc", 0, "a number was expected"},
+                             Wrong{"\xE2\x88\x92"
+                                   "1",
+                                   0,
+                                   "U+2212"},
+                             Wrong{"1\xC2\xA0"
+                                   "0",
+                                   1,
+                                   "no-break space"},
+                             Wrong{"\xE2\x80\x8B"
+                                   "1",
+                                   0,
+                                   "zero-width"},
+                             Wrong{"\x1A", 0, "Ctrl-Z"}}) {
+    const Cell cell = read_cell(wrong.text, '.');
+    INFO(wrong.text << ": " << cell.reason);
+    CHECK(cell.kind == Cell::bad);
+    CHECK(cell.offset == wrong.offset);
+    CHECK(std::string(cell.reason).find(wrong.reason) != std::string::npos);
+  }
+  CHECK(read_cell("1.5", ',').offset == 1);
+}
+
+TEST_CASE("the sign of an exponent is one character, and underflow and overflow know their side") {
+  for (const char* text : {"1e-5", "1e+5", "1E5", "2.5e-3"})
+    CHECK(read_cell(text, '.').number == reference(text));
+  CHECK(read_cell("0.0001e-330", '.').number == 0);
+  CHECK(read_cell("1000000e-330", '.').number == 0);
+  CHECK(read_cell("0.0001e400", '.').kind == Cell::out_of_range);
+  CHECK(read_cell("123456789e305", '.').kind == Cell::out_of_range);
+}
+
 TEST_CASE("a literal of 800 digits is rounded once") {
   // 2^-1 + 2^-54 exactly halfway, then one digit 700 places later that breaks the tie upwards.
   const std::string half = "0.500000000000000055511151231257827021181583404541015625";
@@ -200,6 +249,8 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(stamp("9223372036854775807", 1) == INT64_MAX);
   CHECK(stamp("-9223372036854775808", 1) == INT64_MIN);
   CHECK(stamp("1.5", 60000000000) == 90000000000);
+  // 27 digits of hours are more than 128 bits hold in nanoseconds.
+  CHECK(stamp("0.123456789012345678901234567", 3600000000000) == 444444440444);
   std::int64_t ns = 0;
   std::size_t offset = 0;
   CHECK(read_stamp("9223372036854775808", '.', 1, ns, offset) == StampFault::out_of_range);
@@ -210,4 +261,13 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(read_stamp("12:30", '.', 1, ns, offset) == StampFault::malformed);
   CHECK(read_stamp("1e", '.', 1, ns, offset) == StampFault::malformed);
   CHECK(read_stamp("-", '.', 1, ns, offset) == StampFault::malformed);
+  // Found by fuzzing: two signs in an exponent, and text behind an exponent that nothing can have.
+  for (const char* text : {"1e+-5", "1e++5", "0e99999x", "1e99999x", "0e-99999 "}) {
+    INFO(text);
+    CHECK(read_stamp(text, '.', 1000000000, ns, offset) == StampFault::malformed);
+  }
+  ns = 1;
+  CHECK(read_stamp("0e99999", '.', 1, ns, offset) == StampFault::none);
+  CHECK(ns == 0);
+  CHECK(read_stamp("1e99999", '.', 1, ns, offset) == StampFault::out_of_range);
 }

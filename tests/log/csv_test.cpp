@@ -154,6 +154,11 @@ TEST_CASE("the time column and its unit") {
   CHECK(
       failure("time,x\n2024-01-01T00:00:00,1\n").find("log.csv:2:1: error E0321: calendar dates") ==
       0);
+  for (const char* clock : {"12:30:01", "2024/01/01", "2024-01-01"})
+    CHECK_THAT(failure("time,x\n" + std::string(clock) + ",1\n"), Catch::Contains("calendar"));
+  for (const char* text : {"node-07x", "20a4-01-01", "1x:30:01", "12:a0:01", "2024-x1-01"})
+    CHECK_THAT(failure("time,x\n" + std::string(text) + ",1\n"),
+               !Catch::Contains("calendar") && Catch::Contains("error"));
 }
 
 TEST_CASE("channels are selected by name, in file order, and nothing else is parsed") {

@@ -51,6 +51,16 @@ TEST_CASE("missing rows become missing samples, never values") {
   CHECK(r.samples[0][2999] == 2991);
 }
 
+TEST_CASE("the scatter of the stamps is said in per cent of the interval") {
+  // Offsets 0, +a, -a in turn: the median of |offset| is a, so the robust deviation is 1.4826 a.
+  std::vector<std::int64_t> t;
+  for (int i = 0; i < 3000; ++i)
+    t.push_back(10000 * i + (i % 3 == 1 ? 3000 : i % 3 == 2 ? -3000 : 0));
+  const Recording r = read_text(log_of(t));
+  REQUIRE(count(r, "jitter") == 1);
+  CHECK_THAT(r.info.warnings.find("jitter")->message, Catch::Contains("scatter by 44 %"));
+}
+
 TEST_CASE("the rate is exact in spite of jitter, drifts of the first rows and outliers") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 300);

@@ -4,12 +4,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/log/binary/npy_header.hpp"
+#include "libchar/log/detail/format.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/rows.hpp"
 #include "tests/support/shared.hpp"
@@ -51,6 +53,50 @@ std::string fault_of(const std::string& literal) {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "64-bit integers are said to be rounded where a double does not hold them, and only there") {
+  const auto rounded = [](const std::vector<std::uint64_t>& values, const char* type) {
+    const test::TemporaryFolder folder;
+    const std::string path = (folder / "a.npy").string();
+    const std::string literal = "{'descr': '" + std::string(type) +
+                                "', 'fortran_order': False, 'shape': (" +
+                                std::to_string(values.size()) + ",), }\n";
+    std::string data(values.size() * 8, '\0');
+    std::memcpy(data.data(), values.data(), data.size());
+    std::ofstream(path, std::ios::binary) << npy(literal, data);
+    const test::Rows rows = test::read_rows("npy", path);
+    const Warning* warning = rows.warnings.find("rounded_integer");
+    return warning == nullptr ? 0 : warning->count;
+  };
+  const std::uint64_t one = 1, edge = one << 53U;
+  CHECK(rounded({edge - 1, edge, edge + 2, one << 62U, (one << 62U) + (one << 10U)}, "<i8") == 0);
+  CHECK(rounded({edge + 1, (one << 62U) + 1, (one << 63U) - 1}, "<i8") == 3);
+  CHECK(rounded({one << 63U, ~one + 1}, "<i8") == 0);  // the least, and -2
+  CHECK(rounded({(one << 63U) + 1}, "<i8") == 1);
+  CHECK(rounded({one << 63U, (one << 63U) + (one << 11U)}, "<u8") == 0);
+  CHECK(rounded({(one << 63U) + 1, ~std::uint64_t{0}}, "<u8") == 2);
+}
+
+TEST_CASE("a file that becomes shorter while it is read is told with the byte where it ends") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.npy").string();
+  const std::string literal = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000,), }\n";
+  std::ofstream(path, std::ios::binary) << npy(literal, std::string(8000, '\0'));
+  ReadOptions options;
+  options.block_bytes = 800;
+  const auto source = find_format("npy")->open(path, options);
+  std::filesystem::resize_file(path, 10 + literal.size() + 4001);
+  RowBlock block;
+  Warnings warnings;
+  const std::string end = "(byte " + std::to_string(10 + literal.size() + 4001) + ")";
+  CHECK_THROWS_WITH(
+      ([&] {
+        while (source->next(block, warnings)) {
+        }
+      })(),
+      Catch::Contains(end) && Catch::Contains("E0104") && Catch::Contains("became shorter"));
+}
 
 TEST_CASE("C order, Fortran order, byte order and header version change nothing") {
   const std::vector<ColumnValues> expected = {
@@ -249,10 +295,11 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
     return test::read_rows("npy", folder / "t.npy");
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto got = write({0, 1, nan, 2, 0.2, 3});
-  CHECK(got.time_ns == std::vector<std::int64_t>{0, 200'000'000});
-  CHECK(got.columns[0] == ColumnValues{1, 3});
-  CHECK(got.warnings.find("missing_timestamp")->count == 1);
+  CHECK(write({0, 1, 0.1, 2, 0.2, 3}).time_ns ==
+        std::vector<std::int64_t>{0, 100'000'000, 200'000'000});
+  CHECK_THROWS_WITH(write({0, 1, nan, 2, 0.2, 3}),
+                    Catch::Contains("E0313") && Catch::Contains("missing time stamp") &&
+                        Catch::Contains("row 1"));
   CHECK_THROWS_WITH(write({0, 1, 1e10, 2}),
                     Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));
 }

@@ -1,5 +1,7 @@
 #include "libchar/log/quality.hpp"
 
+#include <malloc.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -70,6 +72,39 @@ TEST_CASE("mean and spread agree with the moments of the core, whatever the offs
     CHECK(q.minimum == m.minimum());
     CHECK(q.maximum == m.maximum());
   }
+}
+
+TEST_CASE("the kurtosis of the differences is that of their definition, with a drift as well") {
+  std::mt19937_64 random(5);
+  std::exponential_distribution<double> skewed(1);
+  for (const double drift : {0.0, 3.0}) {
+    std::vector<double> x = {100};
+    for (int i = 0; i < 5000; ++i) x.push_back(x.back() + drift + skewed(random));
+    long double mean = 0, second = 0, fourth = 0;
+    const auto n = static_cast<long double>(x.size() - 1);
+    for (std::size_t i = 1; i < x.size(); ++i) mean += (x[i] - x[i - 1]) / n;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      const long double d = x[i] - x[i - 1] - mean;
+      second += d * d / n;
+      fourth += d * d * d * d / n;
+    }
+    CHECK(meter(x).difference_kurtosis ==
+          Approx(static_cast<double>(fourth / (second * second))).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a counter is said to be one from 63 steps on, and not behind a block of noise") {
+  const auto rising = [](std::size_t n) {
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = 5 * static_cast<double>(i);
+    return x;
+  };
+  CHECK_FALSE(suggests(meter(rising(63)), "counter"));
+  CHECK(suggests(meter(rising(64)), "rises by 5 with every sample"));
+  auto noisy = gaussian(3000, 1);
+  const auto ramp = rising(20000);
+  noisy.insert(noisy.end(), ramp.begin(), ramp.end());
+  CHECK_FALSE(suggests(meter(noisy), "counter"));
 }
 
 TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {
@@ -180,4 +215,34 @@ TEST_CASE("clocks, counters and sawteeth are named, noise and slow signals are n
   CHECK(counter_of([](double t) { return std::sin(0.01 * t); }).empty());
   CHECK(counter_of([](double) { return 3.0; }).empty());
   CHECK(counter_of([](double t) { return t < 5000 ? 0.0 : 1.0; }).empty());
+}
+
+TEST_CASE("a quality meter of a few samples takes little memory") {
+  if (::mallinfo2().uordblks == 0) return;  // a heap that is not glibc's (sanitizers)
+  constexpr std::size_t kMeters = 1000;
+  const std::size_t before = ::mallinfo2().uordblks;
+  std::vector<QualityMeter> meters(kMeters);
+  for (QualityMeter& meter : meters) meter.push(std::vector<double>{1, 2.5, 4});
+  const std::size_t each = (::mallinfo2().uordblks - before) / kMeters;
+  CHECK(each <= 2048);
+  CHECK(meters.front().finish().distinct_values == 3);
+}
+
+TEST_CASE("quality does not depend on the sizes of blocks, from one sample to thousands") {
+  std::vector<double> x = gaussian(20000, 1);
+  for (std::size_t i = 0; i < x.size(); i += 777) x[i] = std::nan("");
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(x[i] * 500) / 500;
+  const ChannelQuality whole = meter(x);
+  for (const std::size_t block : {1U, 7U, 300U, 2048U, 5000U}) {
+    QualityMeter m;
+    for (std::size_t i = 0; i < x.size(); i += block)
+      m.push(std::span(x).subspan(i, std::min(block, x.size() - i)));
+    const ChannelQuality parts = m.finish();
+    CHECK(parts.mean == whole.mean);
+    CHECK(parts.standard_deviation == whole.standard_deviation);
+    CHECK(parts.distinct_values == whole.distinct_values);
+    CHECK(parts.resolution == whole.resolution);
+    CHECK(parts.missing == whole.missing);
+    CHECK(parts.difference_kurtosis == whole.difference_kurtosis);
+  }
 }

@@ -451,3 +451,23 @@ TEST_CASE("fuse: deviations of simulated sensors hold their errors") {
     CHECK(std::sqrt(sum / count) == Approx(1).margin(0.06));
   }
 }
+
+TEST_CASE("fuse: the noise of hundreds of sensors is told in closed form, sensor by sensor") {
+  test::Gaussian gauss(7);
+  const Eigen::Index n = 100, instants = 3000;
+  StepNoiseMeter meter(Eigen::MatrixXd::Ones(n, 1), instants);
+  Eigen::MatrixXd y(n, instants);
+  for (Eigen::Index k = 0; k < instants; ++k) {
+    const double common = 10 * gauss();
+    for (Eigen::Index i = 0; i < n; ++i) y(i, k) = common + (i % 2 == 0 ? 1 : 3) * gauss();
+  }
+  meter.push(y);
+  REQUIRE(meter.identifiable());
+  const auto found = meter.result();
+  REQUIRE(found.size() == static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    REQUIRE(found[static_cast<std::size_t>(i)]);
+    CHECK(found[static_cast<std::size_t>(i)]->log_variance ==
+          Approx(std::log(i % 2 == 0 ? 1.0 : 9.0)).margin(0.35));
+  }
+}

@@ -128,7 +128,7 @@ TEST_CASE("scene: what is written reads back to the same scene") {
                     "takens, neighbours: 12}, mean]\n",
         kSceneHead +
             "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
-            "rate_hz: 1e300, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
+            "rate_hz: 1e12, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
             "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
             "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
     const Scene s = bench.read(text);

@@ -154,3 +154,14 @@ TEST_CASE("sensor array: parts that do not fit together are refused") {
   s.truth[0].kind = "derivative";
   CHECK_FALSE(refusal(s).empty());
 }
+
+TEST_CASE("sensor array: noise that is renewed thousands of times between two samples is refused") {
+  ArraySimulation s = three_sensors(10);
+  s.sensors[1].model.white_hold_s = 1e-15;
+  CHECK(refusal(s).find("E0554") != std::string::npos);
+  CHECK(refusal(s).find("sensor b: white_hold_s of 1e-15 s") != std::string::npos);
+  s.sensors[1].model.white_hold_s = 1e-4;
+  CHECK(refusal(s).empty());
+  s.sensors[2].model.flicker_hold_s = 1e-9;
+  CHECK(refusal(s).find("sensor c: flicker_hold_s") != std::string::npos);
+}

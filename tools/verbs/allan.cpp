@@ -57,6 +57,7 @@ Json as_json(const Session& session, const Characterization& result) {
 }
 
 void run_allan(Session& session, const AllanVerb& verb) {
+  foresee_output(verb.output, {verb.log}, verb.force);
   CharacterizeOptions options = finish(verb.analysis);
   options.wanted = {.quality = false, .allan = true, .spectrum = false, .fit = false};
   options.fit.second_opinion = false;
@@ -84,7 +85,6 @@ void run_allan(Session& session, const AllanVerb& verb) {
   if (verb.output.empty()) {
     print(text);
   } else {
-    refuse_same_file(verb.log, verb.output);
     write_whole_file(verb.output, text, verb.force);
   }
 }

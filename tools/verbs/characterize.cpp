@@ -116,6 +116,7 @@ void run_one_by_one(Session& session,
     const fs::path folder = folder_for(verb, log, taken);
     const std::vector<OutputFile> outputs = report_files(view, folder);
     const auto removed = write_outputs(outputs, folder, inputs_of(verb), verb.force);
+    session.wrote = true;
     if (verb.json) {
       documents.push_back(json_report(view));
       continue;
@@ -133,7 +134,8 @@ struct FolderOutputs {
 };
 
 /// Nothing is written before all of it can be. What was removed from the last of them.
-std::vector<std::string> write_folders(const CharacterizeVerb& verb,
+std::vector<std::string> write_folders(Session& session,
+                                       const CharacterizeVerb& verb,
                                        const std::vector<FolderOutputs>& all) {
   const std::vector<std::string> inputs = inputs_of(verb);
   for (const FolderOutputs& one : all) {
@@ -142,8 +144,10 @@ std::vector<std::string> write_folders(const CharacterizeVerb& verb,
     check_outputs(paths, one.folder, inputs, verb.force);
   }
   std::vector<std::string> removed;
-  for (const FolderOutputs& one : all)
+  for (const FolderOutputs& one : all) {
     removed = write_outputs(one.files, one.folder, inputs, verb.force);
+    session.wrote = true;
+  }
   return removed;
 }
 
@@ -194,7 +198,7 @@ void run_pooled(Session& session,
   RunsReport report{results, &pooled, judged ? &*judged : nullptr, {}, session.command};
   std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
   all.push_back({verb.folder, runs_files(report, verb.folder)});
-  const auto removed = write_folders(verb, all);
+  const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
   print_text(runs_text(report));
   say_written(all.back().files, removed);
@@ -212,12 +216,29 @@ void run_lot(Session& session,
   LotReport report{results, &lot, {}, session.command};
   std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
   all.push_back({verb.folder, lot_files(report, verb.folder)});
-  const auto removed = write_folders(verb, all);
+  const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(lot_json(report)));
   print_text(lot_text(report));
   for (const Characterization& result : results)
     if (result.limits) print_text("\n" + printable(result.log.file) + limits_text(*result.limits));
   say_written(all.back().files, removed);
+}
+
+/// The files whose names are known before the logs are read.
+void foresee_reports(const CharacterizeVerb& verb) {
+  std::set<std::string> taken;
+  const auto foresee = [&](const fs::path& folder, std::initializer_list<const char*> names) {
+    std::vector<std::string> paths;
+    for (const char* name : names) paths.push_back((folder / name).string());
+    foresee_outputs(paths, folder, inputs_of(verb), verb.force);
+  };
+  for (const std::string& log : verb.logs)
+    foresee(verb.pool || verb.lot
+                ? fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken)
+                : folder_for(verb, log, taken),
+            {"report.html", "report.json", "curves.csv"});
+  if (verb.pool) foresee(verb.folder, {"runs.html", "runs.json"});
+  if (verb.lot) foresee(verb.folder, {"lot.html", "lot.json"});
 }
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
@@ -248,7 +269,9 @@ void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
 void run_characterize(Session& session, const CharacterizeVerb& verb) {
   const CharacterizeOptions options = finish(verb.analysis);
   if (verb.pool && verb.logs.size() < 2)
-    throw Error({ErrorKind::usage, "", "--pool", "needs two runs of the sensor at least", "", ""});
+    throw Error(
+        {ErrorKind::usage, "E0205", "--pool", "needs two runs of the sensor at least", "", ""});
+  foresee_reports(verb);
   std::optional<NoiseLimits> limits;
   if (!verb.limits.empty()) limits = read_limits_file(verb.limits);
   Outcome outcome;

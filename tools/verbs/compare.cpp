@@ -70,7 +70,7 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
 void compare_two_characterizations(Session& session, const CompareVerb& verb) {
   if (verb.unlike)
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  "--unlike",
                  "goes with reports of replay, and these are characterizations",
                  "",

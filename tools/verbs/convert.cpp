@@ -93,6 +93,7 @@ void check_paths(const ConvertVerb& verb) {
     for (const char* other : {"", ".json"})
       libchar::refuse_same_file(verb.log + suffix, verb.output + other);
   }
+  libchar::check_log_output(verb.output, write_options(verb.writing));
 }
 
 void run_convert(Session& session, const ConvertVerb& verb) {
@@ -113,8 +114,9 @@ void run_convert(Session& session, const ConvertVerb& verb) {
   libchar::Json files = libchar::Json::array();
   std::string text;
   for (const std::string& file : writer.files()) {
+    std::error_code ignored;
     const auto bytes =
-        std::filesystem::is_regular_file(file) ? std::filesystem::file_size(file) : 0;
+        libchar::writes_through(file) ? 0 : std::filesystem::file_size(file, ignored);
     files.push_back({{"path", libchar::printable(file)}, {"bytes", bytes}});
     text += text.empty()
                 ? fmt::format("{}: {} rows, {} channel{}, {} bytes\n",
@@ -125,7 +127,7 @@ void run_convert(Session& session, const ConvertVerb& verb) {
                               bytes)
                 : fmt::format("{}: its sidecar, {} bytes\n", libchar::printable(file), bytes);
   }
-  if (!verb.json) return print(text);
+  if (!verb.json) return print_summary(session, verb.output, text);
   libchar::Json document = document_head(session, "convert", {&info});
   document["output"] = files;
   document["rows"] = info.samples;

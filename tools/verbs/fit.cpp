@@ -17,7 +17,9 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/log/channel_names.hpp"
 #include "libchar/log/formats.hpp"
+#include "libchar/log/read.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/fit_text.hpp"
 #include "reading_options.hpp"
@@ -69,7 +71,7 @@ Table unnamed_table(Session& session, const FitVerb& verb, ReadOptions reading) 
   const Recording read = read_recording(verb.input, reading, session.terminal);
   if (read.samples.size() < 2)
     throw Error({ErrorKind::input,
-                 "",
+                 "E0803",
                  verb.input,
                  "a curve needs two columns: averaging time or frequency, and values",
                  "",
@@ -104,7 +106,7 @@ Table named_table(const FitVerb& verb,
   }
   if (table.curves.empty())
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0320",
                  verb.input,
                  "no curve of this name",
                  wanted.front(),
@@ -139,17 +141,32 @@ std::string obtained_from(const FitVerb& verb) {
                                  : "fit of a spectrum";
 }
 
+std::string model_path(const FitVerb& verb, const Channel& channel, std::set<std::string>& taken) {
+  const std::string name = unused_file_name_for(channel.name, taken) + ".sensor.yaml";
+  return (std::filesystem::path(verb.models) / name).string();
+}
+
 // One sensor model a channel; all are written before the first gets its name.
 void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
   std::vector<OutputFile> models;
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
-    const std::string name = unused_file_name_for(c.channel.name, taken) + ".sensor.yaml";
     models.push_back(
-        {(std::filesystem::path(verb.models) / name).string(),
+        {model_path(verb, c.channel, taken),
          model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log))});
   }
   write_outputs(models, verb.models, {verb.input}, verb.force);
+}
+
+// Models that are in the way are told before the log is analysed, where its channels can be looked up.
+void foresee_models(const FitVerb& verb) {
+  std::vector<std::string> models;
+  if (verb.curve == "none" && !read_once(verb.input)) {
+    std::set<std::string> taken;
+    for (const Channel& channel : read_log_head(verb.input, verb.analysis.options.reading).channels)
+      models.push_back(model_path(verb, channel, taken));
+  }
+  foresee_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
 // A curve has neither samples nor times.
@@ -159,7 +176,7 @@ void refuse_with_curve(const FitVerb& verb) {
   const bool still = o.still.search || o.still.stretch_s;
   if (still || !o.temperature.empty())
     throw Error({ErrorKind::usage,
-                 "",
+                 "E0205",
                  still ? "--still" : "--temperature",
                  "goes with a recording, not with --curve",
                  "",
@@ -168,6 +185,8 @@ void refuse_with_curve(const FitVerb& verb) {
 
 void run_fit(Session& session, const FitVerb& verb) {
   refuse_with_curve(verb);
+  foresee_output(verb.output, {verb.input}, verb.force);
+  if (!verb.models.empty()) foresee_models(verb);
   LogInfo log;
   const std::vector<ChannelFit> fits =
       verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
@@ -198,7 +217,6 @@ void run_fit(Session& session, const FitVerb& verb) {
   if (verb.output.empty()) {
     print(text);
   } else {
-    refuse_same_file(verb.input, verb.output);
     write_whole_file(verb.output, text, verb.force);
   }
   if (!verb.models.empty()) write_models(verb, fits, log);

@@ -43,6 +43,7 @@ void run_fuse(Session& session, FuseVerb& verb) {
   const libchar::LearntFusion learnt = libchar::read_fusion_file(verb.with);
   for (const std::string& input : {verb.log, learnt.file})
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
+  libchar::check_log_output(verb.output, write_options(verb.writing));
   libchar::FusedWriter writer(verb.output, write_options(verb.writing));
   const libchar::FuseResult result =
       libchar::fuse(verb.log, learnt, writer, verb.options, session.terminal);
@@ -54,8 +55,8 @@ void run_fuse(Session& session, FuseVerb& verb) {
   session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
   const std::vector<std::string> files = writer.finish();
   for (const std::string& loss : writer.losses()) session.terminal.note("not kept: " + loss);
-  print(verb.json ? libchar::dump_json(libchar::fuse_json(result, session.command, files))
-                  : libchar::fuse_text(result, files));
+  if (!verb.json) return print_summary(session, verb.output, libchar::fuse_text(result, files));
+  print(libchar::dump_json(libchar::fuse_json(result, session.command, files)));
 }
 
 std::function<void()> fuse_options(VerbOptions& options, Session& session) {

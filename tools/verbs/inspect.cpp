@@ -46,8 +46,11 @@ void run_inspect(Session& session, const InspectVerb& verb) {
     inspections.push_back(libchar::inspect(log, verb.reading, session.terminal));
     session.terminal.clear();
     const libchar::LogInfo& info = inspections.back().info;
+    if (verb.json) {  // else they stand among the results
+      report_warnings(session, info);
+      continue;
+    }
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
-    if (verb.json) continue;
     print_text((inspections.size() > 1 ? "\n" : "") + libchar::inspection_text(inspections.back()));
     print(next_command(verb, info));
   }

@@ -93,7 +93,6 @@ void print_targets(const Session& session, bool json) {
 
 void deliver(const ModelVerb& verb, const std::string& text) {
   if (verb.output.empty()) return print(text);
-  for (const std::string& file : verb.files) refuse_same_file(file, verb.output);
   write_whole_file(verb.output, text, verb.force);
 }
 
@@ -139,6 +138,7 @@ void run_model(Session& session, ModelVerb& verb) {
                  "FILE is required",
                  "",
                  "sensorchar model --list names the targets"});
+  foresee_output(verb.output, verb.files, verb.force);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);
   run_export(session, verb);

@@ -64,7 +64,7 @@ bool segment_given(const PsdVerb& verb) {
 void check_rate(const LogInfo& info) {
   if (info.time.rate_hz > 0) return;
   throw Error({ErrorKind::numeric,
-               "",
+               "E0402",
                info.file,
                "the sampling rate is not known",
                "",
@@ -207,17 +207,17 @@ Json as_json(const Session& session, const PsdVerb& verb, const Result& result) 
 
 void write_result(const PsdVerb& verb, const std::string& text) {
   if (verb.output.empty()) return print(text);
-  refuse_same_file(verb.log, verb.output);
   write_whole_file(verb.output, text, verb.force);
 }
 
 void run_psd(Session& session, const PsdVerb& verb) {
+  foresee_output(verb.output, {verb.log}, verb.force);
   Result result = segment_given(verb) ? streamed(session, verb) : whole(session, verb);
   session.terminal.clear();
   report_warnings(session, result.info);
   if (result.channels.empty())
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0715",
                  verb.log,
                  "no channel gives a spectrum",
                  "",

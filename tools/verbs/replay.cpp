@@ -110,7 +110,10 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
 
 // A folder that a failing run has made goes again.
 struct MadeFolder {
-  explicit MadeFolder(const fs::path& folder) : path(folder), old(fs::exists(folder)) {}
+  explicit MadeFolder(const fs::path& folder) : path(folder) {
+    std::error_code ignored;
+    old = fs::status(folder, ignored).type() != fs::file_type::not_found;
+  }
   MadeFolder(const MadeFolder&) = delete;
   MadeFolder& operator=(const MadeFolder&) = delete;
   ~MadeFolder() {
@@ -118,7 +121,7 @@ struct MadeFolder {
     if (!old && fs::is_empty(path, ignored)) fs::remove(path, ignored);
   }
   fs::path path;
-  bool old;
+  bool old = false;
 };
 
 ReplayOptions options_of(const ReplayVerb& verb) {
@@ -191,7 +194,7 @@ void run_and_report(Session& session,
                                      {files[1], ""},
                                      {files[2], replay_markdown(view)},
                                      {files[3], fusion_yaml(result.learnt)}};
-  document["files"] = file_names(outputs);
+  name_files(document, outputs);
   if (estimates)
     for (const std::string& file : estimates->files())
       document["files"].push_back(fs::path(file).filename().string());

@@ -151,13 +151,21 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
 // Where log and scene go; neither is an input.
 void place_outputs(SimulateVerb& verb, const Scene& scene) {
   if (verb.output.empty()) refuse_simulate("--output", "is required", "", "-o LOG");
+  const bool scene_given = !verb.scene_path.empty();
   if (verb.scene_path.empty())
     verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
+  if (!verb.no_scene && !scene_given && writes_through(verb.output))
+    refuse_simulate("--output",
+                    "beside a pipe or device there is no place for a scene",
+                    verb.output,
+                    "--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
   if (!verb.no_scene) outputs.push_back(verb.scene_path);
   for (const std::string& source : verb.sources)
     for (const std::string& output : outputs) refuse_same_file(source, output);
   refuse_scene_outputs(scene, outputs);
+  check_log_output(verb.output, write_options(verb.writing));
+  if (!verb.no_scene) check_output(verb.scene_path, verb.writing.options.overwrite);
 }
 
 // The scene that `simulate` wrote beside a log makes the log again; the scene stands already.
@@ -253,7 +261,7 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   for (const std::string& source : verb.sources) read.push_back(document_info(source));
   for (const LogInfo& one : read) inputs.push_back(&one);
   const SimulationSummary summary = write_recording(session, verb, simulation, scene);
-  if (!verb.json) return print_text(simulation_text(summary));
+  if (!verb.json) return print_summary(session, verb.output, simulation_text(summary));
   Json document = document_head(session, "simulation", inputs);
   document.update(simulation_json(summary));
   print(dump_json(document));

@@ -48,8 +48,8 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
   for (const double tau : taus) {
     if (!(tau > 0) || !std::isfinite(tau))
       throw Error({ErrorKind::usage,
-                   "",
-                   "",
+                   "E0201",
+                   "`taus_s`",
                    "an averaging time must be a positive number of seconds",
                    shortest(tau),
                    ""});

@@ -73,8 +73,12 @@ void check_files(std::span<const Characterization> runs) {
 
 void check_runs(std::span<const Characterization> runs) {
   if (runs.size() < 2)
-    throw Error(
-        {ErrorKind::usage, "", "", "one recording is not several runs", "", "name two at least"});
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "",
+                 "one recording is not several runs",
+                 "",
+                 "name two at least"});
   check_files(runs);
   const Characterization& first = runs[0];
   for (const Characterization& run : runs) {

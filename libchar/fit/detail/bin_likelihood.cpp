@@ -26,7 +26,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   problem.unit.resize(n, static_cast<int>(kTerms));
   if (bins.empty())
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0401",
                  "",
                  "the record is too short: no frequency is left to be fitted",
                  "",
@@ -35,7 +35,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   if (!(largest > 0) || !std::isfinite(largest)) {
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0412",
                  "",
                  "the record is constant or not finite: there is no noise to fit",
                  "",

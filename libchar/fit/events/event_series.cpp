@@ -87,7 +87,7 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::uin
   while (!series.value.empty() && std::isnan(series.value.back())) series.value.pop_back();
   if (series.value.size() < kFewest)
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0401",
                  "",
                  "too few samples to look for steps and drifts",
                  std::to_string(record.size()) + " samples",

@@ -50,6 +50,10 @@ struct BlindCalibration {
              "1: the noise is taken off the diagonal of the covariance",
              true}};
   BlindCalibration(const Array& array, const Settings& settings);
+  static double cost_ns(const Array& array, const Settings&) {
+    const auto n = static_cast<double>(array.channels);
+    return 10 * n + n * n;
+  }
   Estimate step(const Sample& y);
   /// Of the samples as they come: a_i / n.
   Eigen::MatrixXd weights() const {

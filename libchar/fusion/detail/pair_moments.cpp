@@ -13,30 +13,30 @@ PairMoments::PairMoments(Eigen::Index n, double gamma, bool about_zero)
 
 void PairMoments::update(const double* y, const int* index, int m) {
   const double gain = 1 - gamma_;
-  // index rises, so j < i: the lower triangle.
+  // index rises, so j < i: the upper triangle, in which neighbours of a row's pairs stand side by side.
   for (int a = 1; a < m; ++a) {
     const int i = index[a];
     for (int b = 0; b < a; ++b) {
       const int j = index[b];
       const double d = y[i] - y[j];
       if (about_zero_) {
-        square_(i, j) = gamma_ * square_(i, j) + gain * d * d;
-      } else if (missing_(i, j) == 1) {
-        mean_(i, j) = d;
+        square_(j, i) = gamma_ * square_(j, i) + gain * d * d;
+      } else if (missing_(j, i) == 1) {
+        mean_(j, i) = d;
       } else {
-        const double delta = d - mean_(i, j);
-        square_(i, j) = gamma_ * (square_(i, j) + gain * delta * delta);
-        mean_(i, j) += gain * delta;
+        const double delta = d - mean_(j, i);
+        square_(j, i) = gamma_ * (square_(j, i) + gain * delta * delta);
+        mean_(j, i) += gain * delta;
       }
-      missing_(i, j) *= gamma_;
+      missing_(j, i) *= gamma_;
     }
   }
 }
 
 double PairMoments::moment(Eigen::Index i, Eigen::Index j) const {
   const Eigen::Index low = std::min(i, j), high = std::max(i, j);
-  const double square = square_(high, low);
-  return about_zero_ && missing_(high, low) < 1 ? square / (1 - missing_(high, low)) : square;
+  const double square = square_(low, high);
+  return about_zero_ && missing_(low, high) < 1 ? square / (1 - missing_(low, high)) : square;
 }
 
 void PairMoments::variances(const int* index, int m, double* v) const {

@@ -17,30 +17,34 @@ namespace {
   throw Error({ErrorKind::input, "E0410", where, std::move(what), "", std::move(hint)});
 }
 
+[[noreturn]] void refuse_shape(const std::string& where, std::string what, std::string hint = "") {
+  throw Error({ErrorKind::input, "E0408", where, std::move(what), "", std::move(hint)});
+}
+
 std::uint64_t product(std::uint64_t a, std::uint64_t b, const std::string& file) {
   std::uint64_t result = 0;
   // Half of the range is left for sums with offsets.
   if (__builtin_mul_overflow(a, b, &result) || result > (std::uint64_t{1} << 62U))
-    refuse_npy(file + " (field shape)", "the shape times the size of a value overflows");
+    refuse_shape(file + " (field shape)", "the shape times the size of a value overflows");
   return result;
 }
 
 std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   const std::string where = file + " (field shape)";
   const std::size_t dimensions = header.shape.size();
-  if (dimensions == 0) refuse_npy(where, "is a single number (0-dimensional), not a log");
+  if (dimensions == 0) refuse_shape(where, "is a single number (0-dimensional), not a log");
   if (dimensions > 2)
-    refuse_npy(
+    refuse_shape(
         where,
         fmt::format("has {} dimensions; 1 (samples) or 2 (rows × channels) are read", dimensions),
         "reshape it: array.reshape(len(array), -1)");
   if (header.structured && dimensions != 1)
-    refuse_npy(where, "a structured array must have one dimension");
+    refuse_shape(where, "a structured array must have one dimension");
   if (header.structured) return 1;
   if (dimensions == 1) return header.fields[0].count;
-  if (header.shape[1] == 0) refuse_npy(where, "has no columns");
+  if (header.shape[1] == 0) refuse_shape(where, "has no columns");
   if (header.shape[1] > kMaxColumns)
-    refuse_npy(
+    refuse_shape(
         where,
         fmt::format("has {} columns, more than the limit of {}", header.shape[1], kMaxColumns),
         "are rows and columns exchanged? save array.T");

@@ -276,7 +276,7 @@ class Literal {
     expect(')');
     if (field.name.empty() && type.starts_with("|V")) return skip_padding(header, type, at);
     for (const NpyField& other : header.fields)
-      if (other.name == field.name) refuse("E0406", "two fields have one name", field.name, at);
+      if (other.name == field.name) refuse("E0307", "two fields have one name", field.name, at);
     if (field.name.empty()) refuse("E0409", "a field has no name", type, at);
     if (field.count == 0) refuse("E0408", "the field holds no number", "", at, field.name);
     field.number = number_type(type, at, field.name);

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <future>
 #include <optional>
+#include <system_error>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/time/time_column.hpp"
 
 namespace libchar {
@@ -54,6 +56,7 @@ class BinaryRows final : public RowSource {
       : file_(std::move(file)),
         layout_(std::move(layout)),
         info_(std::move(info)),
+        overflow_as_missing_(options.overflow_as_missing),
         hash_(options.hash) {
     info_.file = file_->path();
     const TableFront table = front();
@@ -68,6 +71,7 @@ class BinaryRows final : public RowSource {
       info_.channels.push_back({column.name, column.unit, is_integer(column)});
       row_bytes += size_of(column.number.type);
     }
+    missing_per_channel_.assign(values_.size(), 0);
     if (layout_.rows == 0)
       throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples", "", ""});
     if (time) {
@@ -110,12 +114,22 @@ class BinaryRows final : public RowSource {
     if (!layout_.column_major) read_interleaved(block.rows);
     for (std::size_t c = 0; c < values_.size(); ++c)
       read_values(values_[c], block.columns[c], block.rows, warnings);
-    if (time_) read_stamps(block, warnings);
+    if (time_) read_stamps(block);
     next_row_ += rows_in_file_block_;
     bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_
                                        : layout_.data_byte + next_row_ * stride();
     if (next_row_ == layout_.rows) bytes_read_ = bytes_total();
     return true;
+  }
+
+  void finish(Warnings& warnings) override {
+    std::uint64_t count = 0;
+    for (const std::uint64_t n : missing_per_channel_) count += n;
+    if (count == 0) return;
+    const std::string message = missing_cells(info_.channels, missing_per_channel_);
+    for (const std::string& place : missing_places_) warnings.add("missing_cell", message, place);
+    if (count > missing_places_.size())
+      warnings.add("missing_cell", message, "", count - missing_places_.size());
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
@@ -143,18 +157,25 @@ class BinaryRows final : public RowSource {
   // the system has cached.
   void start_hash() {
     if (!hash_ || hashing_.valid()) return;
-    hashing_ = std::async(std::launch::async, [this] {
-      Sha256 sha;
-      std::vector<std::byte> piece(std::size_t{1} << 20U);
-      for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
-        const auto n =
-            static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
-        file_->read(at, std::span(piece).first(n));
-        sha.update({reinterpret_cast<const char*>(piece.data()), n});
-        at += n;
-      }
-      return sha.finish();
-    });
+    const auto hash = [this] { return hash_of_file(); };
+    try {
+      hashing_ = std::async(std::launch::async, hash);
+    } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
+      hashing_ = std::async(std::launch::deferred, hash);
+    }
+  }
+
+  std::string hash_of_file() const {
+    Sha256 sha;
+    std::vector<std::byte> piece(std::size_t{1} << 20U);
+    for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
+      file_->read(at, std::span(piece).first(n));
+      sha.update({reinterpret_cast<const char*>(piece.data()), n});
+      at += n;
+    }
+    return sha.finish();
   }
 
   void read_interleaved(std::size_t rows) {
@@ -187,26 +208,44 @@ class BinaryRows final : public RowSource {
                    fmt::format("{} from row {}", column.name, next_row_),
                    rounded);
     probe_byte_order(wanted, out, warnings);
-    if (is_float(column.number.type)) drop_non_finite(column, out, warnings);
-    if (column.scale != 1)
-      for (double& x : out) x *= column.scale;
-    if (column.offset != 0)
-      for (double& x : out) x += column.offset;
-    if (column.scale != 1 || column.offset != 0) drop_non_finite(column, out, warnings);
+    if (is_float(column.number.type)) drop_non_finite(wanted, out, warnings);
+    if (column.scale != 1 || column.offset != 0) to_unit(column, out, warnings);
+  }
+
+  // number * scale + offset may leave the range of a double at either end, like a number of a text.
+  void to_unit(const BinaryColumn& column, std::vector<double>& out, Warnings& warnings) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double stored = out[i], scaled = stored * column.scale;
+      out[i] = scaled + column.offset;
+      if (scaled == 0 && stored != 0)
+        warnings.add("number_too_small", kNumbersTooSmall, place_of(column, next_row_ + i));
+      if (!std::isinf(out[i])) continue;
+      if (!overflow_as_missing_)
+        throw Error({ErrorKind::input,
+                     "E0312",
+                     fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
+                     "number out of range: with its scale and offset no double can hold it",
+                     shortest(stored),
+                     "`overflow_as_missing` counts it as missing"});
+      warnings.add("number_out_of_range", kNumbersOutOfRange, place_of(column, next_row_ + i));
+      out[i] = kMissing;
+    }
   }
 
   // Infinity is no sample; every NaN becomes the one that means "missing".
-  void drop_non_finite(const BinaryColumn& column,
-                       std::vector<double>& out,
-                       Warnings& warnings) const {
+  void drop_non_finite(const Wanted& wanted, std::vector<double>& out, Warnings& warnings) {
     std::size_t odd = 0;
     for (const double x : out) odd += !(std::abs(x) <= std::numeric_limits<double>::max());
     if (odd == 0) return;
+    const BinaryColumn& column = wanted.column;
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (std::isfinite(out[i])) continue;
-      if (std::isinf(out[i]))
-        warnings.add(
-            "infinite_value", "infinite values count as missing", place_of(column, next_row_ + i));
+      if (std::isinf(out[i])) {
+        warnings.add("infinite_value", kInfiniteValues, place_of(column, next_row_ + i));
+      } else {
+        ++missing_per_channel_[static_cast<std::size_t>(&wanted - values_.data())];
+        if (missing_places_.size() < 3) missing_places_.push_back(place_of(column, next_row_ + i));
+      }
       out[i] = kMissing;
     }
   }
@@ -267,12 +306,12 @@ class BinaryRows final : public RowSource {
                  "is the time unit right? `time_unit` says it"});
   }
 
-  void read_stamps(RowBlock& block, Warnings& warnings) {
+  void read_stamps(RowBlock& block) {
     block.time_ns.resize(block.rows);
     if (const auto whole = whole_stamps(*time_, nanoseconds_))
       read_whole_stamps(*whole, block);
     else
-      read_real_stamps(block, warnings);
+      read_real_stamps(block);
   }
 
   void read_whole_stamps(const WholeStamps& line, RowBlock& block) {
@@ -290,37 +329,24 @@ class BinaryRows final : public RowSource {
     }
   }
 
-  void read_real_stamps(RowBlock& block, Warnings& warnings) {
+  void read_real_stamps(RowBlock& block) {
     const BinaryColumn& column = *time_;
     stamps_.resize(block.rows);
     const std::byte* first = locate(column, block.rows);
     read_numbers(first, static_cast<std::size_t>(column.stride), column.number, stamps_);
     for (std::size_t i = 0; i < block.rows; ++i) {
-      if (!std::isfinite(stamps_[i])) continue;
+      if (std::isnan(stamps_[i]))
+        throw Error({ErrorKind::input,
+                     "E0313",
+                     fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
+                     "missing time stamp",
+                     "nan",
+                     "`time_column` none and `rate_hz` HZ ignore the stamps"});
       stamps_[i] = stamps_[i] * column.scale + column.offset;
-      if (!(std::abs(stamps_[i] * static_cast<double>(nanoseconds_)) < 9.2e18))
-        refuse_stamp(i, stamps_[i]);
+      const double ns = stamps_[i] * static_cast<double>(nanoseconds_);
+      if (!(std::abs(ns) < 9.2e18)) refuse_stamp(i, stamps_[i]);
+      block.time_ns[i] = std::llround(ns);
     }
-    drop_rows_without_stamp(block, warnings);
-    for (std::size_t i = 0; i < block.rows; ++i)
-      block.time_ns[i] = std::llround(stamps_[i] * static_cast<double>(nanoseconds_));
-  }
-
-  void drop_rows_without_stamp(RowBlock& block, Warnings& warnings) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < block.rows; ++i) {
-      if (!std::isfinite(stamps_[i])) {
-        warnings.add("missing_timestamp",
-                     "rows without a time stamp were left out",
-                     place_of(*time_, next_row_ + i));
-        continue;
-      }
-      for (auto& samples : block.columns) samples[kept] = samples[i];
-      stamps_[kept++] = stamps_[i];
-    }
-    block.rows = kept;
-    block.time_ns.resize(kept);
-    for (auto& samples : block.columns) samples.resize(kept);
   }
 
   std::unique_ptr<BinaryFile> file_;
@@ -333,7 +359,9 @@ class BinaryRows final : public RowSource {
   std::uint64_t next_row_ = 0, bytes_read_ = 0;
   std::vector<std::byte> bytes_;
   std::vector<double> stamps_;
-  bool hash_ = true;
+  std::vector<std::uint64_t> missing_per_channel_;
+  std::vector<std::string> missing_places_;
+  bool overflow_as_missing_ = false, hash_ = true;
   std::atomic<bool> stop_ = false;
   std::string digest_;
   std::future<std::string> hashing_;

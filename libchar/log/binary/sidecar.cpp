@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
@@ -14,6 +15,8 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
+#include "libchar/log/reading_fields.hpp"
+#include "libchar/log/time/grid.hpp"
 
 namespace libchar {
 namespace {
@@ -23,6 +26,21 @@ constexpr std::size_t kMaxName = 1024;
 
 constexpr Word kEndians[] = {{"little", 0}, {"big", 1}};
 constexpr Word kOrders[] = {{"interleaved", 0}, {"planar", 1}};
+
+// As MapReader::refuse, with the code of the kind of slip.
+[[noreturn]] void refuse_key(const MapReader& at,
+                             std::string_view key,
+                             std::string code,
+                             const std::string& what,
+                             std::string hint = "") {
+  const Document* const value = at.get(key);
+  throw Error({ErrorKind::input,
+               std::move(code),
+               at.where(value == nullptr ? at.node() : *value),
+               fmt::format("{}: {}", at.path_of(key), what),
+               value == nullptr ? "" : shown(*value),
+               std::move(hint)});
+}
 
 // ---- channels ----
 
@@ -39,25 +57,30 @@ const Fields<SidecarChannel>& channel_rows() {
 }
 
 void check_number(const MapReader& at, std::uint64_t n) {
-  if (n == 0) at.refuse("channels", "there must be at least one channel");
+  if (n == 0) refuse_key(at, "channels", "E0543", "there must be at least one channel");
   if (n > kMaxColumns)
-    at.refuse("channels", fmt::format("{} channels, more than the limit of {}", n, kMaxColumns));
+    refuse_key(at,
+               "channels",
+               "E0543",
+               fmt::format("{} channels, more than the limit of {}", n, kMaxColumns));
 }
 
-void read_channel(const MapReader& at, Sidecar& sidecar) {
+void read_channel(const MapReader& at, std::unordered_set<std::string>& names, Sidecar& sidecar) {
   SidecarChannel channel;
   read_fields(channel_rows(), at, channel);
   if (channel.name.empty() || channel.name.size() > kMaxName)
-    at.refuse("name", fmt::format("expected a name of 1 to {} bytes", kMaxName));
-  for (const SidecarChannel& other : sidecar.channels)
-    if (other.name == channel.name) at.refuse("name", "two channels have one name");
-  if (channel.scale == 0) at.refuse("scale", "a scale of 0 makes every value the same");
+    refuse_key(at, "name", "E0543", fmt::format("expected a name of 1 to {} bytes", kMaxName));
+  if (!names.insert(channel.name).second)
+    refuse_key(at, "name", "E0307", "two channels have one name");
+  if (channel.scale == 0)
+    refuse_key(at, "scale", "E0543", "a scale of 0 makes every value the same");
   sidecar.channels.push_back(std::move(channel));
 }
 
 void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const Document* const node = at.get(key);
-  if (node == nullptr) at.refuse(key, "the key is missing", "such as " + minimal_sidecar());
+  if (node == nullptr)
+    refuse_key(at, key, "E0542", "the key is missing", "such as " + minimal_sidecar());
   if (node->kind == Document::Kind::number && node->whole && node->number >= 0) {
     const std::uint64_t n = at.count(key);
     check_number(at, n);
@@ -66,15 +89,20 @@ void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) 
     return;
   }
   if (node->kind != Document::Kind::list)
-    at.refuse(key, "expected a number of channels, or a list of {name, unit, scale, offset}");
-  if (node->list.empty()) at.refuse(key, "the list is empty");
+    refuse_key(at,
+               key,
+               node->kind == Document::Kind::number && node->whole ? "E0543" : "E0541",
+               "expected a number of channels, or a list of {name, unit, scale, offset}");
+  if (node->list.empty()) refuse_key(at, key, "E0543", "the list is empty");
   check_number(at, node->list.size());
   sidecar.named = true;
+  std::unordered_set<std::string> names;
   for (std::size_t i = 0; i < node->list.size(); ++i)
     read_channel(MapReader(node->list[i],
                            at.file(),
                            fmt::format("{}[{}]", at.path_of(key), i),
                            keys_of(channel_rows())),
+                 names,
                  sidecar);
 }
 
@@ -95,7 +123,8 @@ void write_channels(const Field& row, const Sidecar& sidecar, std::vector<Entry>
 // ---- the file ----
 
 void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
-  if (!at.has(key)) at.refuse(key, "the key is missing", "such as " + minimal_sidecar());
+  if (!at.has(key))
+    refuse_key(at, key, "E0542", "the key is missing", "such as " + minimal_sidecar());
   const std::string got = at.text(key);
   const auto type = find_number_type(got);
   if (type && *type != NumberType::f16) {
@@ -107,9 +136,11 @@ void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const std::vector<std::string> names = {
       "f64", "f32", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"};
   const auto near = nearest(lower, names);
-  at.refuse(key,
-            fmt::format("expected one of {}", fmt::join(names, ", ")),
-            near ? fmt::format("did you mean {}?", *near) : "");
+  refuse_key(at,
+             key,
+             "E0544",
+             fmt::format("expected one of {}", fmt::join(names, ", ")),
+             near ? fmt::format("did you mean {}?", *near) : "");
 }
 
 void write_type(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {
@@ -120,9 +151,11 @@ void read_offset(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const Document* const node = at.get(key);
   if (node == nullptr) return;
   if (node->kind != Document::Kind::number || !node->whole || node->number < 0)
-    at.refuse(key,
-              "expected the number of bytes to skip, a whole number not below 0",
-              "the offset of a channel's values stands within channels");
+    refuse_key(at,
+               key,
+               "E0541",
+               "expected the number of bytes to skip, a whole number not below 0",
+               "the offset of a channel's values stands within channels");
   sidecar.offset = at.count(key);
 }
 
@@ -130,12 +163,25 @@ void write_offset(const Field& row, const Sidecar& sidecar, std::vector<Entry>& 
   out.push_back({std::string(row.key), sidecar.offset});
 }
 
+// As a stamp of the log: room is left for sums and differences in 64 bits.
+void read_start(const MapReader& at, std::string_view key, Sidecar& sidecar) {
+  if (!at.has(key)) return;
+  const std::int64_t start = at.whole(key);
+  if (start >= kMostNs || start <= -kMostNs)
+    refuse_key(at, key, "E0543", "expected a time within 146 years (2^62 ns) of zero");
+  sidecar.t0_ns = start;
+}
+
+void write_start(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {
+  if (sidecar.t0_ns) out.push_back({std::string(row.key), *sidecar.t0_ns});
+}
+
 Sidecar sidecar_of(const Document& document, const std::string& file) {
   const MapReader at(document, file, "", keys_of(sidecar_fields()));
   Sidecar sidecar;
   read_fields(sidecar_fields(), at, sidecar);
   if (!at.has("endian") && size_of(sidecar.number.type) > 1)
-    at.refuse("endian", "the key is missing", "little or big; a PC writes little");
+    refuse_key(at, "endian", "E0542", "the key is missing", "little or big; a PC writes little");
   return sidecar;
 }
 
@@ -162,15 +208,15 @@ const Fields<Sidecar>& sidecar_fields() {
           "channels",
           "a number, or a list of `{name, unit, scale, offset}`",
           {.meaning = "value = raw · scale + offset", .otherwise = "needed; scale 1, offset 0"}),
-      field<&Sidecar::rate_hz>(
-          "rate_hz", {.unit = "Hz", .range = {1e-9, 1e12, false}, .meaning = "sampling rate"}),
+      field<&Sidecar::rate_hz>("rate_hz",
+                               {.unit = "Hz", .range = kRates, .meaning = "sampling rate"}),
       custom<Sidecar, read_offset, write_offset>(
           "offset", "bytes", {.meaning = "skipped before the first value", .otherwise = "0"}),
       field<&Sidecar::rows>("rows",
                             {.range = {1, std::numeric_limits<double>::max(), false},
                              .meaning = "instants",
                              .otherwise = "what the file holds"}),
-      field<&Sidecar::t0_ns>("t0_ns", {.unit = "ns", .meaning = "time of the first row"}),
+      custom<Sidecar, read_start, write_start>("t0_ns", "ns", {.meaning = "time of the first row"}),
       field<&Sidecar::planar>("order",
                               {.words = kOrders,
                                .meaning = "a row after the other, or a channel after the other",

@@ -11,15 +11,18 @@
 namespace libchar::csv {
 
 ChunkPipeline::ChunkPipeline(ChunkReader& chunks, const Plan& plan, int threads)
-    : chunks_(chunks), plan_(plan), items_(static_cast<std::size_t>(threads) + 2) {
+    : chunks_(chunks),
+      plan_(plan),
+      items_(static_cast<std::size_t>(threads) + 2),
+      free_(items_.size() + 1),
+      done_(items_.size() + 1) {
   for (Item& item : items_) free_.push(&item);
   driver_ = std::thread([this, threads] { drive(threads); });
 }
 
 bool ChunkPipeline::next(ParsedChunk& chunk, std::uint64_t& offset) {
   if (ended_) return false;
-  Item* item = nullptr;
-  done_.pop(item);
+  Item* const item = done_.pop();
   ended_ = item == nullptr || item->last;
   if (item == nullptr) std::rethrow_exception(failure_);
   if (item->failure) std::rethrow_exception(item->failure);
@@ -68,7 +71,7 @@ void ChunkPipeline::run() {
 // The next chunk, as soon as an item is free: so neither the parsed chunks nor those that wait for their hash pile up.
 ChunkPipeline::Item* ChunkPipeline::read(tbb::flow_control& flow) {
   Item* item = nullptr;
-  if (!stop_) free_.pop(item);
+  if (!stop_) item = free_.pop();
   if (item == nullptr || stop_) {
     flow.stop();
     return nullptr;

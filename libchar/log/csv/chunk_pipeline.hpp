@@ -2,12 +2,13 @@
 // Chunks of a CSV file parsed side by side and handed out in file order, with the hash of the file taken in order beside the
 // parsing: a pipeline of TBB that a thread drives ahead of the caller.
 
-#include <tbb/concurrent_queue.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -16,6 +17,37 @@
 #include "libchar/log/csv/rows.hpp"
 
 namespace libchar::csv {
+
+/// A queue between threads that takes all its memory when it is made: where memory runs out, the end of the pipeline must still get
+/// through.
+template <class T>
+class FixedQueue {
+ public:
+  explicit FixedQueue(std::size_t most) : ring_(most) {}
+  /// Never more than `most` at once.
+  void push(T value) {
+    {
+      const std::lock_guard lock(mutex_);
+      ring_[(first_ + count_++) % ring_.size()] = value;
+    }
+    filled_.notify_one();
+  }
+  /// Waits for one.
+  T pop() {
+    std::unique_lock lock(mutex_);
+    filled_.wait(lock, [&] { return count_ > 0; });
+    const T value = ring_[first_];
+    first_ = (first_ + 1) % ring_.size();
+    --count_;
+    return value;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable filled_;
+  std::vector<T> ring_;
+  std::size_t first_ = 0, count_ = 0;
+};
 
 /// `chunks` and `plan` must outlive it.
 class ChunkPipeline {
@@ -50,8 +82,8 @@ class ChunkPipeline {
 
   ChunkReader& chunks_;
   const Plan& plan_;
-  std::vector<Item> items_;  // as many as may be under way or wait for the caller
-  tbb::concurrent_bounded_queue<Item*> free_, done_;  // nullptr in free_: the end is asked for
+  std::vector<Item> items_;        // as many as may be under way or wait for the caller
+  FixedQueue<Item*> free_, done_;  // nullptr in free_: the end is asked for
   std::uint64_t read_ = 0;
   std::atomic<std::uint64_t> hashed_ = 0;
   std::atomic<bool> stop_ = false;

@@ -58,6 +58,10 @@ void refuse_other_content(std::string_view head, const std::string& file) {
     what = "content is compressed (bzip2), not CSV", hint = "unpack it first: bunzip2";
   else if (begins("\xFF\xFE") || begins("\xFE\xFF"))
     what = "content is UTF-16, not UTF-8", hint = "convert it: iconv -f utf-16 -t utf-8";
+  else if (begins("\x89PNG") || begins("\xFF\xD8\xFF"))
+    what = "content is a picture, not CSV";
+  else if (begins("%PDF"))
+    what = "content is PDF, not CSV", hint = "export the table as CSV";
   else if (begins("\x89HDF"))
     what = "content is HDF5, not CSV", hint = "export it as CSV or .npy";
   if (what != nullptr) throw Error({ErrorKind::input, "E0301", at(file, 1, 1, 0), what, "", hint});

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "libchar/log/csv/plan.hpp"
 #include "libchar/log/csv/rows.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 
 namespace libchar {
 namespace csv {
@@ -34,7 +36,6 @@ class CsvSource final : public RowSource {
     dialect_ = understand(head, chunks_.whole(), options, info_);
     plan_ = plan_columns(dialect_, options, info_);
     missing_per_channel_.assign(plan_.channels, 0);
-    words_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
     info_.rows = expected_rows(head);
@@ -46,7 +47,7 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
     const bool small =
         chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
-    if (threads > 1 && !small) pipeline_ = std::make_unique<ChunkPipeline>(chunks_, plan_, threads);
+    if (threads > 1 && !small) read_ahead(threads);
     info_.read_ahead = pipeline_ != nullptr;
   }
   CsvSource(const CsvSource&) = delete;
@@ -73,14 +74,6 @@ class CsvSource final : public RowSource {
     finished_ = true;
     if (pipeline_) pipeline_->stop();
     if (reached_end_) check_account();
-    for (std::size_t c = 0; c < plan_.channels; ++c)
-      if (rows_ > 0 && words_per_channel_[c] == rows_)
-        throw Error({ErrorKind::input,
-                     "E0318",
-                     info_.file,
-                     "column " + info_.channels[c].name + " has no finite value",
-                     "",
-                     "`channels` reads only the columns named there"});
     warnings.merge(std::exchange(pending_, {}));
     add(warnings, "blank_line", "blank lines skipped", blank_);
     add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
@@ -89,25 +82,11 @@ class CsvSource final : public RowSource {
         "mixed_line_ends",
         "line ends of another kind than the first, accepted",
         mixed_end_);
-    add(warnings, "infinite_value", "infinities, taken as missing samples", infinite_);
-    add(warnings,
-        "number_out_of_range",
-        "numbers out of the range of a double, taken as missing samples",
-        overflow_);
-    if (missing_.count > 0) {
-      std::string message = "empty or NaN cells, taken as missing samples (";
-      std::size_t listed = 0;
-      for (std::size_t c = 0; c < missing_per_channel_.size(); ++c) {
-        if (missing_per_channel_[c] == 0) continue;
-        if (listed++ == 8) {
-          message += ", …";
-          break;
-        }
-        message += fmt::format(
-            "{}{} {}", listed == 1 ? "" : ", ", info_.channels[c].name, missing_per_channel_[c]);
-      }
-      add(warnings, "missing_cell", message + ")", missing_);
-    }
+    add(warnings, "infinite_value", kInfiniteValues, infinite_);
+    add(warnings, "number_out_of_range", kNumbersOutOfRange, overflow_);
+    add(warnings, "number_too_small", kNumbersTooSmall, too_small_);
+    if (missing_.count > 0)
+      add(warnings, "missing_cell", missing_cells(info_.channels, missing_per_channel_), missing_);
     if (chunks_.nul_tail() > 0)
       warnings.add("nul_tail",
                    fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
@@ -135,6 +114,14 @@ class CsvSource final : public RowSource {
   }
 
  private:
+  void read_ahead(int threads) {
+    try {
+      pipeline_ = std::make_unique<ChunkPipeline>(chunks_, plan_, threads);
+    } catch (const std::system_error&) {
+      // No thread is to be had: parsed inside next(), then.
+    }
+  }
+
   static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
   }
@@ -186,6 +173,7 @@ class CsvSource final : public RowSource {
     collect(mixed_end_, chunk.mixed_end);
     collect(infinite_, chunk.infinite);
     collect(overflow_, chunk.overflow);
+    collect(too_small_, chunk.too_small);
     collect(missing_, chunk.missing);
     if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
       cr_noted_ = true;
@@ -200,7 +188,6 @@ class CsvSource final : public RowSource {
           place_name(next_line_ + chunk.unended->line, chunk.unended->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
-      words_per_channel_[c] += chunk.words_per_channel[c];
       fractional_[c] |= chunk.fractional[c];
       info_.channels[c].integer = fractional_[c] == 0;
     }
@@ -245,8 +232,8 @@ class CsvSource final : public RowSource {
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Problem> problem_;
-  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, missing_;
-  std::vector<std::uint64_t> missing_per_channel_, words_per_channel_;
+  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, too_small_, missing_;
+  std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::uint32_t> fractional_;
   Account total_;
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,

@@ -89,8 +89,8 @@ char named_delimiter(const std::string& name) {
       name[0] != '\n' && name[0] != '-' && name[0] != '+')
     return name[0];
   throw Error({ErrorKind::usage,
-               "",
-               "",
+               "E0202",
+               "`delimiter`",
                "unknown delimiter",
                name,
                "use auto, tab, space, or one character such as , or ;"});

@@ -131,8 +131,8 @@ struct Study {
       mark = '.';
     else if (options.decimal != "auto")
       throw Error({ErrorKind::usage,
-                   "",
-                   "",
+                   "E0202",
+                   "`decimal`",
                    "unknown decimal mark",
                    options.decimal,
                    "use auto, point or comma"});
@@ -181,8 +181,8 @@ struct Study {
     const auto fields = split(first.text, dialect.delimiter);
     if (options.header != "auto" && options.header != "yes" && options.header != "no")
       throw Error({ErrorKind::usage,
-                   "",
-                   "",
+                   "E0202",
+                   "`header`",
                    "unknown header option",
                    options.header,
                    "use auto, yes or no"});
@@ -290,8 +290,12 @@ struct Study {
   std::string header_text(const Field& field, const Line& line, std::size_t indent) const {
     if (options.encoding == "latin1") return latin1_to_utf8(field.text);
     if (options.encoding != "utf-8")
-      throw Error(
-          {ErrorKind::usage, "", "", "unknown encoding", options.encoding, "use utf-8 or latin1"});
+      throw Error({ErrorKind::usage,
+                   "E0202",
+                   "`encoding`",
+                   "unknown encoding",
+                   options.encoding,
+                   "use utf-8 or latin1"});
     const std::size_t bad = first_invalid_utf8(field.text);
     const std::size_t column =
         field.offset + (field.quoted ? 1 : 0) + indent + (bad == std::string::npos ? 0 : bad);

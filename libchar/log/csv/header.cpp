@@ -6,6 +6,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/csv/number.hpp"
+#include "libchar/log/reading_fields.hpp"
 
 namespace libchar::csv {
 
@@ -67,7 +68,7 @@ void read_rate_comment(std::string_view comment, LogInfo& info) {
   const double factor = !number.empty() && number.back() == 'k' ? 1000 : 1;
   number.erase(number.find_last_of("0123456789.") + 1);
   const auto rate = parse_double(number);
-  if (!rate || !(*rate > 0)) return;
+  if (!rate || *rate * factor < kRates.lowest || *rate * factor > kRates.highest) return;
   info.time.rate_hz = *rate * factor;
   info.dialect.push_back(fmt::format("rate {} Hz from a comment", shortest(info.time.rate_hz)));
 }

@@ -128,9 +128,8 @@ Written read_mantissa(std::string_view text, std::size_t i, char point) {
       fraction = true;
     } else if (is_digit(text[i])) {
       out.any = true;
-      // 27 digits leave room for the unit; further digits stand far below a nanosecond or far above
-      // 64 bits.
-      if (out.w < static_cast<Uint128>(1000000000000000000) * 1000000000) {
+      // 25 digits leave room for the largest unit, an hour; further digits stand far below a nanosecond or far above 64 bits.
+      if (out.w < static_cast<Uint128>(1000000000000) * 1000000000000) {
         out.w = out.w * 10 + static_cast<unsigned>(text[i] - '0');
         out.q -= fraction;
       } else {
@@ -152,13 +151,14 @@ StampFault read_exponent(std::string_view text, Written& number) {
   int exponent = 0;
   const char* from = text.data() + i + 1;
   const char* const end = text.data() + text.size();
-  if (from != end && *from == '+') ++from;
+  // from_chars takes a '-' itself, and must not see one behind the '+'.
+  if (end - from > 1 && *from == '+' && is_digit(from[1])) ++from;
   const auto [stop, status] = std::from_chars(from, end, exponent);
   if (stop == from) return StampFault::malformed;
+  number.end = static_cast<std::size_t>(stop - text.data());
   if (status != std::errc() || exponent > 10000 || exponent < -10000)
     return StampFault::out_of_range;
   number.q += exponent;
-  number.end = static_cast<std::size_t>(stop - text.data());
   return StampFault::none;
 }
 
@@ -215,6 +215,11 @@ Cell read_cell(std::string_view text, char point) {
     cell.kind =
         Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
     cell.number = digits[0] == '-' ? -0.0 : 0.0;
+    // 700 zeros written out are somebody's way of rounding; an exponent that no double has is lost digits.
+    const std::size_t exponent = digits.find_first_of("eE");
+    cell.too_small =
+        exponent != std::string_view::npos &&
+        digits.substr(0, exponent).find_first_of("123456789") != std::string_view::npos;
     return cell;
   }
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
@@ -240,14 +245,16 @@ StampFault read_stamp(std::string_view text,
   if (means_missing(text)) return StampFault::missing;
   const bool negative = text[0] == '-';
   Written number = read_mantissa(text, negative || text[0] == '+' ? 1 : 0, point);
-  if (const StampFault fault = read_exponent(text, number); fault != StampFault::none) {
-    if (fault != StampFault::out_of_range || number.w != 0) return fault;
-    out = 0;
-    return StampFault::none;
-  }
+  const StampFault fault = read_exponent(text, number);
+  if (fault == StampFault::malformed) return fault;
   if (!number.any || number.end < text.size()) {
     offset = number.any ? number.end : 0;
     return StampFault::malformed;
+  }
+  if (fault == StampFault::out_of_range) {
+    if (number.w != 0) return fault;
+    out = 0;
+    return StampFault::none;
   }
   Uint128 ns = number.w * static_cast<std::uint64_t>(unit_ns);
   const Uint128 limit = static_cast<Uint128>(1) << 63U;

@@ -136,6 +136,7 @@ struct Cell {
   enum Kind { value, missing, infinite, bad, out_of_range } kind = bad;
   double number = 0;
   bool integer = false;
+  bool too_small = false;        ///< 0 because its exponent is below those of doubles
   bool inexact_integer = false;  ///< an integer beyond 2^53 that a double cannot hold
   std::size_t offset = 0;        ///< bad: the byte that cannot be, from the start of the cell
   const char* reason = "";       ///< bad: in words

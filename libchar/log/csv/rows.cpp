@@ -67,9 +67,8 @@ class RowParser {
     out_.problem.reset();
     out_.unended.reset();
     out_.blank = out_.comment = out_.repeated = out_.infinite = out_.mixed_end = out_.overflow =
-        out_.missing = {};
+        out_.too_small = out_.missing = {};
     out_.missing_per_channel.assign(plan_.channels, 0);
-    out_.words_per_channel.assign(plan_.channels, 0);
     out_.fractional.assign(plan_.channels, 0);
     out_.inexact_integers = 0;
     out_.account = {};
@@ -386,11 +385,22 @@ class RowParser {
     fail("E0304",
          fmt::format("{} fields, {} expected", fields, count),
          std::string(line),
-         fields == 2 * count && dialect_.delimiter == ','
-             ? "are these decimal commas? write the file with another delimiter, such as ;"
-             : fmt::format("`delimiter`, if '{}' does not separate the fields", dialect_.delimiter),
+         many_hint(fields),
          i);
     return false;
+  }
+
+  std::string many_hint(std::size_t fields) const {
+    const std::size_t count = plan_.target.size();
+    if (dialect_.trailing_delimiter && fields == count + 1)
+      return fmt::format(
+          "the lines before end with '{}' and nothing behind it, which makes no column: name the "
+          "columns in a header line{}",
+          dialect_.delimiter,
+          dialect_.has_header ? ", this one too" : "");
+    if (fields == 2 * count && dialect_.delimiter == ',')
+      return "are these decimal commas? write the file with another delimiter, such as ;";
+    return fmt::format("`delimiter`, if '{}' does not separate the fields", dialect_.delimiter);
   }
 
   std::string few_hint(std::string_view line) const {
@@ -454,6 +464,7 @@ class RowParser {
         out = cell.number;
         out_.fractional[channel] |= cell.integer ? 0U : 1U;
         out_.inexact_integers += cell.inexact_integer;
+        if (cell.too_small) out_.too_small.add(line_, span.start + 1);
         ++out_.account.values;
         return true;
       case Cell::infinite:
@@ -472,7 +483,6 @@ class RowParser {
         break;
       case Cell::missing:
         out_.missing.add(line_, span.start + 1);
-        out_.words_per_channel[channel] += !text.empty();
         break;
       case Cell::bad:
         fail("E0311",

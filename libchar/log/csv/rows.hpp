@@ -70,10 +70,8 @@ struct ParsedChunk {
   std::optional<RowProblem> problem;
   std::optional<Spot>
       unended;  ///< end of a last row that has no line end and may have been cut in its last cell
-  Tally blank, comment, repeated, infinite, mixed_end, overflow, missing;
+  Tally blank, comment, repeated, infinite, mixed_end, overflow, too_small, missing;
   std::vector<std::uint64_t> missing_per_channel;
-  std::vector<std::uint64_t>
-      words_per_channel;  ///< of these, cells that say NaN (or NA, null…) in letters
   std::vector<std::uint32_t> fractional;  ///< per channel: some value was not written as an integer
   std::uint64_t inexact_integers = 0;
   Account account;

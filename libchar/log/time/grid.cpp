@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "libchar/core/error.hpp"
@@ -44,24 +45,20 @@ TimeGrid::TimeGrid(const RowSource& source,
                    BlockSink& sink,
                    Warnings& warnings)
     : source_(source), options_(options), sink_(sink), warnings_(warnings) {
-  const auto instant =
-      [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {
-        if (!s) return otherwise;
-        if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
-          throw Error({ErrorKind::usage,
-                       "",
-                       "",
-                       std::string(name) + " is not a time in seconds",
-                       shortest(*s),
-                       ""});
-        return static_cast<std::int64_t>(std::llround(*s * 1e9));
-      };
+  const auto instant = [](const std::optional<double>& s,
+                          std::int64_t otherwise,
+                          const char* name) {
+    if (!s) return otherwise;
+    if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
+      throw Error({ErrorKind::usage, "E0201", name, "is not a time in seconds", shortest(*s), ""});
+    return static_cast<std::int64_t>(std::llround(*s * 1e9));
+  };
   from_ns_ = instant(options.from_s, 0, "`from_s`");
   to_ns_ = instant(options.to_s, INT64_MAX, "`to_s`");
   if (to_ns_ <= from_ns_)
     throw Error({ErrorKind::usage,
-                 "",
-                 "",
+                 "E0201",
+                 "`to_s`",
                  "the window is empty: `to_s` does not lie after `from_s`",
                  "",
                  ""});
@@ -133,11 +130,13 @@ void TimeGrid::learn() {
   std::vector<std::int64_t> stamps;
   for (const Pending& item : pending_)
     for (std::size_t i = 0; i < item.block.rows && stamps.size() < kLearn; ++i)
-      stamps.push_back(item.block.time_ns[i]);
+      stamps.push_back(checked(item, i, item.block.time_ns[i]));
   const FirstInterval found = first_interval(stamps, options_.rate_hz);
   dt_ = found.ns;
   coarse_ = found.pattern != StampPattern::steps;
   limit_ = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
+  const auto whole = static_cast<std::int64_t>(std::min(dt_, 9e18));
+  least_ = std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
   if (dt_ == 0 && stamps.size() > 1) {
     const Pending* item = &pending_.front();
     std::size_t row = 1;
@@ -215,9 +214,9 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
 /// False, and nothing is taken, when one of the rows needs a decision.
 bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
   if (!have_last_ || wrap_ != 0 || same_ratio_ != 0) return false;
-  const auto shortest_step =
-      std::max<std::int64_t>(1, (3 * static_cast<std::int64_t>(dt_) + 3) / 4);
-  if (!steps_between(last_, time, n, shortest_step, limit_)) return false;
+  if (!steps_between(last_, time, n, least_, limit_)) return false;
+  // They rise: the last is the furthest.
+  if (time[n - 1] >= kMostNs || time[n - 1] - first_stamp_ > kMostNs) return false;
   if (time[0] - first_stamp_ < from_ns_ || time[n - 1] - first_stamp_ >= to_ns_) return false;
   dropped_in_a_row_ = 0;
   sketch_.add_run(index_ + 1, time, n);
@@ -234,18 +233,20 @@ bool TimeGrid::take_one_by_one(
     Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run) {
   const std::int64_t* const time = front.block.time_ns.data();
   for (std::size_t i = from; i < to; ++i) {
-    std::int64_t stamp = time[i] + wrap_;
-    std::int64_t step = 0;
-    const bool overflow = __builtin_sub_overflow(stamp, last_, &step);
-    const bool regular = have_last_ && !overflow && step > 0 && step <= limit_;
+    std::int64_t stamp = 0;
+    if (__builtin_add_overflow(time[i], wrap_, &stamp)) stamp = INT64_MAX;
+    stamp = checked(front, i, stamp);
+    const std::int64_t step = have_last_ ? stamp - last_ : 0;
+    const bool regular = step > 0 && step <= limit_;
     if (!regular) {
       emit_rows(front.block, run, i);
       run = i;
       if (decide(front, i, stamp, ahead - (i - from)) == Verdict::drop) {
+        ++dropped_;
         run = i + 1;
         continue;
       }
-    } else if (!coarse_ && (same_ratio_ != 0 || step * 4 < 3 * static_cast<std::int64_t>(dt_))) {
+    } else if (!coarse_ && (same_ratio_ != 0 || step < least_)) {
       watch_rate(front, i, static_cast<double>(step) / dt_);
     }
     dropped_in_a_row_ = 0;
@@ -255,6 +256,7 @@ bool TimeGrid::take_one_by_one(
     have_last_ = true;
     sketch_.add(index_, stamp);
     if (stamp - first_stamp_ < from_ns_) {
+      ++outside_;
       run = i + 1;
     } else if (stamp - first_stamp_ >= to_ns_) {
       emit_rows(front.block, run, i);
@@ -276,7 +278,7 @@ void TimeGrid::without_stamps(Pending& front) {
     if (!(rate > 0))
       throw Error(
           {ErrorKind::usage,
-           "",
+           "E0205",
            source_.info().file,
            "`from_s` and `to_s` need a time base, and the log has neither stamps nor a rate",
            "",
@@ -291,7 +293,9 @@ void TimeGrid::without_stamps(Pending& front) {
                              : static_cast<std::size_t>(std::clamp(grid(to_ns_) - base, 0.0, rows));
     window_over_ = to < front.block.rows;
   }
-  used_ += to > from ? to - from : 0;
+  const std::size_t inside = to > from ? to - from : 0;
+  used_ += inside;
+  if (!window_over_) outside_ += front.block.rows - inside;
   emit_rows(front.block, from, to);
 }
 
@@ -364,7 +368,14 @@ void TimeGrid::finish(LogInfo& info) {
   process(true);
   begin();
   flush();
+  // What stands behind the window was not looked at.
+  if (window_over_) outside_ = rows_ - used_ - dropped_;
+  if (rows_ != used_ + dropped_ + outside_ || delivered_ != used_ + missing_)
+    throw std::logic_error("time grid: the account of rows does not balance");
   info.rows = rows_;
+  info.rows_used = used_;
+  info.rows_dropped = dropped_;
+  info.rows_outside = outside_;
   info.samples = delivered_;
   TimeBase& time = info.time;
   if (!stamped_) {

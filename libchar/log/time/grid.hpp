@@ -19,6 +19,8 @@
 
 namespace libchar {
 
+inline constexpr std::int64_t kMostNs = std::int64_t{1}
+                                        << 62U;  ///< of a stamp, and between two of a log
 inline constexpr std::size_t kRowsAhead =
     16;  ///< rows looked at before a late stamp is called a gap
 
@@ -53,6 +55,8 @@ class TimeGrid {
   bool take_one_by_one(
       Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   void without_stamps(Pending& front);
+  /// The stamp, when it and its distance from the first leave room for every sum and difference in 64 bits. Throws Error(input) else.
+  std::int64_t checked(const Pending& front, std::size_t row, std::int64_t stamp) const;
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);
   void place_late_row(const Pending& front,
@@ -86,14 +90,15 @@ class TimeGrid {
   std::vector<RowBlock> spare_;
   std::uint64_t rows_ = 0, waiting_ = 0;
   bool stamped_ = false, began_ = false, learned_ = false, window_over_ = false;
-  bool coarse_ = false;     ///< stamps do not tell rows apart, one by one
-  double dt_ = 0;           // ns
-  std::int64_t limit_ = 0;  // longest regular step, ns
+  bool coarse_ = false;                 ///< stamps do not tell rows apart, one by one
+  double dt_ = 0;                       // ns
+  std::int64_t limit_ = 0, least_ = 1;  // longest and shortest regular step, ns
   std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;
   std::int64_t raw_last_ = 0;  // last_ as the file has it
   bool have_last_ = false;
   std::int64_t index_ = -1;  // grid index of the last row, from the first row of the file
-  std::uint64_t delivered_ = 0, used_ = 0, gaps_ = 0, missing_ = 0, dropped_in_a_row_ = 0;
+  std::uint64_t delivered_ = 0, gaps_ = 0, missing_ = 0, dropped_in_a_row_ = 0;
+  std::uint64_t used_ = 0, dropped_ = 0, outside_ = 0;  // every row of the file is one of these
   std::string first_dropped_;  // where the present run of backward rows began
   std::optional<std::int64_t> start_ns_;
   double last_ratio_ = 1;

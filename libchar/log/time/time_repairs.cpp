@@ -23,6 +23,11 @@ constexpr std::uint64_t kBackward =
 constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
 constexpr int kRateRun = 8;           // equal odd steps in a row that make a change of rate
 
+/// Of an interval far below a nanosecond there may be more steps than 64 bits count.
+std::int64_t whole_steps(double steps) {
+  return static_cast<std::int64_t>(std::llround(std::clamp(steps, -9e18, 9e18)));
+}
+
 }  // namespace
 
 GridStretch gap_in_window(
@@ -30,12 +35,10 @@ GridStretch gap_in_window(
   GridStretch inside{1, gap};
   if (before_ns < static_cast<double>(from_ns))
     inside.first = std::max<std::int64_t>(
-        1,
-        static_cast<std::int64_t>(std::ceil((static_cast<double>(from_ns) - before_ns) / dt_ns)));
+        1, whole_steps(std::ceil((static_cast<double>(from_ns) - before_ns) / dt_ns)));
   if (to_ns != INT64_MAX)
     inside.last = std::min<std::int64_t>(
-        gap,
-        static_cast<std::int64_t>(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
+        gap, whole_steps(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
   return inside;
 }
 
@@ -58,7 +61,7 @@ std::int64_t common_lag(std::vector<double> lags) {
   const double own = lags.front();
   const std::size_t quarter = lags.size() / 4;
   std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(quarter), lags.end());
-  return static_cast<std::int64_t>(std::llround(std::min(own, lags[quarter])));
+  return whole_steps(std::min(own, lags[quarter]));
 }
 
 std::string TimeGrid::place(const Pending& front, std::size_t row) const {
@@ -78,6 +81,25 @@ void TimeGrid::fail(const Pending& front,
                std::move(hint)});
 }
 
+std::int64_t TimeGrid::checked(const Pending& front, std::size_t row, std::int64_t stamp) const {
+  if (stamp >= kMostNs || stamp <= -kMostNs)
+    fail(front,
+         row,
+         "E0314",
+         fmt::format("a time stamp of {} s; those within 146 years (2^62 ns) of zero are read",
+                     shortest(static_cast<double>(stamp) * 1e-9)),
+         "is the time unit right? `time_unit` says it");
+  if (have_last_ && (stamp - first_stamp_ > kMostNs || stamp - first_stamp_ < -kMostNs))
+    fail(front,
+         row,
+         "E0316",
+         fmt::format("wild time stamp: {} s away from the first",
+                     shortest(static_cast<double>(stamp) * 1e-9 -
+                              static_cast<double>(first_stamp_) * 1e-9)),
+         "remove the row, or read with `time_column` none and `rate_hz` HZ");
+  return stamp;
+}
+
 // A row whose stamp is not one regular step behind the last one.
 TimeGrid::Verdict TimeGrid::decide(const Pending& front,
                                    std::size_t row,
@@ -87,13 +109,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
     first_stamp_ = stamp;
     return Verdict::keep;
   }
-  std::int64_t step = 0;
-  if (__builtin_sub_overflow(stamp, last_, &step))
-    fail(front,
-         row,
-         "E0316",
-         "wild time stamp: the distance to the row before does not fit 64-bit nanoseconds",
-         "remove the row, or read with `time_column` none and `rate_hz` HZ");
+  const std::int64_t step = stamp - last_;
   if (step == 0) {
     if (stamp < raw_last_) return backward(front, row, stamp);
     if (coarse_) return Verdict::keep;
@@ -192,7 +208,7 @@ void TimeGrid::unwrap(const Pending& front,
                       const Rollover& rollover,
                       std::int64_t& stamp) {
   wrap_ += rollover.range_ns;
-  stamp += rollover.range_ns;
+  stamp = checked(front, row, stamp + rollover.range_ns);
   warnings_.add("clock_rollover",
                 fmt::format("the {}-bit clock ran over: unwrapped", rollover.bits),
                 place(front, row));
@@ -224,6 +240,7 @@ std::int64_t TimeGrid::lag(const Pending& front,
       i = 0;
     }
     std::int64_t t = 0, unused = 0;
+    // Rows ahead are not checked yet.
     if (__builtin_add_overflow(at->block.time_ns[i], wrap_, &t) ||
         __builtin_sub_overflow(t, last_, &unused) || t <= last_)
       continue;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/csv_cell.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
@@ -81,10 +82,18 @@ class CsvWriter final : public LogWriter {
   // Row k stands at k / rate: computed, not summed, so that no error grows.
   void put_stamp() {
     const long double after = static_cast<long double>(row_) / static_cast<long double>(rate_);
-    if (absolute_)
+    const long double ns = static_cast<long double>(start_ns_.value_or(0)) + after * 1e9L;
+    if (!absolute_)
+      put(static_cast<double>(static_cast<long double>(start_ns_.value_or(0)) / 1e9L + after));
+    else if (after * 1e9L < 0x1p63L && std::abs(ns) < 0x1p63L)
       put(*start_ns_ + std::llroundl(after * 1e9L));
     else
-      put(static_cast<double>(static_cast<long double>(start_ns_.value_or(0)) / 1e9L + after));
+      throw Error({ErrorKind::output,
+                   "E0519",
+                   file_.path(),
+                   "the stamps of this log leave 64-bit nanoseconds",
+                   "",
+                   "write it as raw, or without the column of time"});
   }
 
   void flush() {

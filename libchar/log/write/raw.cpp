@@ -7,12 +7,25 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/write/value_writer.hpp"
 
 namespace libchar {
 namespace {
+
+// Beside /dev/stdout there is /dev.
+const std::string& with_place_beside(const std::string& path) {
+  if (writes_through(path))
+    throw Error({ErrorKind::output,
+                 "E0518",
+                 path,
+                 "raw data need a sidecar, and beside a pipe or device there is no place for it",
+                 "",
+                 "write to a file, or another format"});
+  return path;
+}
 
 // Another sidecar beside the log would contradict ours.
 void refuse_other_sidecar(const std::string& path) {
@@ -31,7 +44,8 @@ void refuse_other_sidecar(const std::string& path) {
 class RawWriter final : public LogWriter {
  public:
   RawWriter(const std::string& path, const LogInfo& info, const WriteOptions& options)
-      : file_(path, options.overwrite), beside_(path + ".json", options.overwrite) {
+      : file_(with_place_beside(path), options.overwrite),
+        beside_(path + ".json", options.overwrite) {
     refuse_other_sidecar(path);
     sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64,
                        options.big_endian};

@@ -27,6 +27,9 @@ double median_of_stretches(std::vector<double> values) {
   return *middle;
 }
 
+/// Beyond, what grows with the cube of the number of sensors is done in closed form.
+constexpr Eigen::Index kManySensors = 64;
+
 std::optional<StepNoise> typical(const std::vector<double>& logs) {
   StepNoise out;
   out.log_variance = median_of_stretches(logs);
@@ -43,9 +46,12 @@ std::optional<StepNoise> typical(const std::vector<double>& logs) {
 
 StepNoiseMeter::StepNoiseMeter(const Eigen::MatrixXd& h, std::int64_t instants)
     : plain_(h.cols() == 1 && (h.array() == 1).all()),
+      many_alike_(plain_ && h.rows() > kManySensors),
       each_(std::max(instants / 2 / kStretchesOfNoise, kPairsInStretch)),
       squares_(Eigen::VectorXd::Zero(h.rows())) {
   const Eigen::Index n = h.rows();
+  trace_ = static_cast<double>(n - 1);
+  if (many_alike_) return;
   const Eigen::MatrixXd q =
       h.colPivHouseholderQr().householderQ() * Eigen::MatrixXd::Identity(n, h.cols());
   residual_ = Eigen::MatrixXd::Identity(n, n) - q * q.transpose();
@@ -76,6 +82,11 @@ void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
 }
 
 Eigen::VectorXd StepNoiseMeter::solved(const Eigen::VectorXd& squares) const {
+  if (many_alike_) {
+    // M = I - 11'/n, so M o M = (1 - 2/n) I + 11'/n^2, and its inverse by Sherman and Morrison:
+    const auto n = static_cast<double>(squares.size());
+    return (squares.array() - squares.sum() / (n * (n - 1))) / (1 - 2 / n);
+  }
   if (inverse_) return *inverse_ * squares;
   return Eigen::VectorXd::Constant(squares.size(), squares.sum() / trace_);
 }

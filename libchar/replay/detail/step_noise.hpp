@@ -32,14 +32,15 @@ class StepNoiseMeter {
   /// Empty: too few instants.
   std::vector<std::optional<StepNoise>> result() const;
   /// Each sensor's own can be told.
-  bool identifiable() const { return inverse_.has_value(); }
+  bool identifiable() const { return inverse_.has_value() || many_alike_; }
 
  private:
   void close();
   Eigen::VectorXd solved(const Eigen::VectorXd& squares) const;
 
-  Eigen::MatrixXd residual_;                // M
-  bool plain_;                              // one input seen alike by all: M d = d - mean
+  Eigen::MatrixXd residual_;  // M; empty where many_alike_
+  bool plain_;                // one input seen alike by all: M d = d - mean
+  bool many_alike_;           // plain_, and so many sensors that the inverse is not written out
   std::optional<Eigen::MatrixXd> inverse_;  // of M o M
   double trace_ = 0;
   std::int64_t each_, now_ = 0, pairs_ = 0;

@@ -242,7 +242,7 @@ const Fields<ArraySimulation>& simulation_fields() {
   static const Fields<ArraySimulation> rows = {
       field<&ArraySimulation::rate_hz>("rate_hz",
                                        {.unit = "Hz",
-                                        .range = kPositive,
+                                        .range = kRates,
                                         .meaning = "sampling rate",
                                         .written = Written::always,
                                         .required = true}),

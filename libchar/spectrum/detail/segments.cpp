@@ -159,15 +159,15 @@ std::vector<double> neighbour_correlation(Window window,
 void check_options(const WelchOptions& options) {
   if (!(options.overlap >= 0 && options.overlap < 1))
     throw Error({ErrorKind::usage,
-                 "",
-                 "",
+                 "E0201",
+                 "`overlap`",
                  "the overlap of segments is a fraction of a segment, from 0 to below 1",
                  fmt::format("{}", options.overlap),
                  ""});
   if (options.segment != 0 && options.segment < kShortestSegment)
     throw Error({ErrorKind::usage,
-                 "",
-                 "",
+                 "E0201",
+                 "`segment`",
                  fmt::format("a segment needs at least {} samples", kShortestSegment),
                  fmt::format("{}", options.segment),
                  ""});
@@ -176,7 +176,7 @@ void check_options(const WelchOptions& options) {
 void check_rate(double rate_hz) {
   if (!(rate_hz > 0 && std::isfinite(rate_hz)))
     throw Error({ErrorKind::numeric,
-                 "",
+                 "E0402",
                  "",
                  "a spectrum needs a finite sampling rate above zero",
                  fmt::format("{}", rate_hz),

@@ -1,0 +1,22 @@
+# cmake -DSOURCE=FOLDER -DOUTPUT=FILE -P write_commit.cmake: the commit that is built, for provenance; the file is touched when it changes.
+set(commit unknown)
+find_program(GIT git)
+if(GIT)
+  # An archive of this project inside somebody else's repository has none.
+  execute_process(COMMAND "${GIT}" -C "${SOURCE}" rev-parse --show-toplevel OUTPUT_VARIABLE top OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(top STREQUAL SOURCE)
+    execute_process(COMMAND "${GIT}" --no-optional-locks -C "${SOURCE}" describe --always --dirty --abbrev=10 --exclude=*
+                    OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(described)
+      set(commit "${described}")
+    endif()
+  endif()
+endif()
+set(text "#define LIBCHAR_COMMIT \"${commit}\"\n")
+set(before "")
+if(EXISTS "${OUTPUT}")
+  file(READ "${OUTPUT}" before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE "${OUTPUT}" "${text}")
+endif()

@@ -1,0 +1,12 @@
+#pragma once
+// No more threads than the system gives.
+
+namespace libchar {
+
+/// Tries how many threads can be made beside this one, as many as there are processors. Where there are fewer, everything in this process
+/// that works in parallel keeps to them from now on: the pool of threads underneath (oneTBB) would otherwise throw in the middle of
+/// work. Under a limit of address space (ulimit -v) the threads are started at once, while there is room for their stacks, and share
+/// one heap. For programs, at their start.
+void keep_to_threads_given();
+
+}  // namespace libchar

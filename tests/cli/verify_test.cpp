@@ -1,0 +1,79 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Contains;
+
+namespace {
+
+namespace files = std::filesystem;
+
+struct VerifyBench {
+  test::TemporaryFolder folder;
+  std::string log = (folder / "log.csv").string(), out = (folder / "out").string();
+  VerifyBench() {
+    files::copy_file(test::fixture("imu_at_rest.csv"), log);
+    REQUIRE(test::run({"characterize", log, "-c", "gyro_z", "-o", out}).code == 0);
+  }
+  test::Ran verify() const { return test::run({"verify", out}); }
+  void append(const files::path& path) const { std::ofstream(path, std::ios::app) << "\n"; }
+};
+
+}  // namespace
+
+TEST_CASE("verify: results as they were written hold") {
+  const VerifyBench bench;
+  const auto ran = bench.verify();
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("written by sensorchar") && Contains("log.csv (input)"));
+  CHECK_THAT(ran.out, !Contains("changed") && !Contains("missing"));
+  const auto json = libchar::parse_json(test::run({"verify", bench.out, "--json"}).out, "verify");
+  CHECK(json["documents"][0]["holds"] == true);
+  CHECK(json["documents"][0]["same_program"] == true);
+  CHECK(json["documents"][0]["files"].size() == 5);  // the log, page, report, curves, a model
+}
+
+TEST_CASE("verify: a changed result, a missing one, another log are said, exit 6") {
+  const VerifyBench bench;
+  const files::path model = files::path(bench.out) / "gyro_z.sensor.yaml";
+  bench.append(model);
+  auto ran = bench.verify();
+  CHECK(ran.code == 6);
+  CHECK_THAT(ran.out, Contains("changed   " + model.string()));
+  CHECK_THAT(ran.err, Contains("E0520"));
+  files::remove(model);
+  CHECK_THAT(bench.verify().out, Contains("missing   " + model.string()));
+  REQUIRE(test::run({"characterize", bench.log, "-c", "gyro_z", "-o", bench.out, "--force"}).code ==
+          0);
+  CHECK(bench.verify().code == 0);
+  bench.append(bench.log);
+  ran = bench.verify();
+  CHECK(ran.code == 6);
+  CHECK_THAT(ran.out, Contains("changed   " + bench.log + " (input)"));
+}
+
+TEST_CASE("verify: inputs that lie elsewhere are found from a folder") {
+  const test::TemporaryFolder folder;
+  files::copy_file(test::fixture("imu_at_rest.csv"), folder / "log.csv");
+  test::RunOptions there;
+  there.folder = folder.path().string();
+  REQUIRE(test::run({"characterize", "log.csv", "-c", "gyro_z", "-o", "out"}, there).code == 0);
+  const std::string out = (folder / "out").string();
+  CHECK(test::run({"verify", out}).code == 6);
+  CHECK(test::run({"verify", out, "--in", folder.path().string()}).code == 0);
+}
+
+TEST_CASE("verify: a folder without a report, and documents of other kinds, are refused") {
+  const test::TemporaryFolder folder;
+  CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0556"));
+  std::ofstream(folder / "x.json") << R"({"files": 3, "tool": 4, "input": "x"})";
+  const auto odd = test::run({"verify", folder.path().string()});
+  CHECK(odd.code == 0);
+  std::ofstream(folder / "y.json") << "{";
+  CHECK(test::run({"verify", (folder / "y.json").string()}).code == 3);
+  CHECK(test::run({"verify", (folder / "none").string()}).code == 3);
+}

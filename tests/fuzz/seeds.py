@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Makes the first inputs of the fuzz targets from the fixtures: seeds.py FOLDER [PROGRAM]
+
+A folder a target in FOLDER, with the bytes before a file that its target takes for choices. Real files come whole and cut, tables in every
+dialect, stamps at the ends of 64 bits. With PROGRAM (sensorchar) there are reports and a fusion.yaml of its own making, shortened."""
+import json
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+KNOWN = ROOT / "fixtures" / "known" / "badinputs"
+LARGEST = 4000
+EXTREMES = [-2**63, -2**63 + 1, -2**62, -1, 0, 1, 2**53, 2**62, 2**63 - 1, 2**63, 10**18, 1700000000 * 10**9]
+NUMBERS = ["0", "-0", "1e400", "-1e400", "1e-400", "5e-324", "2.2250738585072011e-308", "1.7976931348623157e308", "9007199254740993", "0.1",
+           ".5", "5.", "1,5", "nan", "NA", "inf", "-Infinity", "12345678901234567890123", "0." + "0" * 40 + "1", "1_000", "0x10", "+1", "--1", "1e+",
+           "0.500000000000000055511151231257827021181583404541015625", "2d", "1.5kHz", "64k", "10us"]
+
+
+def cut(data, generator, pieces=3):
+    """The data if it is short, and the beginnings of it: a file that was cut anywhere."""
+    yield data[:LARGEST]
+    for _ in range(pieces):
+        yield data[:generator.randrange(1, max(2, min(len(data), LARGEST)))]
+
+
+def tables():
+    """One small table in every dialect."""
+    rows = [[f"{0.01 * i:.2f}", f"{1.5 * i - 3:.3f}", str(i)] for i in range(12)]
+    for delimiter in ",;\t |":
+        for mark in ".,":
+            if mark == delimiter:
+                continue
+            for end in ("\n", "\r\n", "\r"):
+                for header in ("", delimiter.join(["t[s]", "gyro_x[deg/s]", '"a b"']) + end, f"# made{end}t{delimiter}x{delimiter}y{end}"):
+                    yield (header + end.join(delimiter.join(cell.replace(".", mark) for cell in row) for row in rows) + end).encode()
+
+
+def stamps():
+    """Tables whose stamps are extreme, in every unit."""
+    generator = random.Random(2)
+    for unit in ("ns", "us", "ms", "s"):
+        for _ in range(6):
+            chosen = sorted(generator.sample(EXTREMES, 3)) + generator.sample(EXTREMES, 1)
+            yield (f"t[{unit}],a\n" + "".join(f"{stamp},{i}\n" for i, stamp in enumerate(chosen))).encode()
+    for step in (1, 2**61, 2**62):
+        yield ("t[ns],a\n" + "".join(f"{-2**63 + i * step},{i}\n" for i in range(4))).encode()
+
+
+def shortened(value):
+    """A document with at most two of each list."""
+    if isinstance(value, dict):
+        return {key: shortened(one) for key, one in value.items()}
+    return [shortened(one) for one in value[:2]] if isinstance(value, list) else value
+
+
+def made_by(program):
+    """(target, first byte, text) of reports and a fusion.yaml that the program writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = lambda *words: subprocess.run([str(program), *map(str, words)], capture_output=True, cwd=folder, check=False)
+        run("characterize", ROOT / "fixtures" / "imu_at_rest.csv", "-o", "log")
+        run("replay", ROOT / "fixtures" / "scenes" / "rv-3.3-calibrated.yaml", "-o", "scene")
+        for name, first in (("log/report.json", 0), ("scene/report.json", 1)):
+            path = pathlib.Path(folder) / name
+            if path.exists():
+                yield "report", first, json.dumps(shortened(json.loads(path.read_text())))
+        for path in pathlib.Path(folder).rglob("*.yaml"):
+            yield ("fusion" if path.name == "fusion.yaml" else "model"), 0, path.read_text()[:LARGEST]
+        table = run("allan", ROOT / "fixtures" / "imu_at_rest.csv").stdout.decode(errors="replace")
+        yield "curve", 1, table[:LARGEST]
+
+
+def seeds(program):
+    """(target, bytes) of every seed."""
+    generator = random.Random(1)
+    files = lambda folder, *ends: [p for p in sorted(folder.rglob("*")) if p.suffix in ends]
+    csv_files = files(KNOWN / "csv", ".csv") + [ROOT / "fixtures" / "imu_at_rest.csv"]
+    for data in [p.read_bytes() for p in csv_files] + list(tables()) + list(stamps()):
+        for piece in cut(data, generator, 1):
+            yield "csv", bytes([generator.randrange(256), generator.randrange(256)]) + piece
+            yield "curve", b"\1" + piece
+    for path in files(KNOWN / "npy", ".npy") + files(ROOT / "fixtures" / "npy", ".npy"):
+        for piece in cut(path.read_bytes(), generator):
+            yield "npy", bytes([generator.randrange(256)]) + piece
+    for path in files(KNOWN / "raw", ".json"):
+        data = path.with_suffix("")
+        for piece in cut(data.read_bytes() if data.exists() else b"", generator):
+            yield "raw", b"\1" + path.read_bytes()[:LARGEST // 2] + b"\0" + piece[:LARGEST // 2]
+    documents = files(ROOT / "fixtures", ".yaml") + files(KNOWN / "json", ".json") + files(KNOWN, ".yaml")
+    for path in documents:
+        first = b"\1" if path.suffix == ".json" else b"\0"
+        for piece in cut(path.read_bytes(), generator):
+            yield "document", first + piece
+            for target in ("scene", "model", "limits", "fusion", "report"):
+                yield target, first + piece
+    yield "limits", (b"\0format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    white_noise: {value: 2, unit: deg/\xe2\x88\x9ah}\n"
+                     b"  - channels: [accel_x]\n    white_noise: 1e-3\n    bias_instability: {value: 25, unit: m/s^2, reading: floor}\n")
+    for text in NUMBERS + [str(e) for e in EXTREMES]:
+        for choice in range(8):
+            yield "number", bytes([choice]) + text.encode()
+    for row in range(40):
+        yield "number", bytes([row]) + "".join(f"{generator.choice(EXTREMES)},{generator.choice(NUMBERS)},{generator.random():.{row % 17}f}\n"
+                                               for _ in range(5)).encode()
+    for choice in range(256):
+        yield "formats", bytes([choice, generator.randrange(256)]) + generator.randbytes(400)
+        yield "stamps", bytes([choice]) + bytes(generator.choice([0, 1, 2, 3, 128, 129, 130, 131, 132, 200, 230]) for _ in range(80))
+        yield "stream", bytes([choice, generator.randrange(256), generator.randrange(256)]) + generator.randbytes(600)
+    for stamp in EXTREMES:
+        yield "stamps", b"\7\x80" + struct.pack("<Q", stamp % 2**64) + bytes(range(40)) + b"\xff" + struct.pack("<Q", 2**62) + bytes(20)
+    if program:
+        for target, first, text in made_by(program):
+            for piece in cut(text.encode(), generator):
+                yield target, bytes([first]) + piece
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    counts = {}
+    for target, data in seeds(sys.argv[2] if len(sys.argv) > 2 else None):
+        (folder / target).mkdir(parents=True, exist_ok=True)
+        counts[target] = counts.get(target, 0) + 1
+        (folder / target / f"{counts[target]:04}").write_bytes(data)
+    print("seeds:", ", ".join(f"{name} {count}" for name, count in sorted(counts.items())))
+
+
+if __name__ == "__main__":
+    main()
