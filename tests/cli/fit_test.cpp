@@ -62,6 +62,12 @@ TEST_CASE("fit of a stretch, beside a temperature; neither goes with a curve") {
   const Json stretch = parse_json(still.out, "stdout");
   CHECK(stretch["stretch_s"] == Json::array({20, 60}));
   CHECK(stretch["channels"][0]["samples"] == 4000);
+  const auto open = test::run({"fit", path, "--rate", "100", "--still", "20s..", "--json"});
+  REQUIRE(open.code == 0);
+  const Json to_the_end = parse_json(open.out, "stdout");
+  CHECK(to_the_end["stretch_s"][0] == 20);
+  CHECK(to_the_end["stretch_s"][1].get<double>() ==
+        20 + to_the_end["channels"][0]["samples"].get<double>() / 100);
   CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as asked.") !=
         std::string::npos);
   const auto warm = test::run(

@@ -269,6 +269,32 @@ TEST_CASE("replay: faults from the command line stand beside the scene's") {
   }
 }
 
+TEST_CASE("replay: FROM..TO has one answer of every option, which names it") {
+  const ReplayBench bench;
+  for (const std::string option : {"--learning", "--evaluation", "--rest", "--align", "--fault"}) {
+    const std::string before = option == "--fault" ? "a:stuck@" : option == "--align" ? "all@" : "";
+    for (const std::string wrong : {"20..10", "..", "1x..2x"}) {
+      const auto ran = bench.replay({"--explain", option, before + wrong});
+      INFO(option << " " << wrong);
+      CHECK(ran.code == 2);
+      CHECK_THAT(ran.err,
+                 Catch::StartsWith(option + ": error E0") &&
+                     (Contains("from a time to a later one") || Contains("a duration such as")));
+    }
+  }
+  for (const char* right : {"5..", "..10", "5s..end", "0.1min..0.2min"}) {
+    const auto ran = bench.replay({"--explain",
+                                   "--learning",
+                                   right,
+                                   "--evaluation",
+                                   right,
+                                   "--fault",
+                                   std::string("a:stuck@") + right});
+    INFO(right << " " << ran.err);
+    CHECK(ran.code == 0);
+  }
+}
+
 TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
   const ReplayBench bench;
   for (const std::string format : {"csv", "npy", "f64"}) {
