@@ -1,6 +1,6 @@
 """Prints the shape of a checkout's C++: lengths of functions and files, files a folder, parameters, comments in public headers.
 
-usage: structure.py [ROOT]   (needs universal-ctags; run by hand, for docs/decisions and closing notes)
+usage: structure.py [ROOT]   (needs universal-ctags; run by hand, for closing notes)
 """
 import collections
 import json

@@ -78,22 +78,11 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
   return wanted;
 }
 
-// "auto", or "10..600" and "10s..10min".
+// "auto", or "10..600", "10s..10min", "10s..".
 void read_still(const std::string& text, StillOptions& still) {
   still = {};
   still.search = text == "auto";
-  if (still.search) return;
-  const std::size_t dots = text.find("..");
-  try {
-    if (dots != std::string::npos) {
-      still.stretch_s =
-          Interval{parse_duration_s(text.substr(0, dots)), parse_duration_s(text.substr(dots + 2))};
-      return;
-    }
-  } catch (const Error&) {
-    // said below
-  }
-  refuse("--still", "auto or FROM..TO was expected", text, "for example --still 10s..20min");
+  if (!still.search) still.stretch_s = parse_range(text);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "fault_help.hpp"
@@ -27,24 +28,21 @@ using namespace libchar;
   throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
 }
 
-// "0..50", "50.." in seconds.
-TimeWindow window_from_words(const std::string& text, const std::string& option) {
-  const std::size_t dots = text.find("..");
-  if (dots == std::string::npos)
-    refuse_source(option, "expected FROM..TO in seconds", text, "50..1000, or 50.. up to the end");
-  TimeWindow window;
+Interval range_of(const std::string& text,
+                  const std::string& option,
+                  RangeOf what = RangeOf::duration_s) {
   try {
-    if (dots > 0) window.from_s = parse_duration_s(text.substr(0, dots));
-    if (dots + 2 < text.size() && text.substr(dots + 2) != "end")
-      window.to_s = parse_duration_s(text.substr(dots + 2));
+    return parse_range(text, what);
   } catch (const Error& error) {
     Problem problem = error.problem();
     problem.where = option;
     throw Error(problem);
   }
-  if (!(window.from_s < window.to_s))
-    refuse_source(option, "a window goes from a time to a later one", text);
-  return window;
+}
+
+TimeWindow window_from_words(const std::string& text, const std::string& option) {
+  const Interval range = range_of(text, option);
+  return {range.low, range.high};
 }
 
 std::vector<std::string> parts_of(const std::string& text, char between) {
@@ -93,11 +91,9 @@ void set_preparation(const ReplaySource& source, Scene& scene) {
     p.to_hz = 0;
   }
   if (!source.band.empty()) {
-    const std::size_t dots = source.band.find("..");
-    if (dots == std::string::npos)
-      refuse_source("--band", "expected LOW..HIGH in Hz", source.band, "0.1..20");
-    p.from_hz = parse_rate_hz(source.band.substr(0, dots));
-    p.to_hz = parse_rate_hz(source.band.substr(dots + 2));
+    const Interval band = range_of(source.band, "--band", RangeOf::rate_hz);
+    p.from_hz = band.low;
+    p.to_hz = std::isinf(band.high) ? 0 : band.high;  // 0: a high-pass filter
   }
   const char* option = !source.band.empty()      ? "--band"
                        : source.high_pass_hz     ? "--high-pass"

@@ -113,7 +113,6 @@ Stretch still_stretch(const CharacterizeOptions& options,
     stretch.from_s = options.still.stretch_s->low;
     stretch.to_s = options.still.stretch_s->high;
   }
-  stretch.sentence = stretch_sentence(stretch);
   return stretch;
 }
 
@@ -137,7 +136,11 @@ bool wants_still(const StillOptions& still) {
 }
 
 void note_stretch(Stretch stretch, Characterization& result) {
+  if (std::isinf(stretch.to_s))  // open: to the end of the log
+    stretch.to_s =
+        stretch.from_s + static_cast<double>(result.log.samples) / result.log.time.rate_hz;
   check_reached(stretch, result.log);
+  stretch.sentence = stretch_sentence(stretch);
   if (!stretch.whole) result.log.stretch_s = Interval{stretch.from_s, stretch.to_s};
   result.still = std::move(stretch);
 }
@@ -183,7 +186,7 @@ Characterization characterize(const std::string& path,
     });
     if (!stretch->whole) {
       chosen.from_s = stretch->from_s;
-      chosen.to_s = stretch->to_s;
+      if (std::isfinite(stretch->to_s)) chosen.to_s = stretch->to_s;
     }
   }
   Source source;

@@ -1,5 +1,7 @@
 #include "libchar/characterize/settings.hpp"
 
+#include <algorithm>
+
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/log/reading_fields.hpp"
 
@@ -69,15 +71,17 @@ const Fields<FitOptions>& fit_settings() {
   return rows;
 }
 
+// Six whatever they are, all others of the table where they were set: two runs that differ have two configurations.
 const Fields<ReadOptions>& reading_settings() {
   static const Fields<ReadOptions> rows = [] {
     Fields<ReadOptions> all =
         selected(reading_fields(),
                  {"channels", "time_column", "time_unit", "delimiter", "decimal", "header"},
                  Written::always);
-    for (const Field& row :
-         selected(reading_fields(), {"rate_hz", "from_s", "to_s"}, Written::when_set).rows)
-      all.rows.push_back(row);
+    const std::vector<std::string> always_written = keys_of(all);
+    for (const Field& row : reading_fields().rows)
+      if (std::find(always_written.begin(), always_written.end(), row.key) == always_written.end())
+        all.rows.push_back(row);
     return all;
   }();
   return rows;

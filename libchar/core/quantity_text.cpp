@@ -113,6 +113,26 @@ double parse_rate_hz(std::string_view text) {
   return value;
 }
 
+Interval parse_range(std::string_view text, RangeOf what) {
+  const bool times = what == RangeOf::duration_s;
+  const std::string expected =
+      times ? "FROM..TO, from a time to a later one (10s..20min; 50.. and ..50 are open at an end)"
+            : "LOW..HIGH, from a frequency to a higher one (0.1..20, 50Hz..2kHz; 0.1.. is open "
+              "above)";
+  const std::size_t dots = text.find("..");
+  if (dots == std::string_view::npos) refuse(text, expected);
+  const auto end_of = [&](std::string_view end) {
+    return times ? parse_duration_s(end) : parse_rate_hz(end);
+  };
+  const std::string_view from = text.substr(0, dots), to = text.substr(dots + 2);
+  const bool open = to.empty() || to == "end";
+  if (from.empty() && open) refuse(text, expected);
+  const Interval range{from.empty() ? 0 : end_of(from),
+                       open ? std::numeric_limits<double>::infinity() : end_of(to)};
+  if (!(range.low < range.high)) refuse(text, expected);
+  return range;
+}
+
 std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {
   std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
   if (lowest > 0) expected += fmt::format(", not below {} bytes", lowest);

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "libchar/core/interval.hpp"
+
 namespace libchar {
 
 /// A finite number in [lowest, highest].
@@ -25,6 +27,12 @@ double parse_duration_s(std::string_view text);
 
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
+
+/// What such ends are: each with units of its own ("10s..20min", "100Hz..1.5kHz").
+enum class RangeOf { duration_s, rate_hz };
+
+/// FROM..TO, FROM < TO. An end that is left out is open: 0 or infinity; `end` says so of the last ("50..", "..50", "50..end").
+Interval parse_range(std::string_view text, RangeOf what = RangeOf::duration_s);
 
 /// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB,
 /// MB, GB of 1000). Not below `lowest`: a bare 10 is rather a forgotten unit.

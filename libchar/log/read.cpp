@@ -206,6 +206,7 @@ LogInfo read_log(const std::string& path,
     time = known.time;
     time.column = info.time.column;
     time.unit = info.time.unit;
+    time.unit_ns = info.time.unit_ns;
     time.unit_guessed = info.time.unit_guessed;
     if (!time.start_ns) time.start_ns = info.time.start_ns;
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document_file.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/core/version.hpp"
 
 namespace libchar {
@@ -56,6 +58,17 @@ Json document_head(std::string_view format,
       head["warnings"].push_back(warning_json(log->file, w));
   }
   return head;
+}
+
+LogInfo document_info(const std::string& path) {
+  const std::string text = read_document_text(path);
+  Sha256 hash;
+  hash.update(text);
+  LogInfo info;
+  info.file = path;
+  info.sha256 = hash.finish();
+  info.bytes = text.size();
+  return info;
 }
 
 Json channel_json(const Channel& channel, const ChannelQuality& q) {

@@ -18,6 +18,10 @@ Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs);
 
+/// What `input` says of a small file that was read whole, a model or a report: its path, digest and size. Throws
+/// Error(input) where it cannot be read.
+LogInfo document_info(const std::string& path);
+
 /// Name, unit and what the samples of a channel say about the instrument.
 Json channel_json(const Channel& channel, const ChannelQuality& quality);
 

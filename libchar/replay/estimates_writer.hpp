@@ -13,7 +13,7 @@ namespace libchar {
 
 /// Writes time (seconds from the recording's first sample), truth and estimates to a log while they
 /// are made: the columns t, one a true input (missing without a reference), one a label and input.
-/// The suffix of the path says the format. Give it to a replay as `ReplayOptions::estimates`.
+/// The suffix of the path says the format. Give it to a replay as `ReplayWorkspace::estimates`.
 class EstimatesWriter final : public EstimateSink {
  public:
   EstimatesWriter(std::string path, bool overwrite);

@@ -402,6 +402,11 @@ Json replay_json(const ReplayView& view) {
   const ReplayResult& result = *view.result;
   std::vector<const LogInfo*> logs;
   for (const LogInfo& log : result.logs) logs.push_back(&log);
+  LogInfo scene;
+  scene.file = result.scene.file;
+  scene.sha256 = result.scene.sha256;
+  scene.bytes = result.scene.bytes;
+  if (!scene.sha256.empty()) logs.push_back(&scene);
   Json out = document_head("replay-report", result.command, logs);
   for (const Json& warning : warnings_json(result.warnings)) out["warnings"].push_back(warning);
   out["config"] = json_of(result.settings);

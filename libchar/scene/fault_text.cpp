@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -18,9 +19,18 @@ namespace {
   throw Error({ErrorKind::usage, "E0722", "`fault`", what, got, hint});
 }
 
+void set_times(const std::string& when, const std::string& form, SensorFault& fault) {
+  try {
+    const Interval range = parse_range(when);
+    fault.from_s = range.low;
+    fault.to_s = range.high;
+  } catch (const Error& error) {
+    refuse(error.problem().what, error.problem().got, form);
+  }
+}
+
 }  // namespace
 
-// An open end is the end of the record.
 SensorFault parse_fault(const std::string& text, const std::vector<std::string>& names) {
   const std::string form = "SENSOR:KIND[=VALUE]@FROM..TO";
   const std::size_t at = text.rfind('@'),
@@ -56,12 +66,7 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
   if (!valueless) fault.value = number(what.substr(equals + 1));
   if ((fault.kind == FaultKind::saturation || fault.kind == FaultKind::noise) && fault.value < 0)
     refuse(kind + " needs a value of at least 0", what.substr(equals + 1));
-  const std::size_t dots = when.find("..");
-  if (dots == std::string::npos) refuse("expected FROM..TO in seconds", when, form);
-  fault.from_s = number(when.substr(0, dots));
-  if (dots + 2 < when.size()) fault.to_s = number(when.substr(dots + 2));
-  if (!(fault.from_s >= 0 && fault.from_s < fault.to_s))
-    refuse("a fault lasts from a time to a later one", when);
+  set_times(when, form, fault);
   return fault;
 }
 

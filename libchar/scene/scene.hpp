@@ -94,7 +94,9 @@ struct SimulatedFrom {
 };
 
 struct Scene {
-  std::string file;  ///< of the scene
+  std::string file;         ///< of the scene
+  std::string sha256;       ///< of its file; "" where none was read
+  std::uint64_t bytes = 0;  ///< of its file
   std::string name;
   std::string recording;              ///< resolved path; empty for a simulation
   ReadOptions reading;                ///< rate, delimiter, names… of the recording

@@ -12,6 +12,7 @@
 #include "libchar/core/file_text.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/output_files.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
@@ -218,7 +219,13 @@ bool is_scene_file(const std::string& path) {
 
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options) {
   refuse_interrupted(path);
-  return parse_scene(read_document_text(path), path, options);
+  const std::string text = read_document_text(path);
+  Scene scene = parse_scene(text, path, options);
+  Sha256 hash;
+  hash.update(text);
+  scene.sha256 = hash.finish();
+  scene.bytes = text.size();
+  return scene;
 }
 
 }  // namespace libchar

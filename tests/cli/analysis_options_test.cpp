@@ -46,6 +46,18 @@ TEST_CASE("a channel's name that a spreadsheet would run is guarded in allan as 
   CHECK_THAT(test::run({"psd", log, "--rate", "10"}).out, Contains("frequency_hz,'=1+1["));
 }
 
+TEST_CASE("report.json says each reading option that was set") {
+  const test::TemporaryFolder folder;
+  const Json usual = spectrum_settings({}, folder);
+  for (const char* key : {"units", "names", "encoding", "overflow_as_missing"})
+    CHECK_FALSE(usual["config"]["reading"].contains(key));
+  const Json set = spectrum_settings(
+      {"--units", "rad/s", "--encoding", "latin1", "--overflow-as-missing"}, folder);
+  CHECK(set["config"]["reading"]["units"] == Json({"rad/s"}));
+  CHECK(set["config"]["reading"]["encoding"] == "latin1");
+  CHECK(set["config"]["reading"]["overflow_as_missing"] == true);
+}
+
 TEST_CASE("the option segment takes samples, a time or N/4, in psd and in characterize") {
   const test::TemporaryFolder folder;
   const std::string log = test::fixture("imu_at_rest.csv").string();

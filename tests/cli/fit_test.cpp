@@ -77,6 +77,7 @@ TEST_CASE("fit of a stretch, beside a temperature; neither goes with a curve") {
       {"--curve", "allan", "--still", "auto"},
       {"--curve", "allan", "--temperature", "temp"},
       {"--still", "40..20"},
+      {"--still", ".."},
       {"--still", "soon"},
       {"--still", "10..20", "--from", "5"},
       {"--temperature", "gx"}};

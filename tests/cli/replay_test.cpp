@@ -337,7 +337,9 @@ TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
   CHECK_THAT(ran.out, Contains("leave-one-out"));
   const auto report = bench.report("out");
   CHECK(report["reference"].is_null());
+  REQUIRE(report["input"].size() == 2);
   CHECK(report["input"][0]["sha256"].get<std::string>().size() == 64);
+  CHECK(report["input"][1]["path"] == scene);
   CHECK(report["algorithms"][0]["regret"].is_null());
   CHECK(report["algorithms"][0]["rmse"].is_null());
   CHECK(report["algorithms"][0]["without_reference"]["leave_one_out_rms"].get<double>() > 0.5);

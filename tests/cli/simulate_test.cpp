@@ -133,6 +133,9 @@ TEST_CASE("simulate: a scene file says it all") {
   CHECK(document["format"] == "simulation");
   CHECK(document["seed"] == 4);
   CHECK(document["sensors"].size() == 2);
+  REQUIRE(document["input"].size() == 1);
+  CHECK(document["input"][0]["path"] == scene);
+  CHECK(document["input"][0]["sha256"].get<std::string>().size() == 64);
   CHECK_THAT(test::slurp(bench.path("a.scene.yaml")), Contains("learning: [0.0, 1.0]"));
   CHECK(
       test::run({"simulate", scene, "-o", bench.path("gyro.sensor.yaml"), "--as", "csv", "--force"})

@@ -136,6 +136,17 @@ TEST_CASE("16- and 32-bit microsecond clocks run over and go on") {
   }
 }
 
+TEST_CASE("a clock in 0.1 ms runs over and goes on") {
+  const std::int64_t range = std::int64_t{1} << 32;
+  std::vector<std::int64_t> t;
+  for (int i = 0; i < 1000; ++i) t.push_back((range - 1000 + i * 100) % range);
+  const Recording r = read_text(log_of(t, "SampleTimeFine"));
+  CHECK(r.info.samples == 1000);
+  CHECK(count(r, "clock_rollover") == 1);
+  CHECK(r.info.time.rate_hz == Approx(100));
+  CHECK(r.info.time.unit_ns == 100000);
+}
+
 TEST_CASE("stamps that are no time axis") {
   CHECK(failure("t_us,x\n5,1\n5,2\n5,3\n")
             .find("log.csv:3:1: error E0315: no time axis: all stamps are equal") == 0);

@@ -1,5 +1,7 @@
 #include "libchar/replay/detail/instants.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -239,6 +241,31 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
   bench.put("bare.csv", "a,b\n1,2\n2,3\n");
   CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, 1, no_progress()),
                     Catch::Contains("E0907"));
+}
+
+TEST_CASE("instants: uneven stamps in any unit give the same instants") {
+  const test::SceneBench bench;
+  const auto resampled = [&](const std::string& column, double seconds) {
+    std::string log = column + ",a\n";
+    for (int k = 0; k < 302; ++k)
+      log += fmt::format("{:.9f},{}\n", (k + (k % 3) * 0.1) / seconds, k * k % 17);
+    bench.put("log.csv", log);
+    return read_resampled(bench.path("log.csv"), {}, {"a"}, 2, 1, no_progress()).samples[0];
+  };
+  const std::vector<double> expected = resampled("time[s]", 1);
+  CHECK(expected.size() == 603);  // 301.1 s
+  for (const auto& [column, seconds] : {std::pair{"time[min]", 60.0},
+                                        std::pair{"time[h]", 3600.0},
+                                        std::pair{"time[ms]", 1e-3},
+                                        std::pair{"SampleTimeFine", 1e-4}}) {
+    INFO(column);
+    const std::vector<double> got = resampled(column, seconds);
+    REQUIRE(got.size() == expected.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < got.size(); ++i)
+      worst = std::max(worst, std::abs(got[i] - expected[i]));
+    CHECK(worst < 1e-3);
+  }
 }
 
 TEST_CASE("instants: a reference angle is interpolated the short way round") {

@@ -123,7 +123,7 @@ TEST_CASE("html: what could not be computed leaves a sentence, not a hole") {
 
 TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
   if (std::system("command -v xmllint >/dev/null 2>&1") != 0) {
-    WARN("skipped: xmllint is absent");
+    WARN("SKIPPED: xmllint is absent");
     return;
   }
   const test::TemporaryFolder folder;

@@ -7,12 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/characterization_check.hpp"
-#include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
@@ -35,16 +34,7 @@ Json comparison_head(const Session& session,
                      const std::string& format,
                      const std::string& a,
                      const std::string& b) {
-  std::vector<LogInfo> files(2);
-  const std::string* paths[] = {&a, &b};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::string text = read_document_text(*paths[i]);
-    Sha256 hash;
-    hash.update(text);
-    files[i].file = *paths[i];
-    files[i].sha256 = hash.finish();
-    files[i].bytes = text.size();
-  }
+  const LogInfo files[] = {document_info(a), document_info(b)};
   return document_head(session, format, {&files[0], &files[1]});
 }
 

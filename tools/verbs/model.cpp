@@ -7,12 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/export/exports.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/report/model_text.hpp"
@@ -40,14 +39,7 @@ ReadModels read_all(const ModelVerb& verb) {
   for (const std::string& file : verb.files) {
     const std::vector<SensorModel> models = read_model_list(file);
     read.models.insert(read.models.end(), models.begin(), models.end());
-    LogInfo info;
-    info.file = file;
-    const std::string text = read_document_text(file);
-    Sha256 hash;
-    hash.update(text);
-    info.sha256 = hash.finish();
-    info.bytes = text.size();
-    read.files.push_back(std::move(info));
+    read.files.push_back(document_info(file));
   }
   return read;
 }

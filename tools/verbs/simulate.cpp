@@ -16,6 +16,7 @@
 #include "libchar/core/warnings.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/report/simulation_text.hpp"
 #include "libchar/scene/fault_text.hpp"
@@ -255,9 +256,13 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;
   apply_options(session, verb, simulation);
+  std::vector<LogInfo> read;  // before the outputs take their places
+  std::vector<const LogInfo*> inputs;
+  for (const std::string& source : verb.sources) read.push_back(document_info(source));
+  for (const LogInfo& one : read) inputs.push_back(&one);
   const SimulationSummary summary = write_recording(session, verb, simulation, scene);
   if (!verb.json) return print_summary(session, verb.output, simulation_text(summary));
-  Json document = document_head(session, "simulation", {});
+  Json document = document_head(session, "simulation", inputs);
   document.update(simulation_json(summary));
   print(dump_json(document));
 }

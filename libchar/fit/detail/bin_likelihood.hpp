@@ -15,7 +15,7 @@ namespace libchar {
 using TermSet = std::array<bool, kTerms>;
 using TermMatrix = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// Most coefficients of a shape (shape.hpp).
+/// Most coefficients of a shape (core/noise_shape.hpp).
 inline constexpr int kMostShape = 8;
 using ShapeCoefficients = std::array<double, kMostShape>;
 

@@ -45,7 +45,7 @@ class ReweightedVariances {
   ReweightedVariances(std::size_t n, const ReweightingOptions& options);
 
   /// Fused value of the m channels named in `index`, rising (nullptr: all); residuals stand in
-  /// `residual()` until the next call. The samples must be finite.
+  /// `residuals()` until the next call. The samples must be finite.
   double fuse(const double* y, const int* index, int m);
   /// Learns from the residuals of the last `fuse`.
   void update() {

@@ -298,20 +298,6 @@ class Literal {
   std::size_t position_ = 0;
 };
 
-std::string latin1_to_utf8(std::string_view text) {
-  std::string utf8;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      utf8 += c;
-    } else {
-      utf8 += static_cast<char>(0xC0U | (byte >> 6U));
-      utf8 += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
-  }
-  return utf8;
-}
-
 void check_magic(std::string_view bytes, const std::string& file) {
   const auto refuse = [&](const char* what, const char* hint) {
     throw Error({ErrorKind::input,

@@ -15,20 +15,6 @@ std::string place_name(std::uint64_t line, std::uint64_t column) {
                      : fmt::format("line {}, column {}", line, column);
 }
 
-std::string latin1_to_utf8(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      out += c;
-    } else {
-      out += static_cast<char>(0xC0U | (byte >> 6U));
-      out += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
-  }
-  return out;
-}
-
 void name_columns(Dialect& dialect, LogInfo& info) {
   std::map<std::string, int> stripped;
   for (Column& column : dialect.columns) {

@@ -257,6 +257,7 @@ std::int64_t find_time_unit(const TableFront& table,
         unit_name(unit)));
   }
   info.time.unit = unit_name(unit);
+  info.time.unit_ns = unit;
   return unit;
 }
 

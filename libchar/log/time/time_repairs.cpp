@@ -16,7 +16,8 @@
 namespace libchar {
 namespace {
 
-constexpr double kLargestGap = 1e8;  // grid points in one gap
+constexpr std::int64_t kSecond = 1000000000;  // ns; a counter's unit is below it
+constexpr double kLargestGap = 1e8;           // grid points in one gap
 constexpr std::uint64_t kBackward =
     64;                               // backward rows in a row before the clock is called restarted
 constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
@@ -39,10 +40,6 @@ GridStretch gap_in_window(
     inside.last = std::min<std::int64_t>(
         gap, whole_steps(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
   return inside;
-}
-
-std::int64_t counter_unit_ns(std::string_view unit) {
-  return unit == "us" ? 1000 : unit == "ms" ? 1000000 : 1;
 }
 
 std::optional<Rollover> find_rollover(std::int64_t before_ns,
@@ -181,10 +178,9 @@ void TimeGrid::pass_gap(const Pending& front,
 // Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
 // the row.
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  const std::string& unit = source_.info().time.unit;
-  if (unit != "s") {
-    if (const auto rollover =
-            find_rollover(last_ - wrap_, stamp - wrap_, counter_unit_ns(unit), dt_)) {
+  const std::int64_t unit_ns = source_.info().time.unit_ns;
+  if (unit_ns < kSecond) {
+    if (const auto rollover = find_rollover(last_ - wrap_, stamp - wrap_, unit_ns, dt_)) {
       unwrap(front, row, *rollover, stamp);
       return Verdict::keep;
     }

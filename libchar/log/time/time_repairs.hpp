@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 namespace libchar {
@@ -21,9 +20,6 @@ struct GridStretch {
 /// (INT64_MAX = no end), also after the first stamp.
 GridStretch gap_in_window(
     std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns);
-
-/// Nanoseconds of a clock's unit, "ns", "us" or "ms"; 1 for any other.
-std::int64_t counter_unit_ns(std::string_view unit);
 
 struct Rollover {
   int bits = 32;

@@ -6,16 +6,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/whole_file.hpp"
 
 namespace libchar {
 namespace {
-
-// A spreadsheet takes a cell that begins like this for a formula.
-bool begins_like_a_formula(std::string_view text) {
-  return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
-}
 
 std::string header_cell(const Channel& channel) {
   std::string text = begins_like_a_formula(channel.name) ? "'" + channel.name : channel.name;

@@ -20,10 +20,6 @@ struct Nothing final : BlockSink {
   void block(const SampleBlock&) override {}
 };
 
-double seconds(const std::string& unit) {
-  return unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "ns" ? 1e-9 : 1;
-}
-
 std::size_t column_of(const LogInfo& log, const std::string& name) {
   for (std::size_t c = 0; c < log.channels.size(); ++c)
     if (log.channels[c].name == name) return c;
@@ -82,9 +78,9 @@ ReadOptions with_stamps_as_channel(ReadOptions reading) {
   return reading;
 }
 
-std::vector<double> seconds_since_first(const std::vector<double>& raw, const std::string& unit) {
+std::vector<double> seconds_since_first(const std::vector<double>& raw, std::int64_t unit_ns) {
   std::vector<double> out;
-  const double factor = seconds(unit);
+  const double factor = static_cast<double>(unit_ns) / 1e9;
   out.reserve(raw.size());
   for (const double t : raw) out.push_back((t - raw[0]) * factor);
   return out;
@@ -158,7 +154,7 @@ ResampledLog read_resampled(const std::string& path,
   const Recording rows = read_recording(path, with_stamps_as_channel(whole), progress);
   out.log.warnings = rows.info.warnings;
   const std::vector<double> stamps =
-      seconds_since_first(rows.samples[column_of(rows.info, time.column)], time.unit);
+      seconds_since_first(rows.samples[column_of(rows.info, time.column)], time.unit_ns);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
     refuse(path, "recording.resample_hz: fewer than two rows with rising stamps", "");

@@ -1,5 +1,5 @@
 #pragma once
-// What several JSON documents share: their head, an interval, and one channel's part of a document (outputs_json.cpp).
+// What several JSON documents share: their head, an interval, and one channel's part of a document (json_pieces.cpp).
 
 #include <string_view>
 
