@@ -51,8 +51,8 @@ TEST_CASE("report.json says each reading option that was set") {
   const Json usual = spectrum_settings({}, folder);
   for (const char* key : {"units", "names", "encoding", "overflow_as_missing"})
     CHECK_FALSE(usual["config"]["reading"].contains(key));
-  const Json set = spectrum_settings(
-      {"--units", "rad/s", "--encoding", "latin1", "--overflow-as-missing"}, folder);
+  const Json set =
+      spectrum_settings({"--units", "rad/s", "--encoding", "latin1", "--overflow", "nan"}, folder);
   CHECK(set["config"]["reading"]["units"] == Json({"rad/s"}));
   CHECK(set["config"]["reading"]["encoding"] == "latin1");
   CHECK(set["config"]["reading"]["overflow_as_missing"] == true);
