@@ -333,7 +333,7 @@ TEST_CASE("modified deviations average the terms of means over what is present")
 }
 
 TEST_CASE(
-    "phase data drop exactly the terms that touch a missing point; total deviation takes a "
+    "phase data drop exactly the terms that touch a missing point, total deviation takes a "
     "stretch") {
   const std::size_t n = 6000;
   auto y = white(n, 10, 50);
@@ -368,7 +368,7 @@ TEST_CASE(
   check_same_bits(curve_of(piece, DeviationType::totdev), total, 1);
 }
 
-TEST_CASE("one missing sample ends no curve; a long gap leaves long times without terms, noted") {
+TEST_CASE("one missing sample ends no curve, a long gap leaves long times without terms, noted") {
   auto y = white(2000, 11);
   const AllanCurve whole = curve_of(y, DeviationType::oadev);
   y[1000] = std::nan("");

@@ -86,7 +86,7 @@ double worst_of_diagonal(const Eigen::MatrixXd& got, const Eigen::MatrixXd& trut
 
 }  // namespace
 
-TEST_CASE("edf identities: white 2M/3, walk M at m = 1; one term has one degree of freedom") {
+TEST_CASE("edf identities: white 2M/3, walk M at m = 1, one term has one degree of freedom") {
   for (const std::uint64_t terms : {1ULL, 2ULL, 7ULL, 999ULL, 123456ULL, 1000000000ULL}) {
     const double m = double(terms);
     // Exactly M^2/(M + (M - 1)/2), which tends to 2M/3.
@@ -332,7 +332,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
 }
 
 TEST_CASE(
-    "intervals of a curve: nested, finite, reliable from five degrees of freedom on; a ramp "
+    "intervals of a curve: nested, finite, reliable from five degrees of freedom on, a ramp "
     "narrows them") {
   AllanCurve curve = octaves(1000);
   add_intervals(curve, {1, 0.1, 0.01, 0, 0});

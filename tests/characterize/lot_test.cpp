@@ -113,7 +113,7 @@ TEST_CASE("a device that does not belong to the lot is named with its reason") {
   CHECK_THAT(lot_verdict(result), Contains("1 channel stands out"));
 }
 
-TEST_CASE("a lot of one device compares its axes; one channel is none; one file twice is refused") {
+TEST_CASE("a lot of one device compares its axes, one channel is none, one file twice is refused") {
   auto devices = lot(1, 0.1, 4);
   const Lot axes = lot_of(devices);
   CHECK(find(axes, "angular_rate in deg/s", Term::white).members == 3);

@@ -130,7 +130,7 @@ TEST_CASE("summary: a misfit, a bad goodness, no fit are not to be used") {
 }
 
 TEST_CASE(
-    "summary: motion and changes of strength are phrases; their sentences stand with the channel") {
+    "summary: motion and changes of strength are phrases, their sentences stand with the channel") {
   ChannelResult c = clean();
   c.motion.moving_s = {{10, 20}, {30, 40}};
   c.motion.changes.resize(1);

@@ -98,7 +98,7 @@ TEST_CASE("verification: spikes that the fit left out are named where the curves
         "The recording's curve holds 40 spikes that were left out of the fit.");
 }
 
-TEST_CASE("verification: same seed, same bytes; it stands in every output") {
+TEST_CASE("verification: same seed, same bytes, it stands in every output") {
   const test::TemporaryFolder folder;
   const std::string log = recording(folder, 3, 0);
   Characterization a = characterize(log, {}), b = characterize(log, {});

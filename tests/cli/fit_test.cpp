@@ -46,7 +46,7 @@ TEST_CASE("fit CURVE --curve allan") {
   CHECK(channel["bias_instability"]["value"].is_null());
 }
 
-TEST_CASE("fit of a stretch, beside a temperature; neither goes with a curve") {
+TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.csv").string();
   test::NoiseSource source(20000, 100, 4);

@@ -63,7 +63,7 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
   CHECK(recording["channels"][0]["maximum"] == 65504.0);
 }
 
-TEST_CASE("several logs make one document; channels are chosen by repetition and by commas") {
+TEST_CASE("several logs make one document, channels are chosen by repetition and by commas") {
   const std::string a = test::fixture("npy/c_order.npy").string(),
                     b = test::fixture("npy/big_endian_f4.npy").string();
   const auto ran = test::run({"inspect", "-c", "c0,c2", a, b, "-c", "c1", "--json"});

@@ -73,7 +73,7 @@ std::vector<std::string> with(std::vector<std::string> words,
 }  // namespace
 
 TEST_CASE(
-    "replay of a log: patterns, reference, reports; the scene it writes gives the same bytes") {
+    "replay of a log: patterns, reference, reports, the scene it writes gives the same bytes") {
   const RecordingBench bench;
   const auto ran = RecordingBench::replay(bench.log,
                                           with(kWords,

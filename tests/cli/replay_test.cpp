@@ -68,7 +68,7 @@ std::size_t files_in(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE(
-    "replay: estimates written again over those of an earlier run stay; without them they go") {
+    "replay: estimates written again over those of an earlier run stay, without them they go") {
   const ReplayBench bench;
   const auto replayed = [&](std::vector<std::string> more) {
     more.insert(

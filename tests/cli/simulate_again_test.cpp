@@ -52,7 +52,7 @@ TEST_CASE("simulate: seed, faults and true inputs are in the scene, which makes 
 }
 
 TEST_CASE(
-    "simulate: a true input from a log is read again; a scene without a simulation is refused") {
+    "simulate: a true input from a log is read again, a scene without a simulation is refused") {
   const test::TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder / name).string(); };
   std::ofstream(path("motion.csv")) << "t[s],rate\n0,1\n0.01,2\n0.02,3\n0.03,5\n";

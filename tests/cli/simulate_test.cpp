@@ -64,7 +64,7 @@ TEST_CASE("simulate: every log format holds the same samples, and truth stands b
   }
 }
 
-TEST_CASE("simulate: a seed is a recording; devices differ; white noise has its variance") {
+TEST_CASE("simulate: a seed is a recording, devices differ, white noise has its variance") {
   const SimulateBench bench;
   const std::string model = bench.gyro();
   const auto make = [&](const std::string& out, const std::string& seed) {

@@ -183,7 +183,7 @@ TEST_CASE("files of two folders and devices are committed together as far as the
   CHECK(names_in(folder / "in") == std::set<std::string>{"b"});
 }
 
-TEST_CASE("one of a pair that an interrupted run has left is not read; its neighbours are") {
+TEST_CASE("one of a pair that an interrupted run has left is not read, its neighbours are") {
   const test::TemporaryFolder folder;
   write_journal(folder.path(), {{{"log.bin.libchar-tmp-1-0", "log.bin"}}, {"old.yaml"}});
   CHECK(code_of_outputs([&] { refuse_interrupted(folder / "log.bin"); }) == "E0516");

@@ -216,7 +216,7 @@ double simulated_adev(const Discrete& rule, double tau_s, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("simulated: Gazebo's stddev a sample and Ornstein-Uhlenbeck bias; RotorS' densities") {
+TEST_CASE("simulated: Gazebo's stddev a sample and Ornstein-Uhlenbeck bias, RotorS' densities") {
   const std::string sdf = exported("sdf", device()).text;
   recovers(ornstein_uhlenbeck(number_after(sdf, "stddev"),
                               number_after(sdf, "dynamic_bias_stddev"),

@@ -223,7 +223,7 @@ TEST_CASE("an unknown target is refused with the nearest") {
 }
 
 TEST_CASE(
-    "axes: the largest by default, with the spread in a comment; rms and one axis on request") {
+    "axes: the largest by default, with the spread in a comment, rms and one axis on request") {
   auto models = test::euroc_imu();
   models[2].noise[0] = known(3e-4);  // gyr_y
   CHECK(number_after(exported("kalibr", models).text, "gyroscope_noise_density") == 3e-4);
@@ -359,7 +359,7 @@ TEST_CASE("groups: an unknown or wrong unit says which one is needed") {
   CHECK(has(refusal("vins", models), "names no sampling rate"));
 }
 
-TEST_CASE("what has no place in the file is left out and said; ROS says what is not provided") {
+TEST_CASE("what has no place in the file is left out and said, ROS says what is not provided") {
   auto models = test::euroc_imu();
   models.push_back(test::model("temp", "degC", {known(0.1), {}, {}}, 1));
   models.push_back(test::model("mag_x", "uT", {known(0.1), {}, {}}, 100));
@@ -468,7 +468,7 @@ TEST_CASE("generic JSON reads back to the same model, alone and in a list") {
   CHECK_THROWS_WITH(read_model_list(six), Contains("newer"));
 }
 
-TEST_CASE("a misfit is refused, or goes with a sentence; generic JSON keeps the status itself") {
+TEST_CASE("a misfit is refused, or goes with a sentence, generic JSON keeps the status itself") {
   std::vector<SensorModel> models = test::euroc_imu();
   models[1].noise[0].status = Status::misfit;
   models[1].noise_shape = {NoiseShape::Kind::boxcar, 4, {}, {}};

@@ -213,7 +213,7 @@ TEST_CASE("kalman-takens: gaps are predicted, dead instants do not enter the dic
         constant.topRows(1));
 }
 
-TEST_CASE("kalman-takens-taught: the dictionary is the reference; too short is said") {
+TEST_CASE("kalman-takens-taught: the dictionary is the reference, too short is said") {
   const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
   const Eigen::VectorXd x = sine(6000, 40);
   const Eigen::MatrixXd y = noisy(x, variances);

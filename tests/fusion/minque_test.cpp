@@ -147,7 +147,7 @@ TEST_CASE("minque: near the optimum, one input") {
   }
 }
 
-TEST_CASE("minque: near the optimum, two inputs; faults there too") {
+TEST_CASE("minque: near the optimum, two inputs, faults there too") {
   const Eigen::MatrixXd h =
       (Eigen::MatrixXd(6, 2) << 1, -.02, 1, -.06, 1, -.11, 1, -.17, 1, -.24, 1, -.3).finished();
   const Eigen::VectorXd variances = (Eigen::VectorXd(6) << 1, 4, 1.5, 8, 3, 12).finished() * 1e-4;

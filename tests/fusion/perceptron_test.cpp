@@ -76,7 +76,7 @@ TEST_CASE("tanh network: 50-digit outputs and Jacobian") {
   CHECK(test::worst(rows, file.block("J", 22), 1.11e-16) <= 1);
 }
 
-TEST_CASE("tanh network: derivatives against differences; neurons in any order") {
+TEST_CASE("tanh network: derivatives against differences, neurons in any order") {
   const TanhNetwork network{4, 6};
   test::Gaussian gauss(1);
   std::vector<double> p(network.size()), z(4), row(network.size());
@@ -99,7 +99,7 @@ TEST_CASE("tanh network: derivatives against differences; neurons in any order")
   CHECK(network.output(other.data(), z.data()) == Approx(out).epsilon(1e-13));
 }
 
-TEST_CASE("network normals: sums over the rows; the same bits on one core and on all") {
+TEST_CASE("network normals: sums over the rows, the same bits on one core and on all") {
   const TanhNetwork network{4, 5};
   test::Gaussian gauss(3);
   std::vector<double> p(network.size()), rows(5 * 1500);
@@ -170,7 +170,7 @@ TEST_CASE("perceptron: learns a bent sensor") {
   CHECK(ours < 0.8 * straight);
 }
 
-TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not matter") {
+TEST_CASE("perceptron: same seed, same bits, another seed, others, blocks do not matter") {
   const TrainingScene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
   const Eigen::MatrixXd x = test::run(*trained(s), rest).x;
@@ -188,7 +188,7 @@ TEST_CASE("perceptron: same seed, same bits; another seed, others; blocks do not
   CHECK(test::run(*in_parts, rest).x == x);
 }
 
-TEST_CASE("perceptron: offset and scale cost nothing; a constant channel drops out") {
+TEST_CASE("perceptron: offset and scale cost nothing, a constant channel drops out") {
   const TrainingScene s = scene(3000, 2000);
   const Eigen::MatrixXd rest = s.y.rightCols(1000);
   const Eigen::MatrixXd x = test::run(*trained(s, {{"neurons", 3}}), rest).x;

@@ -168,7 +168,7 @@ TEST_CASE("the order of the channels does not matter") {
   });
 }
 
-TEST_CASE("weights sum to one; variances are never negative") {
+TEST_CASE("weights sum to one, variances are never negative") {
   for (const Eigen::Index n : {2, 3, 6, 200}) {
     const LearnedScene scene = scene_of(n);
     for_each(scene, [&](const Entry& entry) {

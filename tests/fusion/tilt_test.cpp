@@ -214,7 +214,7 @@ TEST_CASE("tilt: blocks of any size give the same bits") {
   }
 }
 
-TEST_CASE("tilt tuned: near the best constants there are; unlike noise, unlike constants") {
+TEST_CASE("tilt tuned: near the best constants there are, unlike noise, unlike constants") {
   const Eigen::MatrixXd y = turning(20000);
   Array array = tilt_array();
   array.learning_samples = 10000;

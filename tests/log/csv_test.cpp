@@ -59,7 +59,7 @@ TEST_CASE("TUM: blanks between columns, several comment lines") {
   CHECK(guessed(r, "delimiter: blanks"));
 }
 
-TEST_CASE("phyphox: quoted names, exponents; semicolon and tab with decimal comma") {
+TEST_CASE("phyphox: quoted names, exponents, semicolon and tab with decimal comma") {
   const char* header[] = {"\"Time (s)\",\"Acceleration x (m/s^2)\"",
                           "\"Time (s)\";\"Acceleration x (m/s^2)\"",
                           "\"Time (s)\"\t\"Acceleration x (m/s^2)\""};

@@ -110,7 +110,7 @@ TEST_CASE("a clock too coarse to tell rows apart keeps all rows") {
   CHECK(s.info.time.rate_hz == Approx(400).epsilon(1e-6));
 }
 
-TEST_CASE("rows that step back are dropped and counted; a restarted clock is an error") {
+TEST_CASE("rows that step back are dropped and counted, a restarted clock is an error") {
   auto t = even(300, 1000);
   std::swap(t[100], t[101]);
   const Recording r = read_text(log_of(t));
@@ -356,7 +356,7 @@ TEST_CASE("coarse stamps: the rate is rows over time") {
   }
 }
 
-TEST_CASE("rows missing at random are gaps, however many; rows missing at pauses too") {
+TEST_CASE("rows missing at random are gaps, however many, rows missing at pauses too") {
   std::mt19937_64 random(9);
   for (const double share : {0.03, 0.1, 0.3, 0.5, 0.7}) {
     std::vector<std::int64_t> t;

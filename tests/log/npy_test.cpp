@@ -125,7 +125,7 @@ TEST_CASE("integers come over exactly, and are counted where a double cannot hol
   CHECK(natural.warnings.find("rounded_integer")->count == 2);
 }
 
-TEST_CASE("half precision is exact; infinity and NaN are missing, infinity is counted") {
+TEST_CASE("half precision is exact, infinity and NaN are missing, infinity is counted") {
   const auto got = read("half.npy");
   const ColumnValues& x = got.columns[0];
   CHECK(ColumnValues(x.begin(), x.begin() + 6) == ColumnValues{0, 1, -2, 65504, 0x1p-24, 0x1p-14});
@@ -156,7 +156,7 @@ TEST_CASE("padding of aligned records is skipped, UTF-8 names are kept") {
   CHECK(got.columns == std::vector<ColumnValues>{{1, 2, 3}, {0.5, 1.5, 2.5}});
 }
 
-TEST_CASE("channels are chosen by name or position, in file order; a slip is named") {
+TEST_CASE("channels are chosen by name or position, in file order, a slip is named") {
   ReadOptions options;
   options.channels = {"acc_1", "gyr_0"};
   const auto got = read("structured.npy", options);

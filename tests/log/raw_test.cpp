@@ -148,7 +148,7 @@ TEST_CASE(
   CHECK_FALSE(doubtful({1, 2, 3}, false));
 }
 
-TEST_CASE("a missing sidecar is answered with one to copy; two are one too many") {
+TEST_CASE("a missing sidecar is answered with one to copy, two are one too many") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "x.f64") << std::string(16, 'a');
   CHECK_THROWS_WITH(test::read_rows("raw", folder / "x.f64"),

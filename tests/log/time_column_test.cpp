@@ -212,7 +212,7 @@ TEST_CASE("a wrong time column or unit is refused in every format alike") {
   }
 }
 
-TEST_CASE("an array without names is all channels; a first column that rises evenly is said") {
+TEST_CASE("an array without names is all channels, a first column that rises evenly is said") {
   const auto guesses = [](const ReadOptions& options) {
     return test::read_rows("npy", test::fixture("npy/c_order.npy"), options).info.guesses;
   };

@@ -127,7 +127,7 @@ TEST_CASE("32-bit files hold 32-bit values exactly, and say what they rounded") 
   CHECK_FALSE(std::filesystem::exists(folder / "b.npy"));
 }
 
-TEST_CASE("raw keeps names, units, rate and start; CSV too, its absolute start as integers") {
+TEST_CASE("raw keeps names, units, rate and start, CSV too, its absolute start as integers") {
   const test::TemporaryFolder folder;
   const LogInfo info = info_of({{"gyro_x", "deg/s"}}, 200, 1403636579758555392);
   for (const char* file : {"a.csv", "a.f64"}) {

@@ -88,7 +88,7 @@ TEST_CASE("align: reported only, the sensors are fused as recorded") {
   CHECK(only.alignment->budget.after < 0.1 * only.alignment->budget.before);
 }
 
-TEST_CASE("align: learnt and judged on the same stretch is warned of; other windows are refused") {
+TEST_CASE("align: learnt and judged on the same stretch is warned of, other windows are refused") {
   const AlignedBench bench;
   const ReplayResult same = bench.run("align: {learn: run}\n");
   CHECK(same.alignment->overlaps);

@@ -142,7 +142,7 @@ TEST_CASE("flicker and random walk: Allan variance at one sample", "[noise_level
   }
 }
 
-TEST_CASE("quantization, rounding, output gain; bias and ramp are no noise", "[noise_level]") {
+TEST_CASE("quantization, rounding, output gain, bias and ramp are no noise", "[noise_level]") {
   SensorModel m;
   set(m, Term::quantization, 2e-4);
   CHECK(simulated(m, 100, 1).variance == Approx(sample_noise_variance(m, 100)).epsilon(0.01));

@@ -71,7 +71,7 @@ TEST_CASE("sensor array: the same bits for any block size and number of threads"
 }
 
 TEST_CASE(
-    "sensor array: another seed and another device are other noise; rows of H weigh the truth") {
+    "sensor array: another seed and another device are other noise, rows of H weigh the truth") {
   ArraySimulation s = three_sensors(4000);
   const auto one = run(s, 512);
   s.seed = 2;

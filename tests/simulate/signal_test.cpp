@@ -103,7 +103,7 @@ TEST_CASE("signals: a walk spreads as its step says, and block sizes do not matt
     CHECK(run(of_kind(kind), 100, 3000, 1) == run(of_kind(kind), 100, 3000, 999));
 }
 
-TEST_CASE("signals: the derivative sums up to its signal; sine_of and cosine_of follow it") {
+TEST_CASE("signals: the derivative sums up to its signal, sine_of and cosine_of follow it") {
   SignalSpec sine = of_kind("sine"), derivative = of_kind("derivative"),
              cosine = of_kind("cosine_of");
   cosine.amplitude = 9.81;

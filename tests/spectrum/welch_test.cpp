@@ -301,7 +301,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("degrees of freedom: 2 a segment without overlap; Hann at half overlap as in the books") {
+TEST_CASE("degrees of freedom: 2 a segment without overlap, Hann at half overlap as in the books") {
   WelchOptions options = welch_segments(256);
   options.overlap = 0;
   CHECK(welch(white_samples(2560, 1), 1, options).dof[5] == Approx(20).epsilon(1e-14));
