@@ -7,12 +7,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/verdict.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -105,9 +105,8 @@ TermVerification compare_term(Term term,
 }
 
 double two_sided_probability(double variance_ratio, double edf1, double edf2) {
-  const boost::math::fisher_f f(edf1, edf2);
-  const double low = boost::math::cdf(f, variance_ratio);
-  const double high = boost::math::cdf(boost::math::complement(f, variance_ratio));
+  const double low = fisher_cdf(variance_ratio, edf1, edf2);
+  const double high = fisher_tail(variance_ratio, edf1, edf2);
   return std::min(1.0, 2 * std::min(low, high));
 }
 

@@ -9,10 +9,10 @@
 #include "libchar/core/random_effects.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
 
 namespace libchar {
@@ -62,10 +62,6 @@ double mean_variance(const Weighted& at, std::size_t count) {
   return std::max(1.0, scatter) / at.weights;
 }
 
-double student_quantile(double dof, double probability) {
-  return boost::math::quantile(boost::math::students_t(dof), probability);
-}
-
 struct Deleted {
   std::vector<double> y, v;
 };
@@ -90,8 +86,7 @@ Outlier worst_of(std::span<const double> y, std::span<const double> v) {
     const Weighted at = weighted(others.y, others.v, spread * spread);
     const double sd = std::sqrt(v[i] + spread * spread + mean_variance(at, others.y.size()));
     const double t = (y[i] - at.mean) / sd;
-    const double tail = 2 * boost::math::cdf(boost::math::complement(
-                                boost::math::students_t(count - 2), std::abs(t)));
+    const double tail = 2 * student_tail(std::abs(t), count - 2);
     const double p = std::min(1.0, count * tail);
     if (i == 0 || std::abs(t) > std::abs(worst.deviation)) worst = {i, t, p};
   }
@@ -126,7 +121,7 @@ RandomEffects random_effects(std::span<const double> y, std::span<const double> 
   out.p = chi_square_tail(q0, dof);
   const Weighted at = weighted(y, v, square);
   out.mean = at.mean;
-  const double half = student_quantile(dof, 0.975) * std::sqrt(mean_variance(at, y.size()));
+  const double half = student_quantile(0.975, dof) * std::sqrt(mean_variance(at, y.size()));
   out.mean_ci95 = {at.mean - half, at.mean + half};
   return out;
 }

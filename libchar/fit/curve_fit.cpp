@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
@@ -25,6 +24,7 @@
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/dense.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
@@ -265,8 +265,7 @@ CurveJudgement judged(const CurveProblem& problem,
   out.mean_square = best.sum_of_squares / out.free_points;
   const bool estimated = judge.scatter == Scatter::estimated;
   out.scale = estimated ? out.mean_square : std::max(1.0, out.mean_square);
-  out.quantile = estimated ? boost::math::quantile(boost::math::students_t(out.free_points), 0.975)
-                           : 1.959963984540054;
+  out.quantile = estimated ? student_quantile(0.975, out.free_points) : 1.959963984540054;
   out.covariance =
       inverse_of(curve_information(problem, best.theta, out.positive), out.positive) * out.scale;
   return out;

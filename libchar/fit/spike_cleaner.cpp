@@ -17,10 +17,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
+
+#include "libchar/core/chi_square.hpp"
+#include "libchar/core/distributions.hpp"
 
 namespace libchar {
 namespace {
@@ -101,10 +102,9 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
     return SpikeVerdict::too_many;
   if (count.steps > count.spikes) return SpikeVerdict::heavy_tails;  // a signal that jumps
   const auto events = static_cast<double>(count.spikes + count.shoulder);
-  if (boost::math::gamma_q(events, kTail * count.log_size) < kTailAlarm)
+  if (chi_square_tail(2 * kTail * count.log_size, 2 * events) < kTailAlarm)
     return SpikeVerdict::spikes;
-  const boost::math::binomial of_tail(events, kTailShoulder);
-  return cdf(of_tail, static_cast<double>(count.shoulder)) < kShoulderAlarm
+  return binomial_cdf(static_cast<double>(count.shoulder), events, kTailShoulder) < kShoulderAlarm
              ? SpikeVerdict::spikes
              : SpikeVerdict::heavy_tails;
 }

@@ -14,14 +14,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/core/random_effects.hpp"
@@ -95,7 +94,7 @@ std::optional<OctaveTest> test_pieces(const Curves& pieces, std::uint64_t m) {
   between *= kPiecesEach / kBetween;
   if (!(within > 0)) return std::nullopt;
   test.within = within;
-  test.spread.p = cdf(complement(boost::math::fisher_f(kBetween, kWithin), between / within));
+  test.spread.p = fisher_tail(between / within, kBetween, kWithin);
   test.spread.relative_sd = 0.5 * std::sqrt(std::max(0.0, between - within) / kPiecesEach);
   return test;
 }
@@ -280,7 +279,7 @@ double spread_reach(const Stationarity& stationarity, double tau_s) {
       stationarity.spread.end(),
       [&](const StretchSpread& a, const StretchSpread& b) { return away(a) < away(b); });
   const auto n = static_cast<double>(nearest->stretches);
-  const double student = quantile(boost::math::students_t(n - 1), 0.975);
+  const double student = student_quantile(0.975, n - 1);
   return student * std::sqrt(1 + 1 / n) * nearest->relative_sd;
 }
 

@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/fit/events/series_powers.hpp"
 #include "libchar/fit/events/temperature_columns.hpp"
@@ -255,7 +255,7 @@ void describe_effect(const TemperatureSearch& search,
   const NoiseBeside noise = noise_beside_counted(search, lag, first, trial.noise.weight);
   const TemperatureFit fit = fit_temperature(used, search.coefficients, noise.weight);
   const double dof = 2 * effective_coefficients(columns[0], noise.weight);
-  const double student = boost::math::quantile(boost::math::students_t(dof), 0.975);
+  const double student = student_quantile(0.975, dof);
   effect.order = trial.order;
   effect.gain = trial.gain;
   effect.lag_s = lag * search.series.step_s;

@@ -5,10 +5,10 @@
 #include "libchar/replay/error_meter.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/replay/detail/mean_uncertainty.hpp"
 
@@ -224,8 +224,7 @@ double larger_throughout(const Meters& a, const Meters& b) {
     unlike += difference > 0 || difference < 0;
   }
   if (larger == 0) return 1;
-  const boost::math::binomial chance(unlike, 0.5);
-  return boost::math::cdf(boost::math::complement(chance, larger - 1));
+  return binomial_tail(larger - 1, unlike, 0.5);
 }
 
 Interval rms_ratio_interval(const Meters& a,

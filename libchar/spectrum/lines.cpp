@@ -19,13 +19,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <span>
 
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/window.hpp"
@@ -179,7 +179,7 @@ class Threshold {
     auto [slot, fresh] = known_.try_emplace(count, 0.0);
     if (fresh) {
       const double floor_dof = 2 * static_cast<double>(count) / median_variance_;
-      slot->second = quantile(complement(boost::math::fisher_f(dof_, floor_dof), alarm_));
+      slot->second = fisher_upper_quantile(alarm_, dof_, floor_dof);
     }
     return slot->second;
   }

@@ -1,10 +1,10 @@
 #include "libchar/replay/detail/judgement.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/replay/detail/partial_scores.hpp"
 
@@ -23,11 +23,10 @@ Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Array
     scaled.row(static_cast<Eigen::Index>(i)) *= information;
   }
   const Eigen::Index r = scaled.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  const Eigen::MatrixXd upper = qr.matrixQR().topRows(r).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse =
-      upper.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(r, r));
-  return inverse.rowwise().norm();
+  // R^-1 is the transpose of what its transpose, a lower triangle, gives.
+  const Eigen::MatrixXd lower = qr_triangle(scaled).transpose();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(r, r);
+  return solve_lower(lower, identity).colwise().norm().transpose();
 }
 
 double regret_of(const AlgorithmResult& algorithm) {

@@ -8,11 +8,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
 
 namespace libchar {
@@ -97,7 +97,7 @@ Plot fitted(std::span<const BatchVariance> batches, bool both) {
 MeanUncertainty answer(const Plot& plot, double freedom, double level) {
   MeanUncertainty out;
   out.sd = std::sqrt(plot.weight[0] + plot.weight[1]);
-  out.reach95 = out.sd * boost::math::quantile(boost::math::students_t(freedom), 1 - level / 2);
+  out.reach95 = out.sd * student_quantile(1 - level / 2, freedom);
   out.long_memory = plot.weight[1] > 0;
   return out;
 }

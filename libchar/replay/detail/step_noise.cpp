@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
@@ -52,13 +53,11 @@ StepNoiseMeter::StepNoiseMeter(const Eigen::MatrixXd& h, std::int64_t instants)
   const Eigen::Index n = h.rows();
   trace_ = static_cast<double>(n - 1);
   if (many_alike_) return;
-  const Eigen::MatrixXd q =
-      h.colPivHouseholderQr().householderQ() * Eigen::MatrixXd::Identity(n, h.cols());
-  residual_ = Eigen::MatrixXd::Identity(n, n) - q * q.transpose();
+  residual_ = complement_projector(column_basis(h));
   trace_ = residual_.trace();
   const Eigen::MatrixXd information = residual_.cwiseProduct(residual_);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information);
-  if (n > 0 && parts.eigenvalues()[0] > 1e-9) inverse_ = information.inverse();
+  if (n > 0 && symmetric_eigen(information).values[0] > 1e-9)
+    inverse_ = general_solve(information, Eigen::MatrixXd::Identity(n, n));
 }
 
 void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
