@@ -9,11 +9,12 @@
 // centred regressors scaled to one. Standard errors: delete-one jackknife over stretches.
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/alignment.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
@@ -78,10 +79,7 @@ Eigen::VectorXd Equations::solve(std::size_t without) const {
   for (Index j = 0; j < a.rows(); ++j) scale(j) = a(j, j) > 0 ? 1 / std::sqrt(a(j, j)) : 0;
   const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
   // What says nothing beyond the other terms gets nothing.
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> parts;
-  parts.setThreshold(1e-10);
-  const Eigen::VectorXd y = parts.compute(scaled).solve(scale.cwiseProduct(b));
-  return scale.cwiseProduct(y);
+  return scale.cwiseProduct(shortest_least_squares(scaled, scale.cwiseProduct(b), 1e-10).x);
 }
 
 class Learner {
