@@ -29,7 +29,7 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 /// Of a document that is replaced; a larger one is none of ours.
-constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
+constexpr std::size_t kMostReportBytes = std::size_t{1} << 30U;
 
 bool is_document(const std::filesystem::path& path) {
   return path.extension() == ".json";
@@ -54,7 +54,8 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
     now.insert(fs::path(output.path).filename().string());
     if (!is_document(output.path)) continue;
     if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
-      before.merge(files_named_in(Json::parse(file_text(output.path, kMostBytes), nullptr, false)));
+      before.merge(
+          files_named_in(Json::parse(file_text(output.path, kMostReportBytes), nullptr, false)));
     now.merge(files_named_in(Json::parse(output.text, nullptr, false)));
   }
   std::vector<std::string> stale;

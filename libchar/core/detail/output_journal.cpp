@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
+constexpr std::size_t kMostJournalBytes = std::size_t{1} << 24U;
 
 fs::path journal_of(const fs::path& folder) {
   return folder / ".libchar-outputs.json";
@@ -58,7 +58,7 @@ std::string name_in(const Json& value) {
 
 OutputJournal read_journal(const fs::path& folder) {
   const fs::path path = journal_of(folder);
-  const std::string text = file_text(path.string(), kMostBytes);
+  const std::string text = file_text(path.string(), kMostJournalBytes);
   try {
     const Json document = Json::parse(text);
     OutputJournal journal;

@@ -14,7 +14,6 @@ namespace {
 using enum Term;
 
 constexpr double kGravity = 9.80665;  // standard gravity, m/s^2
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kRoot2 = std::numbers::sqrt2;
 
 // Factors: what the formulas beside them say, and the change from SI to the row's unit.
@@ -41,7 +40,7 @@ double root_2(const RowTimes&) {
   return kRoot2;
 }
 double root_2_degrees(const RowTimes&) {
-  return kDegrees * kRoot2;
+  return kDegreesPerRadian * kRoot2;
 }
 double root_2_micro_g(const RowTimes&) {
   return 1 / kGravity * 1e6 * kRoot2;
@@ -50,10 +49,10 @@ double sixty(const RowTimes&) {
   return 60;
 }
 double sixty_degrees(const RowTimes&) {
-  return 60 * kDegrees;
+  return 60 * kDegreesPerRadian;
 }
 double degrees_per_hour(const RowTimes&) {
-  return kDegrees * 3600;
+  return kDegreesPerRadian * 3600;
 }
 double micro_g(const RowTimes&) {
   return 1 / kGravity * 1e6;
@@ -62,7 +61,7 @@ double milli_g(const RowTimes&) {
   return 1e3 / kGravity;
 }
 double root_tau_degrees_per_hour(const RowTimes& t) {
-  return std::sqrt(t.bias_tau_s) * 3600 * kDegrees;
+  return std::sqrt(t.bias_tau_s) * 3600 * kDegreesPerRadian;
 }
 double root_tau_micro_g(const RowTimes& t) {
   return std::sqrt(t.bias_tau_s) * 1e6 / kGravity;

@@ -3,6 +3,7 @@
 // unit. The files (targets/*.cpp) and the report ("which number goes where") take their numbers from
 // the same rows. Conventions: docs/exports.md.
 
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,9 @@
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
+
+/// Degrees in a radian: the files of consumers are in either.
+inline constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// What factors depend on; a row uses one of them or none.
 struct RowTimes {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
@@ -14,8 +12,6 @@
 
 namespace libchar {
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::string with_unit(const std::string& unit, const std::string& origin) {
   return origin.empty() ? unit : fmt::format("{}; {}", unit, origin);
@@ -71,7 +67,7 @@ Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options
       "import numpy as np\n\nimu_err = {\n";
   require_axes(*group.gyroscope, only_axis(options));
   require_axes(*group.accelerometer, only_axis(options));
-  writer.bias("gyro", *group.gyroscope, 3600 * kDegrees, "deg/h");
+  writer.bias("gyro", *group.gyroscope, 3600 * kDegreesPerRadian, "deg/h");
   writer.white(*group.gyroscope);
   writer.bias("accel", *group.accelerometer, 1, "m/s^2");
   writer.white(*group.accelerometer);

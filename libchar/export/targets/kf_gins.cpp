@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "libchar/core/text.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
@@ -16,7 +14,6 @@
 namespace libchar {
 namespace {
 
-constexpr double kDegreesPerHour = 3600 * 180 / std::numbers::pi;
 constexpr double kMilliGal = 1e5;  // in m/s^2
 constexpr double kPartsPerMillion = 1e6;
 
@@ -104,7 +101,7 @@ Export write_kf_gins(const SensorGroup& group, const ExportOptions& options) {
   out.text += "imunoise:\n";
   writer.white(*group.gyroscope);
   writer.white(*group.accelerometer);
-  writer.bias("gbstd", *group.gyroscope, kDegreesPerHour, "deg/h");
+  writer.bias("gbstd", *group.gyroscope, 3600 * kDegreesPerRadian, "deg/h");
   writer.bias("abstd", *group.accelerometer, kMilliGal, "mGal");
   writer.scale("gsstd", *group.gyroscope);
   writer.scale("asstd", *group.accelerometer);

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
@@ -72,7 +70,7 @@ Export write_navego(const SensorGroup& group, const ExportOptions& options) {
   writer.white(*group.accelerometer);
   writer.line("arrw", {0, 0, 0}, "see above");
   writer.line("vrrw", {0, 0, 0}, "see above");
-  writer.bias("g", *group.gyroscope, 180 / std::numbers::pi, "deg/s");
+  writer.bias("g", *group.gyroscope, kDegreesPerRadian, "deg/s");
   writer.bias("a", *group.accelerometer, 1e3 / 9.80665, "mg");
   out.text += fmt::format("imu.freq = {};  % Hz\n", export_number(rate));
   return out;
