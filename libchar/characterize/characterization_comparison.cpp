@@ -193,6 +193,35 @@ ComparedChannel compared_channel(const ReportedChannel& a, const ReportedChannel
   return out;
 }
 
+std::string comparison_verdict(const CharacterizationComparison& comparison) {
+  std::size_t both = 0, judged = 0, open = 0;
+  std::vector<std::string> differ;
+  for (const ComparedChannel& c : comparison.channels) {
+    both += c.in_a && c.in_b ? 1 : 0;
+    for (const ComparedTerm& t : c.terms) {
+      const bool is_open =
+          t.difference == TermDifference::not_judged || t.difference == TermDifference::only_one;
+      (is_open ? open : judged) += 1;
+      if (t.difference != TermDifference::larger && t.difference != TermDifference::smaller)
+        continue;
+      std::string title = term_title(t.term);
+      title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+      differ.push_back(fmt::format("{} of {} is {}", title, c.name, name_of(t.difference)));
+    }
+  }
+  if (both == 0) return "No channel is in both.";
+  if (judged == 0) return "No term is known in both well enough to be compared.";
+  std::string out =
+      differ.empty()
+          ? fmt::format("No difference beyond chance in {} term{}.", judged, judged == 1 ? "" : "s")
+          : fmt::format("{} of {} terms differ beyond chance: in B {}.",
+                        differ.size(),
+                        judged,
+                        fmt::join(differ, ", "));
+  if (open > 0) out += fmt::format(" {} could not be judged.", open);
+  return out;
+}
+
 }  // namespace
 
 CharacterizationComparison compare_characterizations(
@@ -221,35 +250,7 @@ CharacterizationComparison compare_characterizations(
       t.difference = judged(t, share);
       add_sentence(t);
     }
-  return out;
-}
-
-std::string comparison_verdict(const CharacterizationComparison& comparison) {
-  std::size_t both = 0, judged = 0, open = 0;
-  std::vector<std::string> differ;
-  for (const ComparedChannel& c : comparison.channels) {
-    both += c.in_a && c.in_b ? 1 : 0;
-    for (const ComparedTerm& t : c.terms) {
-      const bool is_open =
-          t.difference == TermDifference::not_judged || t.difference == TermDifference::only_one;
-      (is_open ? open : judged) += 1;
-      if (t.difference != TermDifference::larger && t.difference != TermDifference::smaller)
-        continue;
-      std::string title = term_title(t.term);
-      title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
-      differ.push_back(fmt::format("{} of {} is {}", title, c.name, name_of(t.difference)));
-    }
-  }
-  if (both == 0) return "No channel is in both.";
-  if (judged == 0) return "No term is known in both well enough to be compared.";
-  std::string out =
-      differ.empty()
-          ? fmt::format("No difference beyond chance in {} term{}.", judged, judged == 1 ? "" : "s")
-          : fmt::format("{} of {} terms differ beyond chance: in B {}.",
-                        differ.size(),
-                        judged,
-                        fmt::join(differ, ", "));
-  if (open > 0) out += fmt::format(" {} could not be judged.", open);
+  out.verdict = comparison_verdict(out);
   return out;
 }
 

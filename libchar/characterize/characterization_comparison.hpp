@@ -46,6 +46,7 @@ struct ComparedChannel {
 struct CharacterizationComparison {
   ReportedCharacterization a, b;
   std::vector<ComparedChannel> channels;
+  std::string verdict;  ///< a paragraph
 };
 
 struct CharacterizationCompareOptions {
@@ -57,7 +58,5 @@ CharacterizationComparison compare_characterizations(
     ReportedCharacterization a,
     ReportedCharacterization b,
     const CharacterizationCompareOptions& options = {});
-
-std::string comparison_verdict(const CharacterizationComparison& comparison);
 
 }  // namespace libchar

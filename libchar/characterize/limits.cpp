@@ -66,6 +66,27 @@ std::string list_of_failures(const LimitReport& report) {
   return seen > kShown ? out + fmt::format(" and {} more", seen - kShown) : out;
 }
 
+std::string limits_verdict(const LimitReport& report) {
+  const std::size_t all = report.judgements.size(), failed = report.count(LimitStatus::fail),
+                    open = report.count(LimitStatus::not_decided);
+  const std::string limits = all == 1 ? "limit" : "limits";
+  std::string out;
+  if (failed > 0)
+    out = fmt::format("{} of {} {} fail{}: {}.",
+                      failed,
+                      all,
+                      limits,
+                      failed == 1 ? "s" : "",
+                      list_of_failures(report));
+  else if (open > 0)
+    out = fmt::format(
+        "No limit fails; {} of {} {} kept.", all - open, all, all - open == 1 ? "is" : "are");
+  else
+    out = all == 1 ? "The limit is kept." : fmt::format("All {} limits are kept.", all);
+  if (open > 0) out += fmt::format(" {} {} not decided.", open, open == 1 ? "is" : "are");
+  return out;
+}
+
 }  // namespace
 
 std::size_t LimitReport::count(LimitStatus status) const {
@@ -107,6 +128,7 @@ LimitReport judge_limits(const std::vector<LimitSubject>& subjects, const NoiseL
     j.sentence = sentence_of(j);
     report.judgements.push_back(std::move(j));
   }
+  report.verdict = limits_verdict(report);
   return report;
 }
 
@@ -115,27 +137,6 @@ LimitReport judge_limits(const Characterization& result, const NoiseLimits& limi
   for (const ChannelResult& c : result.channels)
     subjects.push_back({c.channel, c.fit ? &*c.fit : nullptr});
   return judge_limits(subjects, limits);
-}
-
-std::string limits_verdict(const LimitReport& report) {
-  const std::size_t all = report.judgements.size(), failed = report.count(LimitStatus::fail),
-                    open = report.count(LimitStatus::not_decided);
-  const std::string limits = all == 1 ? "limit" : "limits";
-  std::string out;
-  if (failed > 0)
-    out = fmt::format("{} of {} {} fail{}: {}.",
-                      failed,
-                      all,
-                      limits,
-                      failed == 1 ? "s" : "",
-                      list_of_failures(report));
-  else if (open > 0)
-    out = fmt::format(
-        "No limit fails; {} of {} {} kept.", all - open, all, all - open == 1 ? "is" : "are");
-  else
-    out = all == 1 ? "The limit is kept." : fmt::format("All {} limits are kept.", all);
-  if (open > 0) out += fmt::format(" {} {} not decided.", open, open == 1 ? "is" : "are");
-  return out;
 }
 
 }  // namespace libchar

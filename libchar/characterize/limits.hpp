@@ -37,6 +37,7 @@ struct LimitJudgement {
 struct LimitReport {
   std::string file, sensor;
   std::vector<LimitJudgement> judgements;
+  std::string verdict;  ///< "2 of 6 limits fail: gyro_x white noise …"
   std::size_t count(LimitStatus status) const;
 };
 
@@ -52,8 +53,5 @@ struct LimitSubject {
 /// Throws as limits_for.
 LimitReport judge_limits(const std::vector<LimitSubject>& subjects, const NoiseLimits& limits);
 LimitReport judge_limits(const Characterization& result, const NoiseLimits& limits);
-
-/// "2 of 6 limits fail: gyro_x white noise …": the verdict in one sentence.
-std::string limits_verdict(const LimitReport& report);
 
 }  // namespace libchar

@@ -221,6 +221,35 @@ std::vector<std::string> unlike_units(Devices devices, const std::vector<std::st
   return out;
 }
 
+std::optional<LotFigures> lot_figures(const LotStatistic& s) {
+  if (!s.effects) return std::nullopt;
+  LotFigures out{s.effects->mean, s.effects->mean_ci95, s.effects->spread, s.effects->spread_ci95};
+  if (!s.term) return out;
+  out.mean = std::exp(out.mean);
+  out.mean_ci95 = {std::exp(out.mean_ci95.low), std::exp(out.mean_ci95.high)};
+  return out;
+}
+
+std::string lot_verdict(const Lot& lot) {
+  std::vector<LotMember> named;
+  for (const LotStatistic& s : lot.statistics)
+    for (const LotOutlier& o : s.outliers)
+      if (std::none_of(named.begin(), named.end(), [&](const LotMember& m) {
+            return m.device == o.member.device && m.channel == o.member.channel;
+          }))
+        named.push_back(o.member);
+  const std::string devices =
+      fmt::format("{} recording{}", lot.devices.size(), lot.devices.size() == 1 ? "" : "s");
+  std::string out = named.empty() ? devices + ": no channel stands out from its kind."
+                                  : fmt::format("{}: {} channel{} out from {} kind.",
+                                                devices,
+                                                named.size(),
+                                                named.size() == 1 ? " stands" : "s stand",
+                                                named.size() == 1 ? "its" : "their");
+  for (const std::string& sentence : lot.not_compared) out += " " + sentence;
+  return out;
+}
+
 }  // namespace
 
 Lot lot_of(Devices devices, const LotOptions& options) {
@@ -244,42 +273,15 @@ Lot lot_of(Devices devices, const LotOptions& options) {
     if (s.lot.effects)
       for (const Outlier& found : find_outliers(s.values.y, s.values.v, share))
         s.lot.outliers.push_back(outlier_of(devices, lot.devices, s.lot, s.values, found));
+    s.lot.figures = lot_figures(s.lot);
     lot.statistics.push_back(std::move(s.lot));
   }
+  lot.verdict = lot_verdict(lot);
   return lot;
-}
-
-std::optional<LotFigures> lot_figures(const LotStatistic& s) {
-  if (!s.effects) return std::nullopt;
-  LotFigures out{s.effects->mean, s.effects->mean_ci95, s.effects->spread, s.effects->spread_ci95};
-  if (!s.term) return out;
-  out.mean = std::exp(out.mean);
-  out.mean_ci95 = {std::exp(out.mean_ci95.low), std::exp(out.mean_ci95.high)};
-  return out;
 }
 
 std::string lot_title(const LotStatistic& s) {
   return s.term ? term_title(*s.term) : "Mean";
-}
-
-std::string lot_verdict(const Lot& lot) {
-  std::vector<LotMember> named;
-  for (const LotStatistic& s : lot.statistics)
-    for (const LotOutlier& o : s.outliers)
-      if (std::none_of(named.begin(), named.end(), [&](const LotMember& m) {
-            return m.device == o.member.device && m.channel == o.member.channel;
-          }))
-        named.push_back(o.member);
-  const std::string devices =
-      fmt::format("{} recording{}", lot.devices.size(), lot.devices.size() == 1 ? "" : "s");
-  std::string out = named.empty() ? devices + ": no channel stands out from its kind."
-                                  : fmt::format("{}: {} channel{} out from {} kind.",
-                                                devices,
-                                                named.size(),
-                                                named.size() == 1 ? " stands" : "s stand",
-                                                named.size() == 1 ? "its" : "their");
-  for (const std::string& sentence : lot.not_compared) out += " " + sentence;
-  return out;
 }
 
 }  // namespace libchar

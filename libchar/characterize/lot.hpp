@@ -23,6 +23,15 @@ struct LotOutlier {
   std::string sentence;
 };
 
+/// Mean and spread of a statistic in the unit of its values: exp of the logarithms for coefficients.
+struct LotFigures {
+  double mean = 0;
+  Interval mean_ci95;
+  double spread =
+      0;  ///< of coefficients relative (standard deviation of the logarithm), of means in their unit
+  Interval spread_ci95;
+};
+
 /// One quantity over the members of a group.
 struct LotStatistic {
   std::string group;         ///< "gyro_x", or "angular_rate in deg/s" for all channels of a kind
@@ -35,6 +44,7 @@ struct LotStatistic {
   std::vector<LotMember> counted;  ///< those that the figures below are of
   /// of ln(value) for coefficients, of the value for means; none: fewer than two, or under two thirds of the members
   std::optional<RandomEffects> effects;
+  std::optional<LotFigures> figures;  ///< of `effects`
   std::vector<LotOutlier> outliers;
 };
 
@@ -42,6 +52,7 @@ struct Lot {
   std::vector<std::string> devices;  ///< names, one a recording, none twice
   std::vector<LotStatistic> statistics;
   std::vector<std::string> not_compared;  ///< sentences: channels of one name and unlike units
+  std::string verdict;                    ///< a paragraph
 };
 
 struct LotOptions {
@@ -53,20 +64,7 @@ struct LotOptions {
 /// Throws Error(input) for one file twice, Error(usage) where there are not two channels.
 Lot lot_of(std::span<const Characterization> devices, const LotOptions& options = {});
 
-/// Mean and spread of a statistic in the unit of its values: exp of the logarithms for coefficients.
-struct LotFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double spread =
-      0;  ///< of coefficients relative (standard deviation of the logarithm), of means in their unit
-  Interval spread_ci95;
-};
-std::optional<LotFigures> lot_figures(const LotStatistic& statistic);
-
 /// "White noise", "Mean".
 std::string lot_title(const LotStatistic& statistic);
-
-/// A paragraph.
-std::string lot_verdict(const Lot& lot);
 
 }  // namespace libchar

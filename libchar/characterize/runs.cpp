@@ -237,6 +237,28 @@ PooledChannel pooled_channel(std::span<const Characterization> runs,
   return out;
 }
 
+std::string pool_verdict(const PooledRuns& pooled) {
+  std::vector<std::string> unlike;
+  for (const PooledChannel& c : pooled.channels)
+    if (!c.consistent) unlike.push_back(c.channel.name);
+  std::string out;
+  const std::size_t n = pooled.channels.size();
+  if (n == 0) return "No channel could be pooled.";
+  if (unlike.empty())
+    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.",
+                      pooled.runs.size(),
+                      n == 1 ? "the channel" : fmt::format("each of {} channels", n));
+  else
+    out = fmt::format("{} runs that do not have one set of coefficients for {}.",
+                      pooled.runs.size(),
+                      fmt::join(unlike, ", "));
+  std::size_t spread = 0;
+  for (const PooledChannel& c : pooled.channels) spread += c.bias && c.bias->spread_ci95.low > 0;
+  if (spread > 0)
+    out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
+  return out;
+}
+
 }  // namespace
 
 PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options) {
@@ -268,28 +290,7 @@ PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& 
                       runs.size()));
     out.channels.push_back(pooled_channel(runs, first.channel, fitted, options));
   }
-  return out;
-}
-
-std::string pool_verdict(const PooledRuns& pooled) {
-  std::vector<std::string> unlike;
-  for (const PooledChannel& c : pooled.channels)
-    if (!c.consistent) unlike.push_back(c.channel.name);
-  std::string out;
-  const std::size_t n = pooled.channels.size();
-  if (n == 0) return "No channel could be pooled.";
-  if (unlike.empty())
-    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.",
-                      pooled.runs.size(),
-                      n == 1 ? "the channel" : fmt::format("each of {} channels", n));
-  else
-    out = fmt::format("{} runs that do not have one set of coefficients for {}.",
-                      pooled.runs.size(),
-                      fmt::join(unlike, ", "));
-  std::size_t spread = 0;
-  for (const PooledChannel& c : pooled.channels) spread += c.bias && c.bias->spread_ci95.low > 0;
-  if (spread > 0)
-    out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
+  out.verdict = pool_verdict(out);
   return out;
 }
 

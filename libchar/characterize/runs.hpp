@@ -57,13 +57,11 @@ struct PooledRuns {
   std::vector<RunInfo> runs;
   std::vector<PooledChannel> channels;
   std::vector<std::string> problems;  ///< channels that could not be pooled, in sentences
+  std::string verdict;                ///< a paragraph for all channels
 };
 
 /// Throws Error(input) where the runs are not of one sensor: channels, units or rates that differ, one file twice, a run without a
 /// fit; Error(usage) for fewer than two.
 PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options = {});
-
-/// A paragraph for all channels.
-std::string pool_verdict(const PooledRuns& pooled);
 
 }  // namespace libchar

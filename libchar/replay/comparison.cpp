@@ -64,42 +64,6 @@ std::string best_of(const ReplaySummary& r) {
   return best == nullptr ? "none" : fmt::format("{} ({})", best->label, significant(best->rmse, 5));
 }
 
-}  // namespace
-
-Comparison compare_replays(ReplaySummary a, ReplaySummary b) {
-  Comparison out;
-  out.a = std::move(a);
-  out.b = std::move(b);
-  out.unlike = unlike(out.a, out.b);
-  for (const AlgorithmSummary& one : out.a.algorithms)
-    out.algorithms.push_back(row(&one, out.b.find(one.label)));
-  for (const AlgorithmSummary& one : out.b.algorithms)
-    if (out.a.find(one.label) == nullptr) out.algorithms.push_back(row(nullptr, &one));
-  std::stable_sort(out.algorithms.begin(),
-                   out.algorithms.end(),
-                   [](const ComparedAlgorithm& left, const ComparedAlgorithm& right) {
-                     return std::pair(order(left.b), order(left.a)) <
-                            std::pair(order(right.b), order(right.a));
-                   });
-  out.remarks = remarks(out);
-  return out;
-}
-
-void refuse_unlike(const Comparison& comparison) {
-  if (comparison.unlike.empty()) return;
-  const std::size_t shown = std::min(comparison.unlike.size(), kMostNamed);
-  std::string what = "not two replays of one scene";
-  for (std::size_t i = 0; i < shown; ++i) what += "; " + comparison.unlike[i];
-  if (comparison.unlike.size() > shown)
-    what += fmt::format("; and {} more differences", comparison.unlike.size() - shown);
-  throw Error({ErrorKind::input,
-               "E0921",
-               comparison.a.file + " and " + comparison.b.file,
-               what,
-               "",
-               "`compare_replays` compares them all the same"});
-}
-
 std::string comparison_verdict(const Comparison& c) {
   std::size_t counts[5] = {};
   std::vector<double> ns;
@@ -128,6 +92,43 @@ std::string comparison_verdict(const Comparison& c) {
   if (const double typical = median(ns); std::isfinite(typical))
     out += fmt::format(" Time a sample: {:+.1f} % (median).", 100 * typical);
   return out + fmt::format(" Best: {} in A, {} in B.", best_of(c.a), best_of(c.b));
+}
+
+}  // namespace
+
+Comparison compare_replays(ReplaySummary a, ReplaySummary b) {
+  Comparison out;
+  out.a = std::move(a);
+  out.b = std::move(b);
+  out.unlike = unlike(out.a, out.b);
+  for (const AlgorithmSummary& one : out.a.algorithms)
+    out.algorithms.push_back(row(&one, out.b.find(one.label)));
+  for (const AlgorithmSummary& one : out.b.algorithms)
+    if (out.a.find(one.label) == nullptr) out.algorithms.push_back(row(nullptr, &one));
+  std::stable_sort(out.algorithms.begin(),
+                   out.algorithms.end(),
+                   [](const ComparedAlgorithm& left, const ComparedAlgorithm& right) {
+                     return std::pair(order(left.b), order(left.a)) <
+                            std::pair(order(right.b), order(right.a));
+                   });
+  out.remarks = remarks(out);
+  out.verdict = comparison_verdict(out);
+  return out;
+}
+
+void refuse_unlike(const Comparison& comparison) {
+  if (comparison.unlike.empty()) return;
+  const std::size_t shown = std::min(comparison.unlike.size(), kMostNamed);
+  std::string what = "not two replays of one scene";
+  for (std::size_t i = 0; i < shown; ++i) what += "; " + comparison.unlike[i];
+  if (comparison.unlike.size() > shown)
+    what += fmt::format("; and {} more differences", comparison.unlike.size() - shown);
+  throw Error({ErrorKind::input,
+               "E0921",
+               comparison.a.file + " and " + comparison.b.file,
+               what,
+               "",
+               "`compare_replays` compares them all the same"});
 }
 
 }  // namespace libchar

@@ -47,6 +47,8 @@ struct Comparison {
   std::vector<std::string> remarks;
   /// By RMSE of B; then those without one in B, by A's. Points into `a` and `b`.
   std::vector<ComparedAlgorithm> algorithms;
+  std::string
+      verdict;  ///< "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each
 
   Comparison() = default;
   Comparison(const Comparison&) = delete;
@@ -60,8 +62,5 @@ Comparison compare_replays(ReplaySummary a, ReplaySummary b);
 
 /// Throws Error(input) that names the differences when the two are not of one scene.
 void refuse_unlike(const Comparison& comparison);
-
-/// "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each.
-std::string comparison_verdict(const Comparison& comparison);
 
 }  // namespace libchar

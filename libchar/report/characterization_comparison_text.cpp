@@ -50,7 +50,7 @@ std::string where_is(const ComparedChannel& c) {
 Json comparison_json(const CharacterizationComparison& comparison) {
   Json out = {{"a", summary_json(comparison.a)},
               {"b", summary_json(comparison.b)},
-              {"verdict", json_text(comparison_verdict(comparison))}};
+              {"verdict", json_text(comparison.verdict)}};
   out["channels"] = Json::array();
   for (const ComparedChannel& c : comparison.channels) {
     Json channel = {{"name", json_text(c.name)},
@@ -85,11 +85,11 @@ std::string comparison_text(const CharacterizationComparison& comparison) {
           printable(t.sentence));
     for (const std::string& remark : c.remarks) out += "  " + printable(remark) + "\n";
   }
-  return out + "\n" + printable(comparison_verdict(comparison)) + "\n";
+  return out + "\n" + printable(comparison.verdict) + "\n";
 }
 
 std::string comparison_markdown(const CharacterizationComparison& comparison) {
-  std::string out = "# Two characterizations\n\n" + markdown_text(comparison_verdict(comparison)) +
+  std::string out = "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
                     "\n\n- A: " + markdown_text(comparison.a.file) +
                     "\n- B: " + markdown_text(comparison.b.file) +
                     "\n\n| channel | term | A | B | unit | |\n|---|---|---|---|---|---|\n";

@@ -67,7 +67,7 @@ std::string side_of(const ComparedAlgorithm& row) {
 Json comparison_json(const Comparison& c) {
   Json out = {{"a", report(c.a)},
               {"b", report(c.b)},
-              {"verdict", json_text(comparison_verdict(c))},
+              {"verdict", json_text(c.verdict)},
               {"score", c.a.has_reference ? "rmse" : "predictive_rms"},
               {"unlike", sentences(c.unlike)},
               {"remarks", sentences(c.remarks)},
@@ -117,14 +117,14 @@ std::string comparison_text(const Comparison& c) {
                     bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
                     where.empty() ? std::string(name_of(row.difference)) : where});
   }
-  return out + "\n" + text_table(rows, "", true) + "\n" + printable(comparison_verdict(c)) + "\n";
+  return out + "\n" + text_table(rows, "", true) + "\n" + printable(c.verdict) + "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {
   std::string out =
       fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
                   markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  markdown_text(comparison_verdict(c)),
+                  markdown_text(c.verdict),
                   markdown_text(c.a.file),
                   markdown_text(c.a.program),
                   markdown_text(c.b.file),

@@ -32,7 +32,7 @@ std::string in_brackets(const Interval& i, double factor, int digits = 3) {
 
 /// Group, what, mean, spread, of how many, why not all: texts of a row.
 std::vector<std::string> lot_cells(const LotStatistic& s) {
-  const auto figures = lot_figures(s);
+  const auto& figures = s.figures;
   std::string mean = "–", spread = "–";
   if (figures) {
     mean = number_text(figures->mean) + " " + in_brackets(figures->mean_ci95, 1, 4) + " " + s.unit;
@@ -147,7 +147,7 @@ std::string overlaid_curves(const LotReport& report) {
 }
 
 Json statistic_json(const LotReport& report, const LotStatistic& s) {
-  const auto figures = lot_figures(s);
+  const auto& figures = s.figures;
   Json out = {
       {"group", json_text(s.group)},
       {"what", s.term ? std::string(kTermNames[static_cast<std::size_t>(*s.term)].key) : "mean"},
@@ -178,7 +178,7 @@ Json statistic_json(const LotReport& report, const LotStatistic& s) {
 Json lot_json(const LotReport& report) {
   Json out = many_head("lot", report.devices, report.command);
   if (!report.devices.empty()) out["config"] = json_of(report.devices[0].settings);
-  out["verdict"] = json_text(lot_verdict(*report.lot));
+  out["verdict"] = json_text(report.lot->verdict);
   out["recordings"] = recordings_json(report.devices, recorded_devices(report));
   out["statistics"] = Json::array();
   for (const LotStatistic& s : report.lot->statistics)
@@ -189,7 +189,7 @@ Json lot_json(const LotReport& report) {
 std::string lot_html(const LotReport& report) {
   const Lot& lot = *report.lot;
   const std::string body =
-      "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(lot_verdict(lot)) + "</p>\n" +
+      "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" +
       bullet_list(outlier_sentences(lot), "cautions") + statistics_part(lot) +
       "</section>\n<section class=\"channel\">\n<h2>Allan curves</h2>\n" + overlaid_curves(report) +
       "</section>\n<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
@@ -204,7 +204,7 @@ std::string lot_html(const LotReport& report) {
 
 std::string lot_text(const LotReport& report) {
   const Lot& lot = *report.lot;
-  std::string out = printable(lot_verdict(lot)) + "\n";
+  std::string out = printable(lot.verdict) + "\n";
   for (const std::string& sentence : outlier_sentences(lot))
     out += "  " + printable(sentence) + "\n";
   std::vector<std::vector<std::string>> rows = {{"channel", "recording", "N", "B", "K", "fit"}};

@@ -162,7 +162,7 @@ SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
 Json runs_json(const RunsReport& report) {
   Json out = many_head("pooled-runs", report.runs, report.command);
   if (!report.runs.empty()) out["config"] = json_of(report.runs[0].settings);
-  out["verdict"] = json_text(pool_verdict(*report.pooled));
+  out["verdict"] = json_text(report.pooled->verdict);
   out["runs"] = recordings_json(report.runs, recorded_runs(report));
   Json fits = Json::array(), channels = Json::array(), problems = Json::array();
   for (const PooledChannel& c : report.pooled->channels) {
@@ -180,7 +180,7 @@ Json runs_json(const RunsReport& report) {
 
 std::string runs_html(const RunsReport& report) {
   std::string body = "<section id=\"overview\">\n<p class=\"verdict\">" +
-                     html_text(pool_verdict(*report.pooled)) + "</p>\n" +
+                     html_text(report.pooled->verdict) + "</p>\n" +
                      bullet_list(report.pooled->problems, "cautions") + "</section>\n";
   if (report.limits != nullptr) body += limits_section(*report.limits);
   for (const PooledChannel& c : report.pooled->channels) body += channel_part(report, c);
@@ -192,7 +192,7 @@ std::string runs_html(const RunsReport& report) {
 }
 
 std::string runs_text(const RunsReport& report) {
-  std::string out = printable(pool_verdict(*report.pooled)) + "\n";
+  std::string out = printable(report.pooled->verdict) + "\n";
   for (const PooledChannel& c : report.pooled->channels) {
     out += "\n" + fit_text(c.channel, c.fit);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";

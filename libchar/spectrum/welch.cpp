@@ -12,48 +12,19 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/detail/welch_workspace.hpp"
 
 namespace libchar {
 
 using namespace welch_detail;
-
-/// Halves of one length and a sum to go with each.
-struct WelchWorkspace::State {
-  struct Piece {
-    HalfSegments halves;
-    HalfSegments::SumsPointer sums;
-  };
-  std::mutex mutex;
-  std::vector<Piece> idle;
-
-  Piece take(std::size_t segment) {
-    const std::lock_guard lock(mutex);
-    if (!idle.empty() && 2 * idle.back().halves.half() == segment) {
-      Piece piece = std::move(idle.back());
-      idle.pop_back();
-      return piece;
-    }
-    idle.clear();  // of another length: not needed any more
-    HalfSegments halves(segment);
-    auto sums = halves.zero_sums();
-    return {std::move(halves), std::move(sums)};
-  }
-  void give_back(Piece piece) {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(piece));
-  }
-};
-
-WelchWorkspace::WelchWorkspace() : state_(std::make_unique<State>()) {}
-WelchWorkspace::~WelchWorkspace() = default;
 
 namespace {
 

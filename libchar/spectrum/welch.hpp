@@ -16,7 +16,7 @@ inline constexpr auto enum_table<Detrend> = enum_words<Detrend>({{Detrend::none,
                                                                  {Detrend::constant, "constant"},
                                                                  {Detrend::linear, "linear"}});
 
-/// What welch() works in, kept from one record to the next: for long segments it is as large as a
+/// What welch() and WelchStream work in, kept from one record to the next: for long segments it is as large as a
 /// record, and new memory costs as much as a transform. Any number of threads may share it.
 class WelchWorkspace {
  public:

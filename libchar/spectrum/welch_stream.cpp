@@ -14,6 +14,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/detail/welch_workspace.hpp"
 
 namespace libchar {
 
@@ -34,7 +35,7 @@ struct WelchStream::State {
   std::uint64_t samples = 0;
   bool first_pair = true;
 
-  explicit State(const WelchOptions& chosen)
+  State(const WelchOptions& chosen, WelchWorkspace* workspace)
       : options(chosen),
         layout(layout_of(chosen.segment, chosen.overlap)),
         window(HalfSegments::suits(chosen) ? std::vector<double>()
@@ -42,7 +43,7 @@ struct WelchStream::State {
         average(options, layout),
         group(layout.segment / 2 + 1, 0.0) {
     if (window.empty()) {
-      halves.emplace(layout.segment);
+      halves.emplace(layout.segment, workspace != nullptr ? &workspace->state().pools : nullptr);
       sums = halves->zero_sums();
       next_sums = halves->zero_sums();
     } else {
@@ -174,7 +175,7 @@ void WelchStream::State::add_rest(Average& whole) const {
   whole.add_group(power);
 }
 
-WelchStream::WelchStream(const WelchOptions& options) {
+WelchStream::WelchStream(const WelchOptions& options, WelchWorkspace* workspace) {
   check_options(options);
   if (options.segment == 0)
     throw Error({ErrorKind::usage,
@@ -183,7 +184,7 @@ WelchStream::WelchStream(const WelchOptions& options) {
                  "a streamed spectrum needs the length of its segments beforehand",
                  "",
                  "give a segment length"});
-  state_ = std::make_unique<State>(options);
+  state_ = std::make_unique<State>(options, workspace);
 }
 WelchStream::~WelchStream() = default;
 WelchStream::WelchStream(WelchStream&&) noexcept = default;

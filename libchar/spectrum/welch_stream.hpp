@@ -16,7 +16,8 @@ namespace libchar {
 /// whole segment was seen, and may be called at any time.
 class WelchStream {
  public:
-  explicit WelchStream(const WelchOptions& options);
+  /// `workspace`: shared with other streams, and needed while this one is made only; none: memory of its own.
+  explicit WelchStream(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
   ~WelchStream();
   WelchStream(WelchStream&&) noexcept;
   WelchStream& operator=(WelchStream&&) noexcept;

@@ -66,7 +66,7 @@ TEST_CASE("a lot has a mean and a spread for each channel and for all of a kind"
   const LotStatistic& all = find(result, "angular_rate in deg/s", Term::white);
   CHECK(all.members == 24);
   CHECK(all.counted.size() == 24);
-  const LotFigures figures = lot_figures(all).value();
+  const LotFigures figures = all.figures.value();
   CHECK(std::abs(std::log(figures.mean / 5e-3)) < 4 * 0.1 / std::sqrt(24));
   CHECK(std::log(figures.mean_ci95.high / figures.mean) ==
         Approx(2.07 * 0.1 / std::sqrt(24)).epsilon(0.4));
@@ -76,8 +76,8 @@ TEST_CASE("a lot has a mean and a spread for each channel and for all of a kind"
   CHECK(find(result, "y", Term::white).members == 8);
   const LotStatistic& means = find(result, "y", std::nullopt);
   CHECK(means.unit == "deg/s");
-  CHECK(lot_figures(means)->spread_ci95.high > 0.5);
-  CHECK_THAT(lot_verdict(result), Contains("no channel stands out"));
+  CHECK(means.figures->spread_ci95.high > 0.5);
+  CHECK_THAT(result.verdict, Contains("no channel stands out"));
 }
 
 TEST_CASE("a lot counts what was not detected, and gives it no mean") {
@@ -85,15 +85,14 @@ TEST_CASE("a lot counts what was not detected, and gives it no mean") {
   const LotStatistic& flicker = find(result, "x", Term::flicker);
   CHECK(flicker.not_detected == 4);
   CHECK(flicker.counted.empty());
-  CHECK_FALSE(lot_figures(flicker));
+  CHECK_FALSE(flicker.figures);
 }
 
 TEST_CASE("a lot of equal devices bounds their spread and names none of them") {
   int named = 0;
   for (std::uint64_t seed = 10; seed < 50; ++seed) {
     const Lot result = lot_of(lot(6, 0, seed));
-    const LotFigures figures =
-        lot_figures(find(result, "angular_rate in deg/s", Term::white)).value();
+    const LotFigures figures = find(result, "angular_rate in deg/s", Term::white).figures.value();
     CHECK(figures.spread_ci95.high < 0.03);
     for (const LotStatistic& s : result.statistics) named += s.outliers.empty() ? 0 : 1;
   }
@@ -110,7 +109,7 @@ TEST_CASE("a device that does not belong to the lot is named with its reason") {
   CHECK(s.outliers[0].member.device == 5);
   CHECK(s.outliers[0].ratio == Approx(1.6).epsilon(0.1));
   CHECK_THAT(s.outliers[0].sentence, Contains("y of imu5") && Contains("times that of the others"));
-  CHECK_THAT(lot_verdict(result), Contains("1 channel stands out"));
+  CHECK_THAT(result.verdict, Contains("1 channel stands out"));
 }
 
 TEST_CASE("a lot of one device compares its axes, one channel is none, one file twice is refused") {
@@ -138,7 +137,7 @@ TEST_CASE("lot: channels of one name and unlike units are named and not compared
   lot[1].channels[1].channel.unit = "rad/s";
   const Lot found = lot_of(lot);
   REQUIRE(found.not_compared.size() == 1);
-  CHECK_THAT(lot_verdict(found), Contains("y is in deg/s in a and in rad/s in b: not compared."));
+  CHECK_THAT(found.verdict, Contains("y is in deg/s in a and in rad/s in b: not compared."));
   lot[1].channels[1].channel.unit = "deg/s";
   CHECK(lot_of(lot).not_compared.empty());
 }

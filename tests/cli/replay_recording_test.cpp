@@ -1,4 +1,6 @@
 // replay of a log without a scene file, and the scene file that it writes.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>

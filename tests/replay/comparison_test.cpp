@@ -144,7 +144,7 @@ TEST_CASE("comparison: changes, and what the intervals say of them") {
   CHECK(c.algorithms[2].difference == libchar::Difference::not_resolved);
   CHECK(c.algorithms[2].ns_change == Approx(-0.5));
   CHECK(side_of(c.algorithms[3]) == "only in A, skipped");
-  const std::string verdict = comparison_verdict(c);
+  const std::string& verdict = c.verdict;
   CHECK_THAT(verdict, Contains("RMSE of 2 algorithms that ran in both: 1 better, 1 not resolved."));
   CHECK_THAT(verdict, Contains("Time a sample: -15.0 % (median)"));
   CHECK_THAT(verdict, Contains("mean (1) in A, minque (0.7) in B"));

@@ -1,6 +1,8 @@
 // Trends and filters that all sensors and the reference go through alike.
 #include "libchar/replay/detail/preparation.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

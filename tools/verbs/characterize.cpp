@@ -67,7 +67,7 @@ void hold_against(const NoiseLimits& limits, Characterization& result, Outcome& 
   result.settings.push_back({"limits", limits.file});
   const auto report = std::make_shared<LimitReport>(judge_limits(result, limits));
   if (report->count(LimitStatus::fail) > 0)
-    outcome.exceeded.push_back(result.log.file + ": " + limits_verdict(*report));
+    outcome.exceeded.push_back(result.log.file + ": " + report->verdict);
   result.limits = report;
 }
 
@@ -193,7 +193,7 @@ void run_pooled(Session& session,
     std::vector<LimitSubject> subjects;
     for (const PooledChannel& c : pooled.channels) subjects.push_back({c.channel, &c.fit});
     judged = judge_limits(subjects, *limits);
-    if (judged->count(LimitStatus::fail) > 0) outcome.exceeded.push_back(limits_verdict(*judged));
+    if (judged->count(LimitStatus::fail) > 0) outcome.exceeded.push_back(judged->verdict);
   }
   RunsReport report{results, &pooled, judged ? &*judged : nullptr, {}, session.command};
   std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);

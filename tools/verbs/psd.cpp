@@ -91,7 +91,8 @@ class StreamSink : public BlockSink {
   void begin(const LogInfo& so_far) override {
     if (options_.segment == 0)
       options_.segment = segment_samples(verb_.segment_s, so_far.time.rate_hz);
-    for (std::size_t c = 0; c < so_far.channels.size(); ++c) streams_.emplace_back(options_);
+    for (std::size_t c = 0; c < so_far.channels.size(); ++c)
+      streams_.emplace_back(options_, &workspace_);
   }
   void block(const SampleBlock& samples) override {
     for (std::size_t c = 0; c < streams_.size(); ++c)
@@ -102,6 +103,7 @@ class StreamSink : public BlockSink {
  private:
   const PsdVerb& verb_;
   WelchOptions options_;
+  WelchWorkspace workspace_;
   std::vector<WelchStream> streams_;
 };
 

@@ -120,7 +120,8 @@ void ChannelStage::stop_keeping() {
   streams_ = std::make_unique<ChannelStreams>();
   const std::uint64_t segment = options_->spectrum.segment;
   streams_->spectrum.emplace(
-      with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment));
+      with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment),
+      &workspace_->welch);
   const std::uint64_t shared = streams_->spectrum->shared_length();
   if (options_->wanted.spectrum && wants_fit() && PowerBinner::suits(shared)) {
     streams_->bins = PowerBinner(shared);

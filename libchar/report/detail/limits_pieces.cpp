@@ -51,7 +51,7 @@ std::string limit_row(const LimitJudgement& j) {
 Json limits_json(const LimitReport& report) {
   Json out = {{"file", json_text(report.file)},
               {"sensor", json_text(report.sensor)},
-              {"verdict", json_text(limits_verdict(report))}};
+              {"verdict", json_text(report.verdict)}};
   for (const LimitStatus status : {LimitStatus::pass, LimitStatus::fail, LimitStatus::not_decided})
     out[std::string(name_of(status))] = report.count(status);
   out["terms"] = Json::array();
@@ -79,7 +79,7 @@ Json limits_json(const LimitReport& report) {
 std::string limits_section(const LimitReport& report) {
   std::string out = "<section id=\"limits\">\n<h2>Limits" +
                     (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) +
-                    "</h2>\n<p>" + html_text(limits_verdict(report)) +
+                    "</h2>\n<p>" + html_text(report.verdict) +
                     "</p>\n<div class=\"wide\"><table>\n" + table_head({"Judgement", "Why"});
   for (const LimitJudgement& j : report.judgements) out += limit_row(j);
   return out + "</tbody></table></div>\n<p class=\"note\">From " + html_text(report.file) +
@@ -92,7 +92,7 @@ std::string limits_section(const LimitReport& report) {
 std::string limits_text(const LimitReport& report) {
   std::string out = fmt::format("\nlimits{}: {}\n",
                                 report.sensor.empty() ? "" : " of " + printable(report.sensor),
-                                printable(limits_verdict(report)));
+                                printable(report.verdict));
   for (const LimitJudgement& j : report.judgements)
     out += fmt::format("  {:<12} {}\n", limit_words(j.status), printable(j.sentence));
   return out;

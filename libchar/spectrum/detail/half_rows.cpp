@@ -120,11 +120,9 @@ const double* RowScratch::mirror_of(const double* first_row) {
   return moved_.get();
 }
 
-std::shared_ptr<RowPool> RowPool::of(std::size_t half) {
-  static std::mutex mutex;
-  static std::map<std::size_t, std::weak_ptr<RowPool>> pools;
-  const std::lock_guard lock(mutex);
-  std::weak_ptr<RowPool>& known = pools[half];
+std::shared_ptr<RowPool> RowPools::of(std::size_t half) {
+  const std::lock_guard lock(mutex_);
+  std::weak_ptr<RowPool>& known = pools_[half];
   std::shared_ptr<RowPool> pool = known.lock();
   if (!pool) known = pool = std::make_shared<RowPool>(half);
   return pool;

@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -78,7 +79,6 @@ class RowScratch {
 /// What halves of one length share.
 class RowPool {
  public:
-  static std::shared_ptr<RowPool> of(std::size_t half);
   explicit RowPool(std::size_t half) : tables(half) {}
   std::unique_ptr<RowScratch> borrow();
   void give_back(std::unique_ptr<RowScratch> scratch);
@@ -87,6 +87,16 @@ class RowPool {
  private:
   std::mutex mutex_;
   std::vector<std::unique_ptr<RowScratch>> idle_;
+};
+
+/// One of each length in use.
+class RowPools {
+ public:
+  std::shared_ptr<RowPool> of(std::size_t half);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::size_t, std::weak_ptr<RowPool>> pools_;
 };
 
 }  // namespace libchar::half_segments

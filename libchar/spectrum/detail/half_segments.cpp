@@ -67,7 +67,9 @@ struct HalfSegments::State {
   bool joined = false;        // z is there
   double before_mean = 0;
 
-  explicit State(std::size_t half) : pool(RowPool::of(half)), z(aligned_zeros(2 * half)) {}
+  State(std::size_t half, RowPools* pools)
+      : pool(pools != nullptr ? pools->of(half) : std::make_shared<RowPool>(half)),
+        z(aligned_zeros(2 * half)) {}
   const double* samples_of(const Half& half);
   Used push(Half a, Half b, Sums* first, Sums* second, bool remember);
   void natural(const double* sums, double top, std::vector<double>& out) const;
@@ -312,7 +314,8 @@ bool HalfSegments::suits(const WelchOptions& options) {
          rows_and_columns(h).first != 0;
 }
 
-HalfSegments::HalfSegments(std::size_t segment) : state_(std::make_unique<State>(segment / 2)) {}
+HalfSegments::HalfSegments(std::size_t segment, RowPools* pools)
+    : state_(std::make_unique<State>(segment / 2, pools)) {}
 HalfSegments::~HalfSegments() = default;
 HalfSegments::HalfSegments(HalfSegments&&) noexcept = default;
 HalfSegments& HalfSegments::operator=(HalfSegments&&) noexcept = default;

@@ -10,6 +10,10 @@
 
 namespace libchar {
 
+namespace half_segments {
+class RowPools;
+}
+
 /// Takes the halves of half-overlapping segments two by two: A, B after P gives the segments (P, A)
 /// and (A, B). The bits of a half depend on the one it is paired with, so that who wants the same
 /// bits pairs alike: halves 0 and 1, 2 and 3, and so on.
@@ -18,7 +22,8 @@ class HalfSegments {
   /// Hann window, overlap of one half, mean removed, and a length that splits well.
   static bool suits(const WelchOptions& options);
 
-  explicit HalfSegments(std::size_t segment);
+  /// `pools`: tables and memory that several share, from any number of threads; none: its own.
+  explicit HalfSegments(std::size_t segment, half_segments::RowPools* pools = nullptr);
   ~HalfSegments();
   HalfSegments(HalfSegments&&) noexcept;
   HalfSegments& operator=(HalfSegments&&) noexcept;

@@ -1,0 +1,29 @@
+#include "libchar/spectrum/detail/welch_workspace.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace libchar {
+
+WelchWorkspace::State::Piece WelchWorkspace::State::take(std::size_t segment) {
+  const std::lock_guard lock(mutex_);
+  if (!idle_.empty() && 2 * idle_.back().halves.half() == segment) {
+    Piece piece = std::move(idle_.back());
+    idle_.pop_back();
+    return piece;
+  }
+  idle_.clear();  // of another length: not needed any more
+  HalfSegments halves(segment, &pools);
+  auto sums = halves.zero_sums();
+  return {std::move(halves), std::move(sums)};
+}
+
+void WelchWorkspace::State::give_back(Piece piece) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(piece));
+}
+
+WelchWorkspace::WelchWorkspace() : state_(std::make_unique<State>()) {}
+WelchWorkspace::~WelchWorkspace() = default;
+
+}  // namespace libchar
