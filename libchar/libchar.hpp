@@ -46,7 +46,7 @@
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/verdict.hpp"
-#include "libchar/report/allan_json.hpp"
+#include "libchar/report/allan_text.hpp"
 #include "libchar/report/csv_curves.hpp"
 #include "libchar/report/html_report.hpp"
 #include "libchar/report/json_report.hpp"

@@ -11,7 +11,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/replay/preparation_words.hpp"
-#include "libchar/report/allan_json.hpp"
+#include "libchar/report/allan_text.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"

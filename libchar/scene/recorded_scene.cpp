@@ -156,8 +156,9 @@ void add_models(const SensorRecording& r, Scene& scene) {
     }
   }
   for (const auto& [name, file] : r.models) {
-    const auto sensor = std::find_if(
-        scene.sensors.begin(), scene.sensors.end(), [&](const auto& s) { return s.name == name; });
+    const auto sensor = std::find_if(scene.sensors.begin(),
+                                     scene.sensors.end(),
+                                     [&name = name](const auto& s) { return s.name == name; });
     if (sensor == scene.sensors.end())
       refuse_words("`model`", "there is no sensor of this name among those chosen", name);
     add_model(*sensor, file, scene);

@@ -215,7 +215,7 @@ TEST_CASE("closed streams: every verb that writes gives the same bytes, no messa
            {"characterize log.csv -o out", "out/curves.csv"},
            {"model m.sensor.yaml -o out.txt", "out.txt"},
            {"simulate m.sensor.yaml --samples 100 -o out.csv", "out.csv"}}) {
-    const auto bytes = [&](const std::string& closed) {
+    const auto bytes = [&, &words = words, &file = file](const std::string& closed) {
       test::run_words(
           {"/bin/sh", "-c", "cd " + at + " && " + program + " " + words + " --force" + closed});
       const std::string text = test::slurp(folder / file);

@@ -11,7 +11,7 @@ using namespace libchar;
 
 namespace {
 
-using Record = std::vector<double>;
+using test::Record;
 
 Record autoregressive(std::size_t n, double phi, std::uint64_t seed) {
   test::Gaussian gauss(seed);

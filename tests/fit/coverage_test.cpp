@@ -20,19 +20,19 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
     const char* name;
     double rate_hz, q, b, k;
   };
-  constexpr std::size_t kSamples = 32768;
+  constexpr std::size_t kCoverageSamples = 32768;
   constexpr int kRecords = 150;
   for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 1e-2},
                              Scene{"c", 1000, 1e-3, 4e-3, 0},
                              Scene{"e", 200, 5e-3, 0, 2e-2},
                              Scene{"d", 200, 5e-3, 0, 0}}) {
-    test::NoiseSource source(kSamples, scene.rate_hz, 77);
+    test::NoiseSource source(kCoverageSamples, scene.rate_hz, 77);
     test::Gaussian starts(1);
     const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
     const TermSet present = {true, scene.b > 0, scene.k > 0, false, false};
     const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0},
                                   scene.rate_hz,
-                                  kSamples,
+                                  kCoverageSamples,
                                   present);
     std::array<double, 3> square{}, covered{};
     int false_terms = 0, remedies = 0;
@@ -55,7 +55,7 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       false_terms += any_false ? 1 : 0;
       // The likelihood looked at here is that of the whole spectrum.
       if (r >= 20 || !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none) continue;
-      PowerBinner binner(kSamples);
+      PowerBinner binner(kCoverageSamples);
       binner.push(y);
       const BinProblem problem = bin_problem(binner.finish(scene.rate_hz));
       for (int s = 0; s < 4; ++s) {
@@ -81,19 +81,20 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
 }
 
 TEST_CASE("coverage near the limit: of everything that is said, and of what is called detected") {
-  constexpr std::size_t kSamples = 32768;
+  constexpr std::size_t kCoverageSamples = 32768;
   constexpr int kRecords = 400;
   constexpr double kRate = 200;
   const std::array<double, 3> truth = {5e-3, 2.5e-3, 1e-3};
-  test::NoiseSource source(kSamples, kRate, 4711);
+  test::NoiseSource source(kCoverageSamples, kRate, 4711);
   FitOptions options;
   options.remedies = options.second_opinion = false;
   std::array<int, 3> covered{}, detected{}, detected_covered{};
   for (int r = 0; r < kRecords; ++r) {
     const std::vector<double> y = source.record(truth[0], truth[1], truth[2]);
-    PowerBinner binner(kSamples);
+    PowerBinner binner(kCoverageSamples);
     binner.push(y);
-    const NoiseFit fit = fit_power_bins(binner.finish(kRate), kRate, kSamples, nullptr, options);
+    const NoiseFit fit =
+        fit_power_bins(binner.finish(kRate), kRate, kCoverageSamples, nullptr, options);
     for (std::size_t i = 0; i < 3; ++i) {
       const Coefficient& c = fit.term[i];
       const int inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;

@@ -14,7 +14,7 @@ using namespace libchar;
 
 namespace {
 
-using Record = std::vector<double>;
+using test::Record;
 
 struct Outcome {
   Record cleaned;

@@ -9,9 +9,10 @@
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
-using Record = std::vector<double>;
 
 namespace {
+
+using test::Record;
 
 constexpr double kSteadyRate = 100;
 constexpr std::size_t kSteadySamples = 64'000;

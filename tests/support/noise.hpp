@@ -12,6 +12,8 @@
 
 namespace test {
 
+using Record = std::vector<double>;
+
 /// Standard normal deviates by the polar method on std::mt19937_64 (std::normal_distribution
 /// differs between libraries).
 class Gaussian {

@@ -5,12 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
-#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
-#include "libchar/report/allan_json.hpp"
+#include "libchar/report/allan_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -25,37 +24,6 @@ struct AllanVerb {
   AnalysisOptions analysis;
 };
 
-std::string as_csv(const Characterization& result) {
-  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n";
-  for (const ChannelResult& c : result.channels)
-    for (const AllanPoint& p : c.allan.points)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
-                          csv_cell(c.channel.name),
-                          csv_cell(c.channel.unit),
-                          shortest(p.tau_s),
-                          shortest(p.deviation),
-                          shortest(p.ci68.low),
-                          shortest(p.ci68.high),
-                          shortest(p.ci95.low),
-                          shortest(p.ci95.high),
-                          shortest(p.edf),
-                          p.terms,
-                          name_of(c.allan.type));
-  return text;
-}
-
-Json as_json(const Session& session, const Characterization& result) {
-  Json document = document_head(session, "allan", {&result.log});
-  std::vector<Channel> channels;
-  std::vector<AllanCurve> curves;
-  for (const ChannelResult& c : result.channels) {
-    channels.push_back(c.channel);
-    curves.push_back(c.allan);
-  }
-  document.update(allan_json(channels, curves));
-  return document;
-}
-
 void run_allan(Session& session, const AllanVerb& verb) {
   foresee_output(verb.output, {verb.log}, verb.force);
   CharacterizeOptions options = finish(verb.analysis);
@@ -64,9 +32,13 @@ void run_allan(Session& session, const AllanVerb& verb) {
   const Characterization result = characterize(verb.log, options, session.terminal);
   session.terminal.clear();
   report_warnings(session, result.log);
+  std::vector<Channel> channels;
+  std::vector<AllanCurve> curves;
   bool any = false;
   for (const ChannelResult& c : result.channels) {
     any = any || !c.allan.points.empty();
+    channels.push_back(c.channel);
+    curves.push_back(c.allan);
     for (const std::string& problem : c.problems)
       session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
     for (const std::string& note : c.allan.notes)
@@ -81,12 +53,16 @@ void run_allan(Session& session, const AllanVerb& verb) {
                  result.log.time.rate_hz > 0
                      ? ""
                      : "the sampling rate is not known: a log without time stamps needs --rate"});
-  const std::string text = verb.json ? dump_json(as_json(session, result)) : as_csv(result);
-  if (verb.output.empty()) {
-    print(text);
+  std::string text;
+  if (verb.json) {
+    Json document = document_head(session, "allan", {&result.log});
+    document.update(allan_json(channels, curves));
+    text = dump_json(document);
   } else {
-    write_whole_file(verb.output, text, verb.force);
+    text = allan_csv(channels, curves);
   }
+  if (verb.output.empty()) return print(text);
+  write_whole_file(verb.output, text, verb.force);
 }
 
 std::function<void()> allan_options(VerbOptions& options, Session& session) {

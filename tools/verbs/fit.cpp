@@ -2,20 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/curve_table_fit.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
-#include "libchar/fit/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/formats.hpp"
@@ -37,11 +35,6 @@ struct FitVerb {
   AnalysisOptions analysis;
 };
 
-struct ChannelFit {
-  Channel channel;
-  NoiseFit fit;
-};
-
 std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log) {
   CharacterizeOptions options = finish(verb.analysis);
   options.wanted = {
@@ -58,81 +51,18 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
   return fits;
 }
 
-struct Table {
-  std::vector<Channel> channels;
-  std::vector<DigitisedCurve> curves;
-  LogInfo info;
-};
-
-/// A table whose header does not name what its columns are: the first is the averaging time or the frequency, every other one a curve.
-Table unnamed_table(Session& session, const FitVerb& verb, ReadOptions reading) {
-  reading.time_column = "none";
-  reading.rate_hz = 1;  // rows of a curve have no time
-  const Recording read = read_recording(verb.input, reading, session.terminal);
-  if (read.samples.size() < 2)
-    throw Error({ErrorKind::input,
-                 "E0803",
-                 verb.input,
-                 "a curve needs two columns: averaging time or frequency, and values",
-                 "",
-                 ""});
-  Table table{{}, {}, read.info};
-  for (std::size_t c = 1; c < read.samples.size(); ++c) {
-    DigitisedCurve curve;
-    curve.root = verb.curve == "allan";
-    for (std::size_t i = 0; i < read.samples[0].size(); ++i) {
-      if (std::isnan(read.samples[0][i]) || std::isnan(read.samples[c][i])) continue;
-      curve.x.push_back(read.samples[0][i]);
-      curve.y.push_back(read.samples[c][i]);
-    }
-    table.channels.push_back(read.info.channels[c]);
-    table.curves.push_back(curve);
-  }
-  return table;
-}
-
-Table named_table(const FitVerb& verb,
-                  const CurveTable& named,
-                  const std::vector<std::string>& wanted) {
-  Table table;
-  table.info.file = verb.input;
-  table.info.bytes = named.bytes;
-  table.info.sha256 = named.sha256;
-  for (const NamedCurve& n : named.curves) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), n.name) == wanted.end())
-      continue;
-    table.channels.push_back({n.name, n.unit, false});
-    table.curves.push_back(n.curve);
-  }
-  if (table.curves.empty())
-    throw Error({ErrorKind::usage,
-                 "E0320",
-                 verb.input,
-                 "no curve of this name",
-                 wanted.front(),
-                 "the first one is " + named.curves.front().name});
-  return table;
-}
-
 std::vector<ChannelFit> fit_curves(Session& session, const FitVerb& verb, LogInfo& log) {
-  const CharacterizeOptions options = finish(verb.analysis);
-  const auto named = read_curve_table(verb.input, verb.curve == "allan");
-  Table table = named ? named_table(verb, *named, options.reading.channels)
-                      : unnamed_table(session, verb, options.reading);
-  log = table.info;
-  std::vector<ChannelFit> fits;
-  for (std::size_t c = 0; c < table.curves.size(); ++c) {
-    DigitisedCurve& curve = table.curves[c];
-    curve.is_allan = verb.curve == "allan";
-    curve.sides = verb.analysis.options.spectrum.sides;
-    if (verb.quantity != "auto") curve.root = verb.quantity == "root";
-    const std::vector<std::string>& units = options.reading.units;
-    if (named && !units.empty()) table.channels[c].unit = units[std::min(c, units.size() - 1)];
-    curve.duration_s = verb.duration_s;
-    curve.rate_hz = options.reading.rate_hz;
-    fits.push_back({table.channels[c], fit_curve(curve, options.fit)});
-  }
-  return fits;
+  const CharacterizeOptions analysis = finish(verb.analysis);
+  CurveTableOptions options;
+  options.is_allan = verb.curve == "allan";
+  options.sides = verb.analysis.options.spectrum.sides;
+  if (verb.quantity != "auto") options.root = verb.quantity == "root";
+  options.duration_s = verb.duration_s;
+  options.reading = analysis.reading;
+  options.fit = analysis.fit;
+  CurveTableFit fitted = fit_curve_table(verb.input, options, session.terminal);
+  log = fitted.table;
+  return std::move(fitted.channels);
 }
 
 std::string obtained_from(const FitVerb& verb) {

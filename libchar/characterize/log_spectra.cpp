@@ -1,0 +1,139 @@
+#include "libchar/characterize/log_spectra.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+
+namespace libchar {
+namespace {
+
+WelchOptions welch_options(const LogSpectraOptions& options) {
+  WelchOptions welch = options.spectrum;
+  welch.threads = options.reading.threads;
+  return welch;
+}
+
+bool segment_given(const LogSpectraOptions& options) {
+  return options.spectrum.segment != 0 || options.segment_s > 0;
+}
+
+void check_rate_known(const LogInfo& info) {
+  if (info.time.rate_hz > 0) return;
+  throw Error({ErrorKind::numeric,
+               "E0402",
+               info.file,
+               "the sampling rate is not known",
+               "",
+               "a log without time stamps needs `rate_hz`"});
+}
+
+// A channel that gives no spectrum is named and left out; the others are still of use.
+template <typename Make>
+void try_channel(LogSpectra& result, const Channel& channel, const Make& make) {
+  const std::string name = printable(channel.name) + ": ";
+  try {
+    result.channels.push_back({channel, make(), {}});
+    for (const std::string& note : result.channels.back().spectrum.notes)
+      result.notes.push_back(name + note);
+  } catch (const Error& error) {
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    result.notes.push_back(name + error.what());
+  }
+}
+
+// One segment a channel in memory, however long the log is.
+class SpectraSink : public BlockSink {
+ public:
+  explicit SpectraSink(const LogSpectraOptions& options)
+      : welch_(welch_options(options)), segment_s_(options.segment_s) {}
+  void begin(const LogInfo& so_far) override {
+    if (welch_.segment == 0) welch_.segment = segment_samples(segment_s_, so_far.time.rate_hz);
+    for (std::size_t c = 0; c < so_far.channels.size(); ++c)
+      streams_.emplace_back(welch_, &workspace_);
+  }
+  void block(const SampleBlock& samples) override {
+    for (std::size_t c = 0; c < streams_.size(); ++c)
+      streams_[c].push({samples.channels[c], samples.rows});
+  }
+  const std::vector<WelchStream>& streams() const { return streams_; }
+
+ private:
+  WelchOptions welch_;
+  double segment_s_;
+  WelchWorkspace workspace_;
+  std::vector<WelchStream> streams_;
+};
+
+LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, Progress& progress) {
+  SpectraSink sink(options);
+  LogSpectra result;
+  result.log = read_log(path, options.reading, sink, progress);
+  check_rate_known(result.log);
+  for (std::size_t c = 0; c < sink.streams().size(); ++c)
+    try_channel(result, result.log.channels[c], [&] {
+      return sink.streams()[c].finish(result.log.time.rate_hz);
+    });
+  return result;
+}
+
+LogSpectra spectra_of(const Recording& recording, const WelchOptions& welch_options) {
+  LogSpectra result;
+  result.log = recording.info;
+  WelchWorkspace workspace;
+  for (std::size_t c = 0; c < recording.samples.size(); ++c)
+    try_channel(result, recording.info.channels[c], [&] {
+      return welch(recording.channel(c), recording.info.time.rate_hz, welch_options, &workspace);
+    });
+  return result;
+}
+
+// Segments of a quarter of the record: the record has to be there first. Where one channel needs
+// shorter segments than another, all get the shortest, so that they share one frequency axis.
+LogSpectra whole(const std::string& path, const LogSpectraOptions& options, Progress& progress) {
+  const Recording recording = read_recording(path, options.reading, progress);
+  check_rate_known(recording.info);
+  WelchOptions welch = welch_options(options);
+  LogSpectra result = spectra_of(recording, welch);
+  const auto [shortest, longest] = std::minmax_element(
+      result.channels.begin(), result.channels.end(), [](const auto& a, const auto& b) {
+        return a.spectrum.segment < b.spectrum.segment;
+      });
+  if (shortest == longest || shortest->spectrum.segment == longest->spectrum.segment) return result;
+  welch.segment = shortest->spectrum.segment;
+  std::vector<std::string> notes = std::move(result.notes);
+  notes.push_back(fmt::format(
+      "all channels: segments of {} samples, the shortest that one of them needs", welch.segment));
+  result = spectra_of(recording, welch);
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  return result;
+}
+
+}  // namespace
+
+LogSpectra log_spectra(const std::string& path,
+                       const LogSpectraOptions& options,
+                       Progress& progress) {
+  LogSpectra result =
+      segment_given(options) ? streamed(path, options, progress) : whole(path, options, progress);
+  if (result.channels.empty())
+    throw Error(
+        {ErrorKind::numeric,
+         "E0715",
+         path,
+         "no channel gives a spectrum" + (result.notes.empty() ? "" : ": " + result.notes.front()),
+         "",
+         segment_given(options) ? "try a shorter `segment`" : ""});
+  for (ChannelSpectrum& c : result.channels) {
+    if (options.lines) c.lines = find_lines(c.spectrum);
+    if (options.bins > 0) c.spectrum = log_binned(c.spectrum, options.bins);
+  }
+  return result;
+}
+
+}  // namespace libchar

@@ -1,0 +1,41 @@
+#pragma once
+// The power spectra of a log, and the lines in them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libchar/log/read.hpp"
+#include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/welch.hpp"
+
+namespace libchar {
+
+struct LogSpectraOptions {
+  ReadOptions reading;    ///< its `threads` serve the spectra too
+  WelchOptions spectrum;  ///< a segment of 0: a quarter of the record
+  double segment_s = 0;   ///< length of a segment instead of `spectrum.segment`; 0: as that says
+  bool lines = false;     ///< find the spectral lines
+  std::uint64_t bins =
+      0;  ///< average into at most so many on a logarithmic axis of frequency; 0: do not
+};
+
+struct ChannelSpectrum {
+  Channel channel;
+  Spectrum spectrum;
+  std::vector<SpectralLine> lines;
+};
+
+struct LogSpectra {
+  LogInfo log;
+  std::vector<ChannelSpectrum> channels;  ///< on one axis of frequency; those that give a spectrum
+  std::vector<std::string> notes;  ///< "gyro_x: …": of single channels, and why one is missing
+};
+
+/// Reads the log once: with a segment given as it streams, in the memory of one segment a channel; else whole. Throws as read_log and
+/// welch, Error(numeric) where the sampling rate is not known or no channel gives a spectrum.
+LogSpectra log_spectra(const std::string& path,
+                       const LogSpectraOptions& options = {},
+                       Progress& progress = no_progress());
+
+}  // namespace libchar

@@ -1,0 +1,93 @@
+#include "libchar/characterize/log_spectra.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "libchar/core/error.hpp"
+#include "libchar/report/spectra_text.hpp"
+#include "tests/support/noise.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+constexpr std::size_t kLogRows = 4096;
+constexpr double kToneHz = 12.5;
+
+// x: white noise and a tone; y: the same noise, missing in its second half.
+std::string two_channels(const test::TemporaryFolder& folder) {
+  const std::string path = (folder / "log.csv").string();
+  test::NoiseSource source(kLogRows, 100, 5);
+  const std::vector<double> noise = source.record(1e-2, 0, 0);
+  std::ofstream out(path);
+  out << "x[V],y[V]\n";
+  out.precision(17);
+  for (std::size_t i = 0; i < kLogRows; ++i) {
+    out << noise[i] + std::sin(2 * std::numbers::pi * kToneHz * 0.01 * static_cast<double>(i))
+        << ",";
+    if (i < kLogRows / 2) out << noise[i];
+    out << "\n";
+  }
+  return path;
+}
+
+LogSpectraOptions at_100_hz() {
+  LogSpectraOptions options;
+  options.reading.rate_hz = 100;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("log_spectra: welch of each channel, on one axis of frequency") {
+  const test::TemporaryFolder folder;
+  const std::string path = two_channels(folder);
+  LogSpectraOptions options = at_100_hz();
+  options.spectrum.segment = 512;
+  const LogSpectra spectra = log_spectra(path, options);
+  const Recording log = read_recording(path, options.reading);
+  REQUIRE(spectra.channels.size() == 2);
+  WelchOptions welch_options;
+  welch_options.segment = 512;
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Spectrum expected = welch(log.channel(c), 100, welch_options);
+    CHECK(spectra.channels[c].spectrum.value == expected.value);
+    CHECK(spectra.channels[c].spectrum.frequency_hz == expected.frequency_hz);
+  }
+  CHECK_THAT(spectra_csv(spectra), Catch::StartsWith("frequency_hz,x["));
+}
+
+TEST_CASE("log_spectra: without a segment all channels get the shortest that one of them needs") {
+  const test::TemporaryFolder folder;
+  LogSpectraOptions options = at_100_hz();
+  options.spectrum.overlap = 0;
+  const LogSpectra spectra = log_spectra(two_channels(folder), options);
+  CHECK(spectra.channels[0].spectrum.segment == spectra.channels[1].spectrum.segment);
+}
+
+TEST_CASE("log_spectra: lines where they are asked for, and found where the tone is") {
+  const test::TemporaryFolder folder;
+  const std::string path = two_channels(folder);
+  LogSpectraOptions options = at_100_hz();
+  CHECK(log_spectra(path, options).channels[0].lines.empty());
+  options.lines = true;
+  options.bins = 20;
+  const LogSpectra spectra = log_spectra(path, options);
+  REQUIRE(spectra.channels[0].lines.size() == 1);
+  CHECK(spectra.channels[0].lines[0].frequency_hz == Approx(kToneHz).epsilon(0.01));
+  CHECK(spectra.channels[1].lines.empty());
+  CHECK(spectra.channels[0].spectrum.frequency_hz.size() <= 20);
+}
+
+TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in a sentence") {
+  const test::TemporaryFolder folder;
+  const std::string path = two_channels(folder);
+  CHECK_THROWS_WITH(log_spectra(path), Contains("rate"));
+  LogSpectraOptions options = at_100_hz();
+  options.spectrum.segment = 8192;
+  CHECK_THROWS_WITH(log_spectra(path, options), Contains("no channel gives a spectrum"));
+}
