@@ -28,6 +28,8 @@ options = arguments.parse_args()
 MASKS = [
     (re.compile(r'"(seconds|ns_per_sample|ns_per_sample_ci95|peak_bytes|bytes_per_second|own_bytes|resident_bytes|learning_s|run_s)": *(\[[^\]]*\]|[^,}\n]*)'), r'"\1": MASKED'),
     (re.compile(r'"build": *"[^"]*"'), '"build": MASKED'),
+    (re.compile(r"^(sensorchar \S+) \(.*\)$", re.M), r"\1"),
+    (re.compile(r'("[a-z]+\.(html|md)"): *"[0-9a-f]{64}"'), r"\1: MASKED"),  # of a page that says when it was made and by which build
     (re.compile(r'"measured": *\{[^{}]*\}', re.S), '"measured": MASKED'),
     (re.compile(r"^[WE]\d{8} [\d:.]+ +\d+ ", re.M), "W "),  # a warning of Ceres: time and thread
 ]
@@ -46,7 +48,7 @@ def runs():
     """name, words, files that must exist beforehand (produced by an earlier run of the same program)."""
     yield "version", ["--version"]
     yield "help", ["--help"]
-    verbs = ["inspect", "characterize", "allan", "psd", "fit", "model", "simulate", "replay", "compare", "convert"]
+    verbs = ["inspect", "characterize", "allan", "psd", "fit", "model", "simulate", "replay", "fuse", "compare", "convert"]
     for verb in verbs:
         yield f"help {verb}", [verb, "--help"]
         yield f"nothing {verb}", [verb]
@@ -62,9 +64,13 @@ def runs():
         yield f"psd {scaling}", ["psd", imu, "--scaling", scaling]
     yield "psd two", ["psd", imu, "--sides", "two", "--json"]
     yield "psd segment", ["psd", imu, "--segment", "4096", "--window", "blackman_harris", "-c", "gyro_z"]
+    yield "psd lines", ["psd", imu, "--lines"]
+    yield "psd bins", ["psd", imu, "--log-bins", "30", "--json", "--lines"]
     yield "fit", ["fit", imu]
     yield "fit json", ["fit", imu, "--json"]
     yield "fit terms", ["fit", imu, "--terms", "white_noise,bias_instability,random_walk,rate_ramp", "-c", "gyro_z"]
+    yield "fit Allan curve", ["fit", "curve.csv", "--curve", "allan", "--duration", "600", "--json"]
+    yield "fit spectrum", ["fit", "curve.csv", "--curve", "psd", "--quantity", "root"]
     yield "inspect", ["inspect", imu]
     yield "inspect json", ["inspect", imu, "--json"]
     for npy in sorted((root / "fixtures/npy").glob("*.npy")):
@@ -77,12 +83,18 @@ def runs():
     yield "convert raw", ["convert", imu, "-o", "imu.f64"]
     yield "convert csv", ["convert", imu, "-o", "imu.csv"]
     yield "convert window", ["convert", imu, "--from", "10s", "--to", "20s", "-c", "gyro_z", "-o", "window.csv"]
+    yield "convert later", ["convert", imu, "--from", "20s", "--to", "30s", "-o", "later.csv"]
     yield "inspect raw", ["inspect", "imu.f64"]
     yield "characterize", ["characterize", imu, "-o", "report", "--force"]
     yield "characterize json", ["characterize", imu, "-o", "report2", "--json", "--verify"]
     yield "characterize options", ["characterize", imu, "-o", "report3", "--segment", "2048", "--window", "flat_top", "--sides", "two",
                                    "--scaling", "lsd", "--terms", "white_noise,bias_instability", "--no-remedies", "--no-second-opinion", "--taus", "decade"]
     yield "characterize streamed", ["characterize", imu, "-o", "report4", "--memory", "64k"]
+    yield "characterize limits", ["characterize", imu, "-o", "judged", "--limits", "limits.yaml"]
+    yield "characterize pool", ["characterize", "window.csv", "later.csv", "-o", "pooled", "--pool"]
+    yield "characterize lot", ["characterize", "window.csv", "later.csv", imu, "-o", "lot", "--lot"]
+    yield "compare characterizations", ["compare", "report", "judged"]
+    yield "compare characterizations json", ["compare", "report", "judged", "--json"]
     yield "characterize again", ["characterize", imu, "-o", "report"]
     yield "model", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml"]
     yield "model json", ["model", "report/gyro_z.sensor.yaml", "--json"]
@@ -99,6 +111,8 @@ def runs():
     yield "simulate npy", ["simulate", "report/gyro_z.sensor.yaml", "--duration", "10min", "--seed", "7", "-o", "one.npy"]
     yield "replay simulated", ["replay", "array.scene.yaml", "-o", "array-replay", "--quiet"]
     yield "replay explain simulated", ["replay", "array.scene.yaml", "--explain"]
+    yield "fuse", ["fuse", "array.csv", "--with", "array-replay", "-o", "fused.csv"]
+    yield "fuse json", ["fuse", "array.csv", "--with", "array-replay", "-o", "fused.f64", "--algorithm", "mean", "--json"]
     yield "compare", ["compare", "compared", "compared"]
     yield "replay list", ["replay", "--list"]
     yield "replay list json", ["replay", "--list", "--json"]
@@ -133,6 +147,19 @@ def masked(data, replay):
     return text
 
 
+LIMITS = """format: noise-limits
+version: 1
+sensor: a made-up sheet
+limits:
+  - kind: angular_rate
+    white_noise: {value: 2, unit: deg/√h}
+    bias_instability: {value: 25, unit: deg/h}
+  - channels: [accel_z]
+    white_noise: {value: 0.001, unit: mg/√Hz}
+"""
+CURVE = "x,y\n" + "".join(f"{0.1 * 1.5 ** k!r},{0.02 / (1.5 ** (k / 2)) + 0.001!r}\n" for k in range(20))
+
+
 class Side:
     """One program with a folder in which relative paths are the same as on the other side."""
 
@@ -142,6 +169,8 @@ class Side:
         shutil.copytree(root / "fixtures", self.folder / "fixtures")
         if (root.parent / "shared").is_dir():
             (work / "shared").symlink_to(root.parent / "shared")
+        (self.folder / "limits.yaml").write_text(LIMITS)
+        (self.folder / "curve.csv").write_text(CURVE)
         (self.folder / "bin").mkdir()
         (self.folder / "bin/sensorchar").symlink_to(self.program)
         self.seen = self.stamps()
