@@ -12,7 +12,7 @@
 
 namespace sensorchar {
 
-/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, there is nobody left to
+/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, nothing is left to
 /// talk to.
 struct StdoutClosed {};
 
@@ -34,7 +34,7 @@ int stop_signal();
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
-/// The same for a text that people read: options of the library are named by their flags.
+/// The same for a text that is read: options of the library are named by their flags.
 void print_text(const std::string& text);
 
 /// One message on stderr, a newline added. Lines coming from files must have gone through

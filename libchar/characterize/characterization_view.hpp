@@ -46,8 +46,8 @@ struct ChannelGroup {
 
 struct ChannelView {
   const ChannelResult* result = nullptr;
-  std::string unit;              ///< in its usual spelling, "m/s²"; "" when nobody said one
-  std::string shown_unit;        ///< in texts: "U" when nobody said one, "" for a ratio
+  std::string unit;              ///< in its usual spelling, "m/s²"; "" where none is stated
+  std::string shown_unit;        ///< in texts: "U" where none is stated, "" for a ratio
   std::string trace_unit;        ///< the same of the trace's
   ChannelSentence summary;       ///< one sentence and its colour
   std::vector<TraceMark> marks;  ///< in the trace

@@ -198,7 +198,7 @@ std::vector<Statistic> statistics_of(Devices devices, const LotOptions& options)
   return out;
 }
 
-/// Channels of one name and unlike units are no group, and nobody sees that in a table of groups.
+/// Channels of one name and unlike units are no group, which a table of groups does not show.
 std::vector<std::string> unlike_units(Devices devices, const std::vector<std::string>& names) {
   std::vector<std::string> out;
   std::map<std::string, std::pair<std::string, std::size_t>> first;

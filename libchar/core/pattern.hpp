@@ -1,5 +1,5 @@
 #pragma once
-// Names chosen by patterns, and the order in which people count them.
+// Names chosen by patterns, and the order in which they are counted.
 
 #include <string_view>
 

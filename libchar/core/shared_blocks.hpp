@@ -21,7 +21,7 @@ class BlockTaker {
   /// A whole block, without missing samples, whose squared orthonormal DCT-II somebody else adds up: true. False, and nothing
   /// taken, when another block is under way: then it has to be pushed.
   virtual bool take_block(std::span<const double> samples) = 0;
-  /// Samples that are nobody's block; missing ones are NaN.
+  /// Samples outside of every block; missing ones are NaN.
   virtual void push(std::span<const double> samples) = 0;
   /// The sums of c_k² over the blocks that were taken, k = 0 … length-1 (k = 0 is of no meaning); once, at the end.
   virtual void take_power(std::vector<double> power) = 0;

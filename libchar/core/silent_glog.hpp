@@ -1,6 +1,6 @@
 #pragma once
 // Ceres reports through glog what its caller learns from return values anyway, and glog writes it
-// to standard error when nobody has set it up.
+// to standard error unless it is set up.
 
 namespace libchar {
 

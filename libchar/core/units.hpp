@@ -44,7 +44,7 @@ struct Unit {
   double to_si = 1;
 };
 
-/// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as people write
+/// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as they are written
 /// them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
 std::optional<Unit> find_unit(std::string_view text);
 
@@ -62,7 +62,7 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
 /// Unit text of a term's coefficient for a channel unit U: "U·√s" or "U/√Hz" for white noise, U, "U/√s", "U·s", "U/s".
 std::string term_unit(std::string_view term, std::string_view unit);
 
-/// For readers: "U" where nobody said a unit, "" for a ratio ("1"), else the unit; and the same of a term's coefficient: "√s", "1/√s".
+/// For readers: "U" where no unit is stated, "" for a ratio ("1"), else the unit; and the same of a term's coefficient: "√s", "1/√s".
 std::string shown_unit(std::string_view unit);
 std::string shown_term_unit(std::string_view term, std::string_view unit);
 

@@ -267,7 +267,7 @@ Interval step_interval(const Search& search,
                        const Regression& others,
                        const Hypothesis& now,
                        const EventShape& step) {
-  // Nobody can say where in a missing stretch, or in a mean, it was.
+  // It is not known where in a missing stretch, or in a mean, it was.
   if (step.bridged > 0) return {step.at, step.at + step.bridged};
   const StepScan scan = scan_steps(others, now.weight, search.grid.points, search.margin);
   const Interval place = step_place(scan, step.at, search.margin);

@@ -138,7 +138,7 @@ std::span<const double> SpikeCleaner::push(std::span<const double> samples) {
 std::span<const double> SpikeCleaner::finish() {
   ready_.clear();
   examine(true);
-  settle(std::numeric_limits<std::int64_t>::max() / 2);
+  decide(std::numeric_limits<std::int64_t>::max() / 2);
   release(true);
   return ready_;
 }
@@ -157,7 +157,7 @@ void SpikeCleaner::examine(bool last) {
   }
   while (last ? now_ < end() : now_ + kLongestRun + 2 < end()) {
     look_at(now_, last);
-    settle(now_);
+    decide(now_);
   }
 }
 
@@ -248,12 +248,12 @@ void SpikeCleaner::found(std::int64_t first, std::int64_t end, double size) {
 }
 
 /// Decides on the events whose surroundings are known when `now` samples have been examined.
-void SpikeCleaner::settle(std::int64_t now) {
+void SpikeCleaner::decide(std::int64_t now) {
   for (std::size_t i = 0; i < events_.size(); ++i) {
     Event& event = events_[i];
-    if (event.settled) continue;
+    if (event.decided) continue;
     if (event.end + kSpikeReach > now) break;
-    event.settled = true;
+    event.decided = true;
     std::int64_t others = 0;
     for (const Event& other : events_)
       if (&other != &event && other.end > event.first - kSpikeReach &&
@@ -273,14 +273,14 @@ void SpikeCleaner::settle(std::int64_t now) {
       sample = std::numeric_limits<double>::quiet_NaN();
     }
   }
-  while (!events_.empty() && events_.front().settled && events_.front().end + 2 * kSpikeReach < now)
+  while (!events_.empty() && events_.front().decided && events_.front().end + 2 * kSpikeReach < now)
     events_.pop_front();
 }
 
 void SpikeCleaner::release(bool last) {
   std::int64_t until = last ? end() : now_;
   for (const Event& event : events_)
-    if (!event.settled) until = std::min(until, event.first);
+    if (!event.decided) until = std::min(until, event.first);
   for (; given_ < until; ++given_) ready_.push_back(at(given_));
   // Two samples before the next one to be examined are its neighbours.
   const std::int64_t keep = std::max(base_, std::min(given_, now_ - 2));

@@ -75,7 +75,7 @@ class SpikeCleaner {
   struct Event {
     std::int64_t first = 0, end = 0;
     double size = 0;  ///< in standard deviations
-    bool settled = false;
+    bool decided = false;
   };
   double at(std::int64_t t) const { return held_[static_cast<std::size_t>(t - base_)]; }
   std::int64_t end() const { return base_ + static_cast<std::int64_t>(held_.size()); }
@@ -87,7 +87,7 @@ class SpikeCleaner {
   bool look_for_run(std::int64_t t, bool last);
   void look_alone(std::int64_t t);
   void found(std::int64_t first, std::int64_t end, double size);
-  void settle(std::int64_t now);
+  void decide(std::int64_t now);
   void release(bool last);
 
   SpikeScale scale_;

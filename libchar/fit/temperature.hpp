@@ -21,7 +21,7 @@ inline constexpr std::size_t kTemperatureOrders = 3;
 /// thermometer has many) are bridged by straight lines.
 struct TemperatureRecord {
   std::string name;
-  std::string unit;  ///< "" when nobody said one
+  std::string unit;  ///< "" where none is stated
   std::vector<double> samples;
 };
 

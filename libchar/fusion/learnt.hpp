@@ -41,7 +41,7 @@ class LearntExchange {
   /// What counts samples means nothing at another rate: throws Error(input) when they differ by more
   /// than a hundredth. `what`: "its stretches of the past".
   void needs_same_rate(std::string_view what) const;
-  /// Throws Error(input) when a name was there that nobody took.
+  /// Throws Error(input) for a name that was not taken.
   void finish() const;
 
   const Learnt& learnt() const { return learnt_; }

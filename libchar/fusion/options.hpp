@@ -13,7 +13,7 @@ namespace libchar::fusion {
 struct Option {
   std::string_view name;
   std::string_view unit;     ///< "" for a pure number
-  double standard = 0;       ///< the value when nobody says otherwise
+  double standard = 0;       ///< the value unless stated otherwise
   double low = 0, high = 0;  ///< both allowed; infinite where there is no limit
   std::string_view meaning;
   bool whole = false;  ///< takes whole numbers only

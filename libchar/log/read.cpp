@@ -64,7 +64,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
          fmt::format(
              "use {} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back())});
   }
-  if (read_once(path)) {  // nobody looks into a pipe without taking from it
+  if (read_once(path)) {  // looking into a pipe takes from it
     for (const Format& format : formats())
       if (format.about.from_pipes) return format;
   }
@@ -110,7 +110,7 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   }
 }
 
-// Some quantities have units that nobody listed; a slip must not look like one of them.
+// Some quantities have units that no list has; a slip must not look like one of them.
 void warn_of_units(const ReadOptions& options, Warnings& warnings) {
   for (const std::string& unit : options.units)
     if (!find_unit(unit))

@@ -29,7 +29,7 @@ inline constexpr double kNoLimit = 1e300;
 struct LearntSensor {
   std::string name, channel;
   std::string recorded_unit;  ///< of the channel, as recorded
-  std::string unit;           ///< of the samples after `scale`; empty: nobody said
+  std::string unit;           ///< of the samples after `scale`; empty: not stated
   double scale = 1;
   std::vector<double> h = {1};
   double offset = 0;                     ///< subtracted from the scaled samples

@@ -43,7 +43,8 @@ struct ReplayOptions {
 
 /// What a replay works with besides its options; none of it changes what is found.
 struct ReplayWorkspace {
-  HeapMeter* heap = nullptr;  ///< who can say how much memory an algorithm holds; none: nobody
+  HeapMeter* heap =
+      nullptr;  ///< who can say how much memory an algorithm holds; none: it is not measured
   EstimateSink* estimates = nullptr;  ///< who wants them; none: they are not kept
 };
 

@@ -91,8 +91,7 @@ struct AlgorithmResult {
 
   double ns_per_sample = 0;  ///< median over interleaved blocks; NaN: too short to measure
   double learning_s = 0;     ///< making it and its learning, CPU of one core
-  std::optional<std::uint64_t>
-      peak_bytes;  ///< of heap, over learning and run; none: nobody measured
+  std::optional<std::uint64_t> peak_bytes;  ///< of heap, over learning and run; none: not measured
 
   std::optional<Eigen::MatrixXd> weights;    ///< n x r at the end
   std::optional<Eigen::VectorXd> variances;  ///< at the end

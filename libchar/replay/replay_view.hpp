@@ -78,7 +78,7 @@ struct ReplayFigures {
   bool time_matters = false;
 };
 
-/// Of one core at the recording's rate; below it nobody chooses a method by its run time.
+/// Of one core at the recording's rate; below it run time decides nothing.
 inline constexpr double kCoreThatMatters = 1e-3;
 
 /// Points into the result that it is a view of, which must live as long.
@@ -88,7 +88,7 @@ struct ReplayView {
   std::string optimum;                         ///< what it is of: "fixed weights", "tilt filters"
   std::vector<std::string> verdict;            ///< sentences, with what was measured
   std::vector<std::string> steady_verdict;     ///< without: the same in every run
-  std::vector<std::string> shown_verdict;      ///< of both, what people read
+  std::vector<std::string> shown_verdict;      ///< of both, as shown
   double duration_s = 0, end_s = 0;            ///< of the run
   std::vector<AlgorithmView> algorithms;       ///< all, in the order of the table
   std::vector<const AlgorithmView*> ranked;    ///< those that ran, best first, bounds among them

@@ -235,7 +235,7 @@
   tracked = [(a) => a.label === report.best && a.weight_track, (a) => a.weight_track && a.watches_faults, (a) => a.weight_track || a.watches_faults, (a) => a.label === report.best, () => true]
     .map((wish) => trackable.find(wish)).find(Boolean) || null;
 
-  // More lines than this nobody tells apart: those of the largest weights (smallest variances) are drawn, and the rest are counted.
+  // More lines than this cannot be told apart: those of the largest weights (smallest variances) are drawn, and the rest are counted.
   const MOST_LINES = 24;
   function drawnSensors(values, logarithmic) {
     const all = report.sensors.map((s, i) => i);

@@ -37,7 +37,7 @@ std::string list_of(const std::vector<std::string>& names) {
       shown < names.size() ? ", …" : "");
 }
 
-// Three axes are in one unit, too: nobody but the caller knows which channels see one input.
+// Three axes are in one unit, too: only the caller knows which channels see one input.
 [[noreturn]] void ask_for_sensors(const SensorRecording& r) {
   ReadOptions head = r.reading;
   head.units.clear();

@@ -101,23 +101,23 @@ void check_stamp(const std::string& text, char mark, int unit_digits) {
   const std::int64_t unit = csv::kNanoseconds[static_cast<std::size_t>(unit_digits)];
   std::int64_t ns = 0, quick_ns = 0;
   std::size_t offset = 0;
-  const csv::StampFault fault = csv::read_stamp(text, mark, unit, ns, offset);
+  const csv::StampDefect fault = csv::read_stamp(text, mark, unit, ns, offset);
   fuzz::expect(offset <= text.size(), "a place beyond the text");
   if (const auto number = decimal(text, mark)) {
-    fuzz::expect(fault == csv::StampFault::none || fault == csv::StampFault::out_of_range,
+    fuzz::expect(fault == csv::StampDefect::none || fault == csv::StampDefect::out_of_range,
                  "a stamp that is not taken");
     if (const auto judge = judged_stamp(*number, unit)) {
       const bool fits = *judge >= INT64_MIN && *judge <= INT64_MAX;
-      fuzz::expect((fault == csv::StampFault::none) == fits, "a stamp in range or not");
+      fuzz::expect((fault == csv::StampDefect::none) == fits, "a stamp in range or not");
       if (fits) fuzz::expect(ns == static_cast<std::int64_t>(*judge), "another stamp");
     }
   } else {
-    fuzz::expect(fault != csv::StampFault::none, "a stamp that is none");
+    fuzz::expect(fault != csv::StampDefect::none, "a stamp that is none");
   }
   const std::string padded = text + ";" + std::string(64, '9');
   const char* const end = csv::quick_stamp(padded.data(), mark, unit_digits, quick_ns);
   if (end != nullptr && end == padded.data() + text.size())
-    fuzz::expect(fault == csv::StampFault::none && quick_ns == ns, "another quick stamp");
+    fuzz::expect(fault == csv::StampDefect::none && quick_ns == ns, "another quick stamp");
 }
 
 /// Rows of a stamp and two values, by vector instructions: what is taken must be what the judges say.

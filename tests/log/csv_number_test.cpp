@@ -228,7 +228,7 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   const auto stamp = [](const std::string& text, std::int64_t unit) {
     std::int64_t ns = 0, quick_ns = 0;
     std::size_t offset = 0;
-    REQUIRE(read_stamp(text, '.', unit, ns, offset) == StampFault::none);
+    REQUIRE(read_stamp(text, '.', unit, ns, offset) == StampDefect::none);
     const std::string padded = text + "," + std::string(32, '9');
     int digits = 0;
     for (std::int64_t u = unit; u > 1; u /= 10) ++digits;
@@ -253,21 +253,21 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(stamp("0.123456789012345678901234567", 3600000000000) == 444444440444);
   std::int64_t ns = 0;
   std::size_t offset = 0;
-  CHECK(read_stamp("9223372036854775808", '.', 1, ns, offset) == StampFault::out_of_range);
-  CHECK(read_stamp("18446744073709551616", '.', 1, ns, offset) == StampFault::out_of_range);
-  CHECK(read_stamp("1e30", '.', 1, ns, offset) == StampFault::out_of_range);
-  CHECK(read_stamp("", '.', 1, ns, offset) == StampFault::missing);
-  CHECK(read_stamp("nan", '.', 1, ns, offset) == StampFault::missing);
-  CHECK(read_stamp("12:30", '.', 1, ns, offset) == StampFault::malformed);
-  CHECK(read_stamp("1e", '.', 1, ns, offset) == StampFault::malformed);
-  CHECK(read_stamp("-", '.', 1, ns, offset) == StampFault::malformed);
+  CHECK(read_stamp("9223372036854775808", '.', 1, ns, offset) == StampDefect::out_of_range);
+  CHECK(read_stamp("18446744073709551616", '.', 1, ns, offset) == StampDefect::out_of_range);
+  CHECK(read_stamp("1e30", '.', 1, ns, offset) == StampDefect::out_of_range);
+  CHECK(read_stamp("", '.', 1, ns, offset) == StampDefect::missing);
+  CHECK(read_stamp("nan", '.', 1, ns, offset) == StampDefect::missing);
+  CHECK(read_stamp("12:30", '.', 1, ns, offset) == StampDefect::malformed);
+  CHECK(read_stamp("1e", '.', 1, ns, offset) == StampDefect::malformed);
+  CHECK(read_stamp("-", '.', 1, ns, offset) == StampDefect::malformed);
   // Found by fuzzing: two signs in an exponent, and text behind an exponent that nothing can have.
   for (const char* text : {"1e+-5", "1e++5", "0e99999x", "1e99999x", "0e-99999 "}) {
     INFO(text);
-    CHECK(read_stamp(text, '.', 1000000000, ns, offset) == StampFault::malformed);
+    CHECK(read_stamp(text, '.', 1000000000, ns, offset) == StampDefect::malformed);
   }
   ns = 1;
-  CHECK(read_stamp("0e99999", '.', 1, ns, offset) == StampFault::none);
+  CHECK(read_stamp("0e99999", '.', 1, ns, offset) == StampDefect::none);
   CHECK(ns == 0);
-  CHECK(read_stamp("1e99999", '.', 1, ns, offset) == StampFault::out_of_range);
+  CHECK(read_stamp("1e99999", '.', 1, ns, offset) == StampDefect::out_of_range);
 }

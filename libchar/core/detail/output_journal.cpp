@@ -113,7 +113,7 @@ void finish_journal(const fs::path& folder) {
 bool has_journal(const fs::path& folder) {
   struct stat status {};
   if (::lstat(journal_of(folder).c_str(), &status) == 0) return true;
-  // Where there is no folder, or one that nobody may look into, there is nothing to finish.
+  // Where there is no folder, or one that may not be looked into, there is nothing to finish.
   if (errno == ENOENT || errno == ENOTDIR) return false;
   fail_on(journal_of(folder), "look for this list of what an interrupted run has left");
 }

@@ -121,7 +121,7 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
     second.sentence = "agrees";
   }
   if (!solution.converged)
-    second.sentence += fmt::format(" (the reweighting did not settle in {} rounds)", kMostRounds);
+    second.sentence += fmt::format(" (the reweighting did not converge in {} rounds)", kMostRounds);
 }
 
 }  // namespace

@@ -146,10 +146,10 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns,
   return fit;
 }
 
-double chance_of_gain(double gain, std::span<const double> along, int order) {
+double chance_of_gain(double gain, std::span<const double> gains, int order) {
   double variation = 0;
-  for (std::size_t i = 1; i < along.size(); ++i)
-    variation += std::abs(std::sqrt(along[i]) - std::sqrt(along[i - 1]));
+  for (std::size_t i = 1; i < gains.size(); ++i)
+    variation += std::abs(std::sqrt(gains[i]) - std::sqrt(gains[i - 1]));
   const double half = 0.5 * order;
   const double rate =
       std::exp((half - 0.5) * std::log(gain) - gain / 2 - half * std::log(2.0) - std::lgamma(half));

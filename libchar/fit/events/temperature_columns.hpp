@@ -42,7 +42,7 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns,
                                std::span<const double> coefficients,
                                std::span<const double> weight);
 
-/// P(the largest gain over lags >= the largest of `gain`) of a record that temperature does not move; `gain` along the lags.
-double chance_of_gain(double gain, std::span<const double> along, int order);
+/// P(the largest gain over lags >= the largest of `gains`) of a record that temperature does not move; `gains` along the lags.
+double chance_of_gain(double gain, std::span<const double> gains, int order);
 
 }  // namespace libchar

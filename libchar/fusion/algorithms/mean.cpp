@@ -16,7 +16,7 @@ Mean::Mean(const Array& array) : levels_(array.noise_levels), channels_(array.ch
 Estimate Mean::step(const Sample& y) const {
   if (!general_) return plain(y);
   Estimate estimate = general_->step(y);
-  estimate.variance.setConstant(std::nan(""));  // nobody said how noisy the channels are
+  estimate.variance.setConstant(std::nan(""));  // how noisy the channels are is not stated
   return estimate;
 }
 

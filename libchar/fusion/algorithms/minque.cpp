@@ -35,7 +35,7 @@ Minque::Minque(const Array& array, const Settings& settings)
       watch_(static_cast<std::size_t>(array.channels), watching(settings)),
       asked_(settings["fault_detection"] == 2),
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
-      // The variances must have settled before they can accuse anybody.
+      // The variances must have settled before they can accuse a channel.
       armed_from_(std::max<std::int64_t>(
           array.fault_free_samples,
           static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),

@@ -78,7 +78,7 @@ void FaultDetector::step(const double* y) {
   ++now_;
 }
 
-// ---- The start: medians, so that one sensor that is far off moves nobody.
+// ---- The start: medians, so that one sensor that is far off does not move the others.
 
 void FaultDetector::start(const double* y) {
   int present = 0;
@@ -135,7 +135,7 @@ void FaultDetector::step_with(Variances& variances, const double* y) {
     return;
   }
   if (!enough) {
-    // Nobody can be judged, but those that are out may come in again.
+    // No sensor can be judged, but those that are out may come in again.
     if (count_out_ > 0) follow_out(variances, y);
     watch_repeats(y);
     return;
@@ -255,7 +255,7 @@ void FaultDetector::repeat_state(std::size_t i) {
     log_.note(FaultEvent{now_, static_cast<int>(i), true, FaultRule::saturated});
   }
   if (at_end_[i] != 0 && state == RepeatWatch::State::saturated) {
-    // Where the others stand at the same end, nobody knows better.
+    // Where the others stand at the same end, no other knows better.
     if (out_[i] == Out::no && m_ > inputs_ + 1 &&
         repeats_.others_beyond(i, base_.f[i], 2 * deviation_[i])) {
       out_[i] = Out::saturated;
@@ -328,7 +328,7 @@ void FaultDetector::meet_newcomers(Variances& variances, const double* y) {
     variances.assume(i, std::max({square - shared, 0.01 * square, kTiny}));
     base_.bias[i] = new_mean_[i];
     base_.bias_var[i] = square / new_count_[i];
-    // Its variance is known from few samples, and the weights of all hang on it: nobody is judged before
+    // Its variance is known from few samples, and the weights of all hang on it: none is judged before
     // all have been seen with it.
     variances.restart(kNewcomerSamples);
     for (std::size_t k = 0; k < base_.n; ++k)

@@ -10,7 +10,7 @@
 //   bias, gain, dead, stuck   out; in again when a window of own samples is consistent with the others
 //   noise                     stays in; its variance is what the window says
 //   saturated                 out where the others go beyond its end of the range
-//   two sets explain it       nobody is thrown out; said
+//   two sets explain it       none is thrown out; said
 //   no set is consistent      the residuals are not what the noise explains: when that lasts, the detector
 //                             stands down, lets all in and learns its baseline anew; said
 //

@@ -7,7 +7,7 @@
 // (-log likelihood and a prior of e^-c a fault). All F up to half of the sensors are tried; only
 // suspects with the most evidence against them where there are many. Sets whose cost is within
 // `kDoubt` of the best explain the window as well: who is in all of them is wrong for certain, and
-// when nobody is, the split is ambiguous (three against three).
+// when none is, the split is ambiguous (three against three).
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -16,7 +16,7 @@ namespace {
 constexpr int kFewInstants = 4;
 /// Alarms that no set explains, or that were over at once, before the detector stands down.
 constexpr int kMisfits = 3;
-/// The same where nobody said that the record begins without faults: what was learnt may be too little.
+/// The same where it is not stated that the record begins without faults: what was learnt may be too little.
 constexpr int kMisfitsUntold = 2;
 /// Instants after which a contradiction is forgotten.
 constexpr std::int64_t kMisfitMemory = 8192;
@@ -184,7 +184,7 @@ FaultRule FaultDetector::kind(std::size_t i, int window) const {
   return gain > bias ? FaultRule::gain : FaultRule::bias;
 }
 
-/// Sensors that must be left and one: enough to contradict each other; and where nobody said that the record
+/// Sensors that must be left and one: enough to contradict each other; and where it is not stated that the record
 /// begins without faults, to tell which of them is wrong then.
 int FaultDetector::least_healthy(FaultRule rule) const {
   return inputs_ + (fault_free_ == 0 && rule != FaultRule::dead ? 2 : 1);
@@ -208,7 +208,7 @@ void FaultDetector::act(const Isolation& found, int window) {
   sets_changed();
   int judged = 0;
   for (const Out out : out_) judged += out == Out::judged ? 1 : 0;
-  // More than half cannot be judged by the rest; nor a quarter where nobody said that the record
+  // More than half cannot be judged by the rest; nor a quarter where it is not stated that the record
   // begins without faults.
   const int n = static_cast<int>(base_.n);
   if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4))) stand_down();

@@ -44,7 +44,7 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
       refuse("standard input", "cannot read: " + std::string(std::strerror(errno)));
     return;
   }
-  // Without O_NONBLOCK a named pipe that nobody writes to would hang the program here.
+  // Without O_NONBLOCK a named pipe without a writer would hang the program here.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) refuse(path_, "cannot open: " + std::string(std::strerror(errno)));
   // A writer that waits for us in its own open() needs a moment to begin.

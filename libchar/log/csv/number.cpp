@@ -145,21 +145,21 @@ Written read_mantissa(std::string_view text, std::size_t i, char point) {
 }
 
 // Adds an exponent at number.end to it; numbers beyond 10^±10000 are out of range.
-StampFault read_exponent(std::string_view text, Written& number) {
+StampDefect read_exponent(std::string_view text, Written& number) {
   const std::size_t i = number.end;
-  if (!number.any || i == text.size() || lower(text[i]) != 'e') return StampFault::none;
+  if (!number.any || i == text.size() || lower(text[i]) != 'e') return StampDefect::none;
   int exponent = 0;
   const char* from = text.data() + i + 1;
   const char* const end = text.data() + text.size();
   // from_chars takes a '-' itself, and must not see one behind the '+'.
   if (end - from > 1 && *from == '+' && is_digit(from[1])) ++from;
   const auto [stop, status] = std::from_chars(from, end, exponent);
-  if (stop == from) return StampFault::malformed;
+  if (stop == from) return StampDefect::malformed;
   number.end = static_cast<std::size_t>(stop - text.data());
   if (status != std::errc() || exponent > 10000 || exponent < -10000)
-    return StampFault::out_of_range;
+    return StampDefect::out_of_range;
   number.q += exponent;
-  return StampFault::none;
+  return StampDefect::none;
 }
 
 // w / 10^-q for q < 0, the half rounded to even.
@@ -236,37 +236,37 @@ Cell read_cell(std::string_view text, char point) {
   return cell;
 }
 
-StampFault read_stamp(std::string_view text,
-                      char point,
-                      std::int64_t unit_ns,
-                      std::int64_t& out,
-                      std::size_t& offset) {
+StampDefect read_stamp(std::string_view text,
+                       char point,
+                       std::int64_t unit_ns,
+                       std::int64_t& out,
+                       std::size_t& offset) {
   offset = 0;
-  if (means_missing(text)) return StampFault::missing;
+  if (means_missing(text)) return StampDefect::missing;
   const bool negative = text[0] == '-';
   Written number = read_mantissa(text, negative || text[0] == '+' ? 1 : 0, point);
-  const StampFault fault = read_exponent(text, number);
-  if (fault == StampFault::malformed) return fault;
+  const StampDefect fault = read_exponent(text, number);
+  if (fault == StampDefect::malformed) return fault;
   if (!number.any || number.end < text.size()) {
     offset = number.any ? number.end : 0;
-    return StampFault::malformed;
+    return StampDefect::malformed;
   }
-  if (fault == StampFault::out_of_range) {
+  if (fault == StampDefect::out_of_range) {
     if (number.w != 0) return fault;
     out = 0;
-    return StampFault::none;
+    return StampDefect::none;
   }
   Uint128 ns = number.w * static_cast<std::uint64_t>(unit_ns);
   const Uint128 limit = static_cast<Uint128>(1) << 63U;
   for (int q = number.q; q > 0 && ns != 0; --q) {
-    if (ns > limit) return StampFault::out_of_range;
+    if (ns > limit) return StampDefect::out_of_range;
     ns *= 10;
   }
   if (number.q < 0) ns = rounded_quotient(ns, number.q, number.lost);
-  if (ns > limit - (negative ? 0U : 1U)) return StampFault::out_of_range;
+  if (ns > limit - (negative ? 0U : 1U)) return StampDefect::out_of_range;
   out = negative ? static_cast<std::int64_t>(-static_cast<Int128>(ns))
                  : static_cast<std::int64_t>(ns);
-  return StampFault::none;
+  return StampDefect::none;
 }
 
 }  // namespace libchar::csv

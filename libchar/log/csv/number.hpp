@@ -148,11 +148,11 @@ Cell read_cell(std::string_view text, char point);
 
 /// A time stamp: decimal text times `unit_ns` nanoseconds, exact, the half nanosecond rounded to
 /// even.
-enum class StampFault { none, missing, malformed, out_of_range };
-StampFault read_stamp(std::string_view text,
-                      char point,
-                      std::int64_t unit_ns,
-                      std::int64_t& out,
-                      std::size_t& offset);
+enum class StampDefect { none, missing, malformed, out_of_range };
+StampDefect read_stamp(std::string_view text,
+                       char point,
+                       std::int64_t unit_ns,
+                       std::int64_t& out,
+                       std::size_t& offset);
 
 }  // namespace libchar::csv

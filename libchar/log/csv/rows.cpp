@@ -215,7 +215,7 @@ class RowParser {
                             dialect_.decimal,
                             dialect_.time_unit_ns,
                             out_.rows.time_ns[rows_],
-                            offset) != StampFault::none)
+                            offset) != StampDefect::none)
       return nullptr;
     return p;
   }
@@ -425,17 +425,17 @@ class RowParser {
     std::size_t offset = 0;
     switch (read_stamp(
         text, dialect_.decimal, dialect_.time_unit_ns, out_.rows.time_ns[rows_], offset)) {
-      case StampFault::none:
+      case StampDefect::none:
         ++out_.account.stamps;
         return true;
-      case StampFault::missing:
+      case StampDefect::missing:
         fail("E0313",
              "missing time stamp",
              std::string(text),
              "`time_column` none and `rate_hz` HZ ignore the stamps",
              span.start);
         break;
-      case StampFault::malformed: {
+      case StampDefect::malformed: {
         const Cell why = read_cell(text, dialect_.decimal);
         fail("E0311",
              fmt::format("{} in the time column",
@@ -445,7 +445,7 @@ class RowParser {
              span.from + (why.kind == Cell::bad ? why.offset : offset));
         break;
       }
-      case StampFault::out_of_range:
+      case StampDefect::out_of_range:
         fail("E0314",
              "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong `time_unit`?)",
              std::string(text),

@@ -138,13 +138,13 @@ struct StampLine {
 
 StampLine line_through(const std::vector<std::int64_t>& stamps) {
   const double middle = 0.5 * static_cast<double>(stamps.size() - 1);
-  double across = 0, along = 0;
+  double sum_ky = 0, sum_kk = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     const double k = static_cast<double>(i) - middle;
-    across += k * static_cast<double>(stamps[i] - stamps[0]);
-    along += k * k;
+    sum_ky += k * static_cast<double>(stamps[i] - stamps[0]);
+    sum_kk += k * k;
   }
-  StampLine line{across / along, 0};
+  StampLine line{sum_ky / sum_kk, 0};
   double low = 0, high = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     const double off =

@@ -120,13 +120,13 @@ double StampSketch::line_ns() const {
     stamp += static_cast<double>(cell.first.stamp - origin_.stamp);
   }
   const auto n = static_cast<double>(cells_.size());
-  double across = 0, along = 0;
+  double sum_ky = 0, sum_kk = 0;
   for (const Cell& cell : cells_) {
     const double k = static_cast<double>(cell.first.index - origin_.index) - index / n;
-    along += k * k;
-    across += k * (static_cast<double>(cell.first.stamp - origin_.stamp) - stamp / n);
+    sum_kk += k * k;
+    sum_ky += k * (static_cast<double>(cell.first.stamp - origin_.stamp) - stamp / n);
   }
-  return along > 0 ? across / along : 0;
+  return sum_kk > 0 ? sum_ky / sum_kk : 0;
 }
 
 StampSketch::Deviation StampSketch::deviation(double interval) const {

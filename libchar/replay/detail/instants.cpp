@@ -28,7 +28,7 @@ double to_si(const std::string& unit, Quantity quantity) {
   return known && known->quantity == quantity ? known->to_si : 1;
 }
 
-// Another scale is another unit; where nobody says which, the scale is said.
+// Another scale is another unit; where none is stated, the scale is said.
 std::string unit_after_scale(const SceneSensor& sensor, const std::string& recorded) {
   if (!sensor.unit.empty()) return sensor.unit;
   if (std::abs(sensor.scale) == 1 || recorded.empty()) return recorded;

@@ -48,7 +48,7 @@ Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
   return h;
 }
 
-// Up to where no sensor is known to fail; 0 when nobody knows.
+// Up to where no sensor is known to fail; 0 where it is not known.
 std::int64_t fault_free(const Scene& scene,
                         const Instants& instants,
                         std::int64_t run_from,

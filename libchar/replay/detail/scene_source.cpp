@@ -105,7 +105,7 @@ void SceneSource::want_channels() {
   if (scene_->reference && !scene_->reference->recording)
     for (const std::string& channel : scene_->reference->channels) wanted_.push_back(channel);
   own_ = wanted_.size();
-  // Nobody but the alignment looks at them.
+  // Only the alignment looks at them.
   info_.further_axes = scene_->align ? scene_->sensors[0].cross.size() : 0;
   for (std::size_t axis = 0; axis < info_.further_axes; ++axis)
     for (const SceneSensor& sensor : scene_->sensors) wanted_.push_back(sensor.cross[axis]);

@@ -11,7 +11,7 @@ namespace libchar {
 std::string score_name(const ReplayResult& result);
 /// "0.0331 rad/s"; "–" for NaN.
 std::string with_unit(double value, int digits, const std::string& unit);
-/// Unit of the first input in its usual spelling, "" when nobody said one.
+/// Unit of the first input in its usual spelling, "" where none is stated.
 std::string score_unit(const ReplayResult& result);
 std::string usual_unit(const std::string& unit);
 /// "0.12 %".

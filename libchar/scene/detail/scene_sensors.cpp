@@ -88,7 +88,7 @@ class SensorsReader {
         fmt::format("{} sensors are more than the {} that a scene may have", number, kMostSensors));
   }
 
-  // Of a recording, and where nobody wrote one, the recording is not looked at.
+  // Of a recording, and where there is none, the recording is not looked at.
   void match_patterns(const std::vector<Document>& list) {
     if (scene_.simulate) return;
     std::vector<std::string> patterns, named = reference_words(top_);

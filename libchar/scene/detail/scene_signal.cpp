@@ -112,7 +112,7 @@ SignalSpec read_signal(const Document& node,
   const MapReader at(node, file, path, keys_of(spec.kind));
   read_fields(signal_fields(), at, spec);
   const std::vector<std::string>& own = signal_keys(spec.kind);
-  // These say what the signal is: without them it would be zero, and nobody would notice.
+  // These say what the signal is: without them it would be zero, unnoticed.
   for (const char* key : {"value", "slope"})
     if (holds(own, key)) at.require(key);
   if (holds(own, "points")) spec.points = points_of(at);
