@@ -70,6 +70,7 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
 
 std::vector<std::string> names_of(const std::vector<OutputFile>& outputs) {
   std::vector<std::string> names;
+  names.reserve(outputs.size());
   for (const OutputFile& output : outputs)
     names.push_back(std::filesystem::path(output.path).filename().string());
   return names;
@@ -162,6 +163,7 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
   for (const std::string& name : stale)
     for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
   std::vector<WholeFile*> all;
+  all.reserve(files.size() + streamed.size());
   for (WholeFile& file : files) all.push_back(&file);
   all.insert(all.end(), streamed.begin(), streamed.end());
   give_names(all, stale, folder);

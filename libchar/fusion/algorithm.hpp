@@ -78,8 +78,12 @@ struct Estimate {
   }
 };
 
+/// Where all pairs of channels have numbers of their own: at most 160 MB of them.
+inline constexpr Eigen::Index kMostPaired = 2000;
+
 struct Needs {
   Eigen::Index min_channels = 1;
+  Eigen::Index max_channels = 0;      ///< 0: any number; else memory that grows with their square
   Eigen::Index more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
   std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
   bool reference = false;             ///< learns from a reference, in the learning window

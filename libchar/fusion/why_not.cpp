@@ -53,6 +53,10 @@ std::string why_not(const Description& description, const Array& array) {
           "noisier)";
     return sentence;
   }
+  if (needs.max_channels > 0 && array.channels > needs.max_channels)
+    return name + " takes at most " + std::to_string(needs.max_channels) +
+           " channels (its memory grows with their square); this scene has " +
+           std::to_string(array.channels);
   if (needs.noise_levels && !known(array.noise_levels, array.channels))
     return name +
            " needs a noise level (above zero) for each channel; give a sensor model, noise or a "

@@ -49,6 +49,7 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path,
   const std::vector<std::string> all =
       options.names.empty() ? names_in_head(path, head) : options.names;
   std::vector<std::vector<std::string>> out;
+  out.reserve(words.size());
   std::set<std::string> taken(except.begin(), except.end());
   for (const std::string& word : words) out.push_back(chosen_by(word, path, head, all));
   const auto wild = [&](std::size_t k) {

@@ -158,10 +158,9 @@ LogInfo read_log_head(const std::string& path, const ReadOptions& options) {
   return info;
 }
 
-LogInfo read_log(const std::string& path,
-                 const ReadOptions& options,
-                 BlockSink& sink,
-                 Progress& progress) {
+namespace {
+
+void check_rate_option(const ReadOptions& options) {
   if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
     throw Error({ErrorKind::usage,
                  "E0201",
@@ -169,6 +168,59 @@ LogInfo read_log(const std::string& path,
                  "the rate must be a positive number of hertz, from 1e-9 to 1e12",
                  shortest(*options.rate_hz),
                  ""});
+}
+
+/// What the grid of instants knows better than the head of the log.
+void take_grid(const LogInfo& known, LogInfo& info) {
+  info.rows = known.rows;
+  info.rows_used = known.rows_used;
+  info.rows_dropped = known.rows_dropped;
+  info.rows_outside = known.rows_outside;
+  info.samples = known.samples;
+  if (!known.time.from_stamps && !(known.time.rate_hz > 0)) return;
+  TimeBase time = known.time;
+  time.column = info.time.column;
+  time.unit = info.time.unit;
+  time.unit_ns = info.time.unit_ns;
+  time.unit_guessed = info.time.unit_guessed;
+  if (!time.start_ns) time.start_ns = info.time.start_ns;
+  info.time = time;
+}
+
+void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
+  if (info.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
+  if (info.samples == 0 && (options.from_s || options.to_s))
+    throw Error({ErrorKind::usage,
+                 "E0319",
+                 info.file,
+                 "the stretch of time that was chosen holds no sample",
+                 "",
+                 "inspect says how long the log is"});
+}
+
+/// Refuses a whole log without a finite value; warns of channels without one.
+void judge_values(const Watch& watch,
+                  const LogInfo& info,
+                  const ReadOptions& options,
+                  Warnings& warnings) {
+  if (info.samples == 0) return;
+  const bool whole = !options.from_s && !options.to_s;
+  if (whole && std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
+    refuse_empty(info);
+  for (std::size_t c = 0; c < watch.seen.size(); ++c)
+    if (!watch.seen[c])
+      warnings.add("no_finite_value",
+                   "channels without any finite value",
+                   "channel " + info.channels[c].name);
+}
+
+}  // namespace
+
+LogInfo read_log(const std::string& path,
+                 const ReadOptions& options,
+                 BlockSink& sink,
+                 Progress& progress) {
+  check_rate_option(options);
   const auto source = format_of(path, options).open(path, options);
   Warnings warnings;
   Watch watch(sink, options);
@@ -188,38 +240,9 @@ LogInfo read_log(const std::string& path,
   source->finish(warnings);
   LogInfo info = source->info();
   name_channels(info.channels, options);
-  info.rows = known.rows;
-  info.rows_used = known.rows_used;
-  info.rows_dropped = known.rows_dropped;
-  info.rows_outside = known.rows_outside;
-  info.samples = known.samples;
-  if (known.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
-  if (known.samples == 0 && (options.from_s || options.to_s))
-    throw Error({ErrorKind::usage,
-                 "E0319",
-                 info.file,
-                 "the stretch of time that was chosen holds no sample",
-                 "",
-                 "inspect says how long the log is"});
-  TimeBase time = info.time;
-  if (known.time.from_stamps || known.time.rate_hz > 0) {
-    time = known.time;
-    time.column = info.time.column;
-    time.unit = info.time.unit;
-    time.unit_ns = info.time.unit_ns;
-    time.unit_guessed = info.time.unit_guessed;
-    if (!time.start_ns) time.start_ns = info.time.start_ns;
-  }
-  info.time = time;
-  const bool whole = !options.from_s && !options.to_s;
-  if (whole && info.samples > 0 &&
-      std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
-    refuse_empty(info);
-  for (std::size_t c = 0; c < watch.seen.size() && info.samples > 0; ++c)
-    if (!watch.seen[c])
-      warnings.add("no_finite_value",
-                   "channels without any finite value",
-                   "channel " + info.channels[c].name);
+  take_grid(known, info);
+  refuse_without_samples(info, options);
+  judge_values(watch, info, options, warnings);
   warn_of_units(options, warnings);
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());

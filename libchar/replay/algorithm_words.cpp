@@ -19,6 +19,7 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   if (n.tilt) out.emplace_back("one gyroscope axis and two accelerometer axes");
   if (n.rate) out.emplace_back("the sampling rate");
   if (n.min_channels > 1) out.push_back(fmt::format("at least {} sensors", n.min_channels));
+  if (n.max_channels > 0) out.push_back(fmt::format("at most {} sensors", n.max_channels));
   if (n.more_than_inputs > 0)
     out.push_back(n.more_than_inputs == 1
                       ? std::string("more than one sensor an input")

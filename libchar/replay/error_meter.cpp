@@ -61,6 +61,7 @@ std::vector<double> influence(const Meters& meters) {
 
 std::vector<double> cell_means(const std::vector<ErrorCell>& cells, double otherwise) {
   std::vector<double> means;
+  means.reserve(cells.size());
   for (const ErrorCell& cell : cells) means.push_back(cell.n > 0 ? cell.sum / cell.n : otherwise);
   return means;
 }

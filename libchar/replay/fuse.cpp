@@ -226,6 +226,7 @@ void Fusing::find_channels() {
   check_map();
   const std::vector<Channel> channels = channels_of(log_, options_.reading, progress_);
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const Channel& channel : channels) names.push_back(channel.name);
   const auto find = [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) - names.begin();

@@ -42,6 +42,7 @@ void write_list_of(const Field& row,
                    Entry::Form form = Entry::Form::block) {
   if (parts.empty()) return;
   std::vector<Entry> below;
+  below.reserve(parts.size());
   for (const Part& part : parts) below.push_back(part_entry("", entries_of(rows, part), form));
   Entry entry = part_entry(std::string(row.key), std::move(below), Entry::Form::list);
   entry.comment = row.text.comment;

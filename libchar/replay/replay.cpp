@@ -31,8 +31,6 @@
 namespace libchar {
 namespace {
 
-/// A median of fewer blocks is no median: short recordings are run again for the clock.
-constexpr std::size_t kLeastTimed = 31;
 constexpr std::size_t kLearningBlock = 4096;
 constexpr double kWindowShare = 0.02;
 
@@ -336,12 +334,11 @@ class Replay {
   // After everything else: what the algorithms hold then is of no interest.
   void time_again(ReplayResult& result) {
     if (kept_.empty() || !options_.timing) return;
-    const auto timed_enough = [](const AlgorithmRun& run) {
-      return !run.alive() || run.timed_blocks() >= kLeastTimed;
-    };
+    const auto timed_enough = [](const AlgorithmRun& run) { return run.timed_enough(); };
     while (!std::all_of(runs_.begin(), runs_.end(), timed_enough))
       for (const Eigen::MatrixXd& samples : kept_)
-        for (AlgorithmRun& run : runs_) run.repeat(samples);
+        for (AlgorithmRun& run : runs_)
+          if (!run.timed_enough()) run.repeat(samples);
     for (const AlgorithmRun& run : runs_)
       for (AlgorithmResult& algorithm : result.algorithms)
         if (run.alive() && algorithm.label == run.planned().label)

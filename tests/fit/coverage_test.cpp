@@ -81,20 +81,20 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
 }
 
 TEST_CASE("coverage near the limit: of everything that is said, and of what is called detected") {
-  constexpr std::size_t kCoverageSamples = 32768;
-  constexpr int kRecords = 400;
-  constexpr double kRate = 200;
+  constexpr std::size_t kNearSamples = 32768;
+  constexpr int kNearRecords = 400;
+  constexpr double kNearRate = 200;
   const std::array<double, 3> truth = {5e-3, 2.5e-3, 1e-3};
-  test::NoiseSource source(kCoverageSamples, kRate, 4711);
+  test::NoiseSource source(kNearSamples, kNearRate, 4711);
   FitOptions options;
   options.remedies = options.second_opinion = false;
   std::array<int, 3> covered{}, detected{}, detected_covered{};
-  for (int r = 0; r < kRecords; ++r) {
+  for (int r = 0; r < kNearRecords; ++r) {
     const std::vector<double> y = source.record(truth[0], truth[1], truth[2]);
-    PowerBinner binner(kCoverageSamples);
+    PowerBinner binner(kNearSamples);
     binner.push(y);
     const NoiseFit fit =
-        fit_power_bins(binner.finish(kRate), kRate, kCoverageSamples, nullptr, options);
+        fit_power_bins(binner.finish(kNearRate), kNearRate, kNearSamples, nullptr, options);
     for (std::size_t i = 0; i < 3; ++i) {
       const Coefficient& c = fit.term[i];
       const int inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;
@@ -105,14 +105,14 @@ TEST_CASE("coverage near the limit: of everything that is said, and of what is c
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    INFO(kTermNames[i].letter << ": " << covered[i] << " of " << kRecords << ", detected "
+    INFO(kTermNames[i].letter << ": " << covered[i] << " of " << kNearRecords << ", detected "
                               << detected_covered[i] << " of " << detected[i]);
-    CHECK(covered[i] >= 0.93 * kRecords);
+    CHECK(covered[i] >= 0.93 * kNearRecords);
     CHECK(detected_covered[i] >= 0.95 * detected[i] - 3 * std::sqrt(0.95 * 0.05 * detected[i]));
   }
   // Neither hopeless nor easy: otherwise nothing was selected.
   CHECK(detected[1] > 40);
-  CHECK(detected[1] < kRecords - 40);
+  CHECK(detected[1] < kNearRecords - 40);
   CHECK(detected[2] > 40);
-  CHECK(detected[2] < kRecords - 40);
+  CHECK(detected[2] < kNearRecords - 40);
 }

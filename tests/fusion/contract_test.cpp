@@ -68,6 +68,9 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   CHECK(why_not(needing({}), two).empty());
   CHECK(why_not(needing({.min_channels = 3}), two) ==
         "foo needs at least 3 channels; this scene has 2");
+  CHECK(why_not(needing({.max_channels = 2}), two).empty());
+  CHECK(why_not(needing({.max_channels = 2}), test::array(3)) ==
+        "foo takes at most 2 channels (its memory grows with their square); this scene has 3");
   CHECK(why_not(needing({.more_than_inputs = 2}), two) ==
         "foo needs at least 3 channels for 1 input; this scene has 2 (the difference of two "
         "channels tells the sum of "

@@ -79,6 +79,7 @@ std::string model_path(const FitVerb& verb, const Channel& channel, std::set<std
 // One sensor model a channel; all are written before the first gets its name.
 void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, const LogInfo& log) {
   std::vector<OutputFile> models;
+  models.reserve(fits.size());
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
     models.push_back(

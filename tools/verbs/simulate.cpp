@@ -258,6 +258,8 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   apply_options(session, verb, simulation);
   std::vector<LogInfo> read;  // before the outputs take their places
   std::vector<const LogInfo*> inputs;
+  read.reserve(verb.sources.size());
+  inputs.reserve(verb.sources.size());
   for (const std::string& source : verb.sources) read.push_back(document_info(source));
   for (const LogInfo& one : read) inputs.push_back(&one);
   const SimulationSummary summary = write_recording(session, verb, simulation, scene);

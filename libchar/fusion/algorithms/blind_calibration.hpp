@@ -29,11 +29,12 @@
 namespace libchar::fusion {
 
 struct BlindCalibration {
-  static constexpr Description description{.name = "blind-calibration",
-                                           .title = "Blind calibration, then the mean",
-                                           .source = "[RV 3.5]; Balzano & Nowak 2007",
-                                           .complexity = "O(n^2)",
-                                           .needs = {.min_channels = 2}};
+  static constexpr Description description{
+      .name = "blind-calibration",
+      .title = "Blind calibration, then the mean",
+      .source = "[RV 3.5]; Balzano & Nowak 2007",
+      .complexity = "O(n^2)",
+      .needs = {.min_channels = 2, .max_channels = kMostPaired}};
   static constexpr std::array options{
       Option{"gauge",
              "",

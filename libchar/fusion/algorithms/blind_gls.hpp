@@ -21,7 +21,7 @@ struct BlindGls {
       .title = "Blind gains and variances, then generalized least squares",
       .source = "Lawley & Maxwell 1971; Aitken 1936",
       .complexity = "O(n^2)",
-      .needs = {.min_channels = 3, .accepts_missing = true}};
+      .needs = {.min_channels = 3, .max_channels = kMostPaired, .accepts_missing = true}};
   static constexpr std::array options{
       Option{"gauge",
              "",

@@ -37,7 +37,7 @@ struct OptimalWeights : ReferenceWeightedMean {
       .title = "Optimal fixed weights (bound)",
       .source = "[RV 3.25]",
       .complexity = "O(n)",
-      .needs = {.reference_throughout = true, .accepts_missing = true},
+      .needs = {.max_channels = kMostPaired, .reference_throughout = true, .accepts_missing = true},
       .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
@@ -54,7 +54,7 @@ struct SectionedLeastSquares {
       .title = "Least squares, section by section (bound)",
       .source = "[RV 5.1.2]",
       .complexity = "O(n)",
-      .needs = {.reference_throughout = true, .accepts_missing = true},
+      .needs = {.max_channels = kMostPaired, .reference_throughout = true, .accepts_missing = true},
       .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};

@@ -118,8 +118,11 @@ class ReferenceWeightedMean {
 
 template <bool kPublished>
 struct LeastSquaresOf : ReferenceWeightedMean {
-  static constexpr Needs kNeeds{
-      .min_channels = 1, .learning_samples = 2, .reference = true, .accepts_missing = true};
+  static constexpr Needs kNeeds{.min_channels = 1,
+                                .max_channels = kMostPaired,
+                                .learning_samples = 2,
+                                .reference = true,
+                                .accepts_missing = true};
   static constexpr Description description =
       kPublished ? Description{.name = "least-squares-published",
                                .title = "Least squares as published: weights free",
@@ -155,8 +158,11 @@ using LeastSquaresPublished = LeastSquaresOf<true>;
 /// Weights that a short or drifting learning window cannot drive to extremes.
 template <bool kNonNegative>
 struct RegularizedLeastSquares : ReferenceWeightedMean {
-  static constexpr Needs kNeeds{
-      .min_channels = 2, .learning_samples = 2, .reference = true, .accepts_missing = true};
+  static constexpr Needs kNeeds{.min_channels = 2,
+                                .max_channels = kMostPaired,
+                                .learning_samples = 2,
+                                .reference = true,
+                                .accepts_missing = true};
   static constexpr Description description =
       kNonNegative ? Description{.name = "non-negative-least-squares",
                                  .title = "Least squares, weights at least zero that sum to one",

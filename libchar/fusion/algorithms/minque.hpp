@@ -16,12 +16,14 @@
 namespace libchar::fusion {
 
 struct Minque {
-  static constexpr Description description{
-      .name = "minque",
-      .title = "MINQUE, recursive and re-weighted",
-      .source = "[RV 4, 5]; Patterson & Thompson 1971",
-      .complexity = "O(n) for one input, O(n^2) otherwise",
-      .needs = {.more_than_inputs = 2, .observation_matrix = true, .accepts_missing = true}};
+  static constexpr Description description{.name = "minque",
+                                           .title = "MINQUE, recursive and re-weighted",
+                                           .source = "[RV 4, 5]; Patterson & Thompson 1971",
+                                           .complexity = "O(n) for one input, O(n^2) otherwise",
+                                           .needs = {.max_channels = kMostPaired,
+                                                     .more_than_inputs = 2,
+                                                     .observation_matrix = true,
+                                                     .accepts_missing = true}};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the variances: 1/(1 - gamma) instants"},
       Option{"damping",

@@ -26,7 +26,10 @@ struct MinquePublished {
       .title = "MINQUE as published, with its fault rule mended",
       .source = "[RV 4, 5]",
       .complexity = "O(n^2)",
-      .needs = {.min_channels = 3, .more_than_inputs = 2, .accepts_missing = true}};
+      .needs = {.min_channels = 3,
+                .max_channels = kMostPaired,
+                .more_than_inputs = 2,
+                .accepts_missing = true}};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the moments: 1/(1 - gamma) instants"},
       Option{"about_zero",

@@ -53,7 +53,7 @@ LIBCHAR_WIDE_LANES void cityblock(const double* series,
     smallest[s / kGroup] = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
     in_class = in_class + kGroup == classes ? 0 : in_class + kGroup;
   }
-  if (whole == starts) return;
+  if (whole == starts || classes == 0) return;
   smallest[whole / kGroup] = kInfinity;
   for (std::size_t s = whole; s < starts; ++s) {
     distances[s] = 0;

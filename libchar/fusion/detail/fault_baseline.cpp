@@ -246,7 +246,7 @@ void FaultBaseline::renew(double count_memory) {
 void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, double frozen) {
   for (std::size_t i = 0; i < n; ++i) {
     const double m = sum_n[i];
-    if (m < kBlock / 8 || tops[i] > frozen) continue;
+    if (m < kLeastOfBlock || tops[i] > frozen) continue;
     const double off = sum_zz[i] - m;
     blocks[i] += 1;
     const double a = std::max(1 / kBlockMemory, 1 / (blocks[i] + 1));

@@ -118,6 +118,7 @@ struct FaultBaseline {
   static constexpr double kMemory = 20000, kMeanMemory = 1000;
   static constexpr double kRecent = 200;
   static constexpr int kBlock = 512;
+  static constexpr int kLeastOfBlock = kBlock / 8;
 
   /// f, here and y → x, dx and y less its slow mean.
   void predict();

@@ -109,7 +109,7 @@ void FaultDetector::begin() {
     }
   }
   for (std::size_t i = 0; i < base_.n; ++i) {
-    known_[i] = new_count_[i] >= kStart / 2 ? 1 : 0;
+    known_[i] = new_count_[i] >= kHalfStart ? 1 : 0;
     if (known_[i] == 0) ++count_new_;
     if (known_[i] != 0) base_.bias[i] = mean[i];
     squares_[i] = known_[i] != 0 ? std::max(new_square_[i] / (new_count_[i] - 1), kTiny) : 0;
@@ -117,7 +117,7 @@ void FaultDetector::begin() {
   const double largest = std::max(*std::max_element(squares_.begin(), squares_.end()), kTiny);
   for (std::size_t i = 0; i < base_.n; ++i)
     squares_[i] = std::max(squares_[i] > 0 ? squares_[i] : largest, largest * kSmallestRatio);
-  if (!general_) scalar_.begin(squares_.data(), kStart / 2);
+  if (!general_) scalar_.begin(squares_.data(), kHalfStart);
   for (std::size_t i = 0; i < base_.n; ++i) base_.bias_var[i] = squares_[i];
   for (std::vector<double>* v : {&new_mean_, &new_square_, &new_count_})
     std::fill(v->begin(), v->end(), 0.0);
@@ -230,7 +230,7 @@ void FaultDetector::slow_work(Variances& variances) {
     samples = std::max(samples, base_.count[i]);
   }
   if (restarts_ < std::size(kMeansLearnt) && samples >= kMeansLearnt[restarts_]) {
-    variances.restart(kStart / 2);
+    variances.restart(kHalfStart);
     base_.forget_blocks(fault_free_ > 0);
     ++restarts_;
   }

@@ -65,7 +65,8 @@ class FaultDetector {
 
  private:
   enum class Out : char { no, judged, stuck, saturated };
-  static constexpr int kStart = 32;    // instants of the start
+  static constexpr int kStart = 32;  // instants of the start
+  static constexpr int kHalfStart = kStart / 2;
   static constexpr int kWindow = 512;  // instants that an alarm is judged by
 
   void start(const double* y);

@@ -12,14 +12,29 @@ PairCovariance::PairCovariance(Eigen::Index channels)
       pair_mean_(products_),
       pair_products_(products_) {}
 
-bool PairCovariance::enough() const {
+/// Too few instants are complete, and there are others.
+bool PairCovariance::by_pairs() const {
   constexpr double kLeast = 200, kLeastAChannel = 20;
-  return complete_ >= std::max(kLeast, kLeastAChannel * static_cast<double>(mean_.size()));
+  return pairs_ && complete_ < std::max(kLeast, kLeastAChannel * static_cast<double>(mean_.size()));
 }
 
 void PairCovariance::add(const Sample& y) {
-  if (!enough()) add_pairs(y);
-  if (complete(y)) add_complete(y);
+  const bool whole = complete(y);
+  if (!whole && !pairs_) begin_pairs();
+  if (by_pairs()) add_pairs(y);
+  if (whole) add_complete(y);
+}
+
+/// So far every pair was there whenever all were.
+void PairCovariance::begin_pairs() {
+  pairs_ = true;
+  for (Eigen::Index j = 0; j < mean_.size(); ++j)
+    for (Eigen::Index i = j; i < mean_.size(); ++i) {
+      count_(i, j) = complete_;
+      pair_mean_(i, j) = mean_[i];
+      pair_mean_(j, i) = mean_[j];
+      pair_products_(i, j) = products_(i, j);
+    }
 }
 
 void PairCovariance::add_complete(const Sample& y) {
@@ -52,8 +67,8 @@ void PairCovariance::add_pairs(const Sample& y) {
 void PairCovariance::covariance(Eigen::MatrixXd& out) const {
   for (Eigen::Index j = 0; j < out.cols(); ++j)
     for (Eigen::Index i = j; i < out.rows(); ++i) {
-      const double count = enough() ? complete_ : count_(i, j);
-      const double products = enough() ? products_(i, j) : pair_products_(i, j);
+      const double count = by_pairs() ? count_(i, j) : complete_;
+      const double products = by_pairs() ? pair_products_(i, j) : products_(i, j);
       out(i, j) = count > 0 ? products / count : 0;
     }
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Means and covariance of channels some of whose samples are missing: of the instants that are complete,
 // in which all channels see the same input, so that its power cancels in what is made of them (Welford);
-// while these are few, of each pair over the instants that have both.
+// while these are few, of each pair over the instants that have both: the same until the first sample is missing.
 
 #include <Eigen/Core>
 
@@ -15,16 +15,18 @@ class PairCovariance {
   /// No trip to the heap.
   void add(const Sample& y);
   /// Instants behind the mean of channel i.
-  double instants(Eigen::Index i) const { return enough() ? complete_ : count_(i, i); }
-  double mean(Eigen::Index i) const { return enough() ? mean_[i] : pair_mean_(i, i); }
+  double instants(Eigen::Index i) const { return by_pairs() ? count_(i, i) : complete_; }
+  double mean(Eigen::Index i) const { return by_pairs() ? pair_mean_(i, i) : mean_[i]; }
   /// Into the lower triangle of `out`; a pair never seen together has covariance zero.
   void covariance(Eigen::MatrixXd& out) const;
 
  private:
-  bool enough() const;
+  bool by_pairs() const;
   void add_complete(const Sample& y);
+  void begin_pairs();
   void add_pairs(const Sample& y);
   double complete_ = 0;
+  bool pairs_ = false;  // some instant was not complete
   Eigen::VectorXd mean_, delta_;
   Eigen::MatrixXd products_;  // of complete instants about the mean, lower triangle
   // (i, j), i >= j: instants and products about the means of the pair; pair_mean_(i, j): of channel i

@@ -25,11 +25,14 @@ class PairMoments {
 
  private:
   double moment(Eigen::Index i, Eigen::Index j) const;
+  void update_all(const double* y);
+  void variances_of_all(double* v) const;
   double gamma_;
   bool about_zero_;
   // Symmetric; of a pair i > j: mean(i, j) of y_i - y_j, square(i, j), and count(i, j): what of 1 -
   // g^k is missing, g^k.
   Eigen::MatrixXd mean_, square_, missing_;
+  mutable Eigen::VectorXd moments_;  // of one channel with those before it
 };
 
 }  // namespace libchar::fusion

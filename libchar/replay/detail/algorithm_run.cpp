@@ -147,6 +147,7 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
   const double seconds = accounted([&] { runner_->run(all, x_, variance_); });
+  timed_s_ += seconds;
   if (blocks_ % stride_ == 0) ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
 }
 

@@ -28,6 +28,11 @@ struct RunFrame {
 /// The result of an algorithm that does not run.
 AlgorithmResult not_run(const PlannedAlgorithm& planned, const std::string& why);
 
+/// A median of fewer blocks is no median: short recordings are run again for the clock…
+inline constexpr std::size_t kLeastTimed = 31;
+/// …unless an algorithm is slow: so long a time is known well enough.
+inline constexpr double kEnoughTimed_s = 0.25;
+
 class AlgorithmRun {
  public:
   AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& frame);
@@ -50,7 +55,9 @@ class AlgorithmRun {
   /// r x m estimates of the last block, in output units.
   const Eigen::MatrixXd& estimates() const { return x_; }
   const std::vector<ErrorMeter>& meters() const { return meters_; }
-  std::size_t timed_blocks() const { return ns_.size(); }
+  bool timed_enough() const {
+    return !alive() || ns_.size() >= kLeastTimed || timed_s_ >= kEnoughTimed_s;
+  }
   double median_ns() const;  ///< of an instant; NaN before the first block
   /// Everything that is known without the others: scores, tracks, faults, cost.
   AlgorithmResult result(const ScoreOptions& options, double window_s) const;
@@ -85,6 +92,7 @@ class AlgorithmRun {
   std::vector<AllanPyramid> allan_;
   std::vector<double> ns_;
   std::size_t blocks_ = 0, stride_ = 1;  // one block of so many is noted
+  double timed_s_ = 0;
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
   double learning_s_ = 0, available_ = 0, scored_ = 0;

@@ -85,7 +85,7 @@ class Instants::Columns {
 
   double value(std::size_t row, double y) const {
     const std::size_t n = instants_.sensors_;
-    if (row >= n) return y * instants_.scene_->sensors[row % n].scale;
+    if (n > 0 && row >= n) return y * instants_.scene_->sensors[row % n].scale;
     return (y * instants_.factors_[row]) - (instants_.preparation_.filter ? 0 : offset(row));
   }
   double offset(std::size_t row) const {

@@ -108,8 +108,8 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
   std::vector<BatchVariance> batches;
   for (const std::size_t count : kBatches) {
     if (count > series.size()) continue;
-    const double share =
-        static_cast<double>(series.size() / count) / static_cast<double>(series.size());
+    const std::size_t whole = series.size() / count;
+    const double share = static_cast<double>(whole) / static_cast<double>(series.size());
     const double variance = variance_of(batch_means(series, count));
     if (!(variance > 0)) return {0, 0, false};
     batches.push_back(

@@ -36,6 +36,7 @@ std::optional<StepNoise> typical(const std::vector<double>& logs) {
   out.log_variance = median_of_stretches(logs);
   if (!std::isfinite(out.log_variance)) return std::nullopt;
   std::vector<double> off;
+  off.reserve(logs.size());
   for (const double value : logs) off.push_back(std::abs(value - out.log_variance));
   const double deviation = kFromMedianOff * median_of_stretches(off);
   out.error = kMedianError * deviation / std::sqrt(static_cast<double>(logs.size()));
