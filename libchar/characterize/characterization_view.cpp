@@ -206,6 +206,23 @@ std::vector<std::optional<double>> data_sheet_curve(const ChannelResult& channel
 
 }  // namespace
 
+namespace {
+
+void choose_details(std::vector<ChannelView>& channels) {
+  if (channels.size() <= kMostInDetail) return;
+  std::vector<ChannelView*> worst_first;
+  worst_first.reserve(channels.size());
+  for (ChannelView& channel : channels) worst_first.push_back(&channel);
+  std::stable_sort(
+      worst_first.begin(), worst_first.end(), [](const ChannelView* a, const ChannelView* b) {
+        return a->summary.rating > b->summary.rating;
+      });
+  for (std::size_t k = kMostInDetail; k < worst_first.size(); ++k)
+    worst_first[k]->in_detail = false;
+}
+
+}  // namespace
+
 CharacterizationView characterization_view(const Characterization& result) {
   CharacterizationView out;
   out.result = &result;
@@ -219,6 +236,7 @@ CharacterizationView characterization_view(const Characterization& result) {
   }
   for (const ChannelView& channel : out.channels)
     out.rating = std::max(out.rating, channel.summary.rating);
+  choose_details(out.channels);
   out.groups = groups_of(out.channels);
   return out;
 }

@@ -68,7 +68,11 @@ struct ChannelView {
   /// of the Allan curve, one a point: a sensor that stands at the limits of its data sheet; empty: no limits for this channel
   std::vector<std::optional<double>> data_sheet;
   bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
+  bool in_detail = true;                             ///< has curves and a part of its own on a page
 };
+
+/// Of more channels than these a page shows those in detail that ask for a look most, and the others in a sentence and a row of the table.
+inline constexpr std::size_t kMostInDetail = 100;
 
 /// Points into the result that it is a view of, which must live as long.
 struct CharacterizationView {

@@ -75,13 +75,17 @@ std::string overview_cell(const ChannelView& view, Term term, std::string_view l
                    k.value ? "n" : "n limit");
 }
 
+std::string channel_link(const ChannelView& c, std::size_t i) {
+  const std::string name = html_text(c.result->channel.name);
+  return c.in_detail ? fmt::format("<a href=\"#channel-{}\">{}</a>", i, name)
+                     : "<b>" + name + "</b>";
+}
+
 std::string overview_row(const ChannelView& view, std::size_t index, double rate_hz) {
   const ChannelResult& c = *view.result;
-  std::string out = fmt::format(
-      "<tr><th scope=\"row\"><a href=\"#channel-{}\">{}</a> <span class=\"dim\">{}</span></th>",
-      index,
-      html_text(c.channel.name),
-      html_text(view.shown_unit));
+  std::string out = fmt::format("<tr><th scope=\"row\">{} <span class=\"dim\">{}</span></th>",
+                                channel_link(view, index),
+                                html_text(view.shown_unit));
   for (const Term term : {Term::white, Term::flicker, Term::walk})
     out += overview_cell(view,
                          term,
@@ -126,11 +130,10 @@ std::string sentences(const CharacterizationView& view) {
   std::string out = "<ul class=\"sensors\">\n";
   for (std::size_t i = 0; i < view.channels.size(); ++i) {
     const ChannelView& c = view.channels[i];
-    out += fmt::format("<li class=\"{}\">{} <a href=\"#channel-{}\">{}</a> {}</li>\n",
+    out += fmt::format("<li class=\"{}\">{} {} {}</li>\n",
                        name_of(c.summary.rating),
                        rating_badge(c.summary.rating),
-                       i,
-                       html_text(c.result->channel.name),
+                       channel_link(c, i),
                        html_text(c.summary.sentence));
   }
   return out + "</ul>\n";
@@ -145,7 +148,7 @@ std::string group_part(const CharacterizationView& view, const ChannelGroup& gro
   if (group.channels.size() <= kTracesInGroup) {
     out += group.channels.size() > 3 ? "<div class=\"traces many\">\n" : "<div class=\"traces\">\n";
     for (const std::size_t i : group.channels)
-      out += trace_plot(view.channels[i], i, view.result->log);
+      if (view.channels[i].in_detail) out += trace_plot(view.channels[i], i, view.result->log);
     out += "</div>\n";
   }
   const std::string title =
@@ -154,6 +157,33 @@ std::string group_part(const CharacterizationView& view, const ChannelGroup& gro
   return fmt::format(
              "<h2>{} <span class=\"unit\">{}</span></h2>\n", html_text(title), html_text(unit)) +
          out + "</div>\n";
+}
+
+bool all_in_detail(const CharacterizationView& view) {
+  return std::all_of(
+      view.channels.begin(), view.channels.end(), [](const ChannelView& c) { return c.in_detail; });
+}
+
+std::string which_in_detail(const CharacterizationView& view) {
+  if (all_in_detail(view)) return "";
+  return fmt::format(
+      "<p class=\"note\">Shown here and drawn: the {} of {} channels that ask for a look most. "
+      "Each "
+      "has its sentence and its row of the table above; report.json and curves.csv hold all.</p>\n",
+      kMostInDetail,
+      view.channels.size());
+}
+
+// Of what has a part for each channel, only those that the page draws.
+Json of_details(const CharacterizationView& view, Json document) {
+  for (auto& [key, part] : document.items()) {
+    if (!part.is_object() || !part.contains("channels")) continue;
+    Json& channels = part["channels"];
+    if (!channels.is_array() || channels.size() != view.channels.size()) continue;
+    for (std::size_t i = 0; i < view.channels.size(); ++i)
+      if (!view.channels[i].in_detail) channels[i] = nullptr;
+  }
+  return document;
 }
 
 constexpr std::size_t kUnfoldedRows = 12;
@@ -221,20 +251,25 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
   const Characterization& result = *view.result;
   std::string body = overview(view);
   if (result.limits) body += limits_section(*result.limits);
-  body += "<section id=\"channels\">\n<h2>Channel by channel</h2>\n";
+  body += "<section id=\"channels\">\n<h2>Channel by channel</h2>\n" + which_in_detail(view);
   for (const ChannelGroup& group : view.groups)
     for (const std::size_t i : group.channels)
-      body += channel_section(
-          view.channels[i],
-          result.log,
-          i,
-          {.open = view.channels.size() == 1, .trace = group.channels.size() > kTracesInGroup});
+      if (view.channels[i].in_detail)
+        body += channel_section(
+            view.channels[i],
+            result.log,
+            i,
+            {.open = view.channels.size() == 1, .trace = group.channels.size() > kTracesInGroup});
   body += "</section>\n";
   body += provenance(result);
   return html_page(
-      {"Sensor noise", result.log.file, std::string(page_js()), std::string(page_css()), true},
+      {"Sensor noise",
+       result.log.file,
+       std::string(page_js()),
+       std::string(page_css()),
+       all_in_detail(view)},
       body,
-      json_in_script(without_times));
+      json_in_script(all_in_detail(view) ? without_times : of_details(view, without_times)));
 }
 
 std::string html_report(const Characterization& result) {

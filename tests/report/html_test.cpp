@@ -150,3 +150,27 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     CHECK(code >= 0);
   }
 }
+
+TEST_CASE("html: of a thousand channels those are drawn that ask for a look, and all are listed") {
+  const Characterization many = test::many_channels(1000);
+  const CharacterizationView view = characterization_view(many);
+  const std::string page = html_report(many);
+  CHECK(page.size() < 10'000'000);
+  std::size_t shown = 0, worst_left_out = 0;
+  Rating least_shown = Rating::bad;
+  for (std::size_t i = 0; i < view.channels.size(); ++i) {
+    const ChannelView& c = view.channels[i];
+    const bool here = test::count(page, "id=\"channel-" + std::to_string(i) + "\"") == 1;
+    shown += here ? 1 : 0;
+    if (here) least_shown = std::min(least_shown, c.summary.rating);
+    CHECK(here == c.in_detail);
+  }
+  for (const ChannelView& c : view.channels)
+    worst_left_out += !c.in_detail && c.summary.rating > least_shown ? 1 : 0;
+  CHECK(shown == kMostInDetail);
+  CHECK(worst_left_out == 0);
+  CHECK(test::count(page, "<li class=\"good\">") + test::count(page, "<li class=\"caution\">") +
+            test::count(page, "<li class=\"bad\">") ==
+        1000);
+  CHECK(test::count(html_report(test::synthetic_imu()), "ask for a look most") == 0);
+}

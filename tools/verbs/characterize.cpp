@@ -95,9 +95,14 @@ Characterization characterized(Session& session,
   return result;
 }
 
+/// A set of more files is named by its first ones.
+constexpr std::size_t kMostNamed = 24;
+
 void say_written(const std::vector<OutputFile>& outputs, const std::vector<std::string>& removed) {
   std::string written = "\nwrote";
-  for (const OutputFile& output : outputs) written += fmt::format(" {}", printable(output.path));
+  const std::size_t named = outputs.size() > kMostNamed ? kMostNamed - 1 : outputs.size();
+  for (std::size_t k = 0; k < named; ++k) written += fmt::format(" {}", printable(outputs[k].path));
+  if (named < outputs.size()) written += fmt::format(" and {} more", outputs.size() - named);
   if (!removed.empty()) written += "\nremoved, of an earlier run:";
   for (const std::string& name : removed) written += fmt::format(" {}", printable(name));
   print(written + "\n");

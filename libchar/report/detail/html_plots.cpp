@@ -130,6 +130,7 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
   bool shaped = false;
   std::set<std::string> taken_out;
   for (const std::size_t i : group.channels) {
+    if (!view.channels[i].in_detail) continue;
     if (view.channels[i].draws_allan) drawn.push_back(i);
     const auto& fit = view.channels[i].result->fit;
     if (fit && !fit->events.empty()) taken_out.insert("steps, warm-up and ramps");
