@@ -267,6 +267,7 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
        result.log.file,
        std::string(page_js()),
        std::string(page_css()),
+       true,
        all_in_detail(view)},
       body,
       json_in_script(all_in_detail(view) ? without_times : of_details(view, without_times)));

@@ -326,10 +326,12 @@ const reportPage = (function () {
 
     // ---- the numbers, to take away ----
     const button = document.getElementById("download");
-    button.hidden = false;
-    button.addEventListener("click", () => {
-      handOut(new Blob([JSON.stringify(report, null, 2) + "\n"], { type: "application/json" }), "report.json");
-    });
+    if (button) { // the page holds all numbers
+      button.hidden = false;
+      button.addEventListener("click", () => {
+        handOut(new Blob([JSON.stringify(report, null, 2) + "\n"], { type: "application/json" }), "report.json");
+      });
+    }
 
     return { figures, charts };
   }

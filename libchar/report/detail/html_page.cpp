@@ -112,12 +112,13 @@ std::string html_page(const PageParts& parts, const std::string& body, const std
   const std::string script = std::string(page_common_js()) + parts.script;
   std::string out = head(parts, script);
   out += "<body>\n<header>\n<h1>" + html_text(parts.title) + " <span class=\"unit\">" +
-         html_text(parts.subject) +
-         "</span></h1>\n"
-         "<button id=\"download\" type=\"button\" hidden>Download the numbers "
-         "(JSON)</button>\n</header>\n"
-         "<noscript><p class=\"noscript\">The plots need JavaScript. Every number stands in the "
-         "tables.</p></noscript>\n<main>\n";
+         html_text(parts.subject) + "</span></h1>\n";
+  if (parts.all_numbers)
+    out += "<button id=\"download\" type=\"button\" hidden>Download the numbers (JSON)</button>\n";
+  out +=
+      "</header>\n"
+      "<noscript><p class=\"noscript\">The plots need JavaScript. Every number stands in the "
+      "tables.</p></noscript>\n<main>\n";
   out += body;
   out += "</main>\n<footer>Written by sensorchar " + std::string(version()) +
          ". Plots: Chart.js, MIT licence (in the source of this page).</footer>\n";
