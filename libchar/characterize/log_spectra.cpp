@@ -43,7 +43,7 @@ void try_channel(LogSpectra& result, const Channel& channel, const Make& make) {
       result.notes.push_back(name + note);
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric) throw;
-    result.notes.push_back(name + error.what());
+    result.notes.push_back(name + error.problem().what);
   }
 }
 

@@ -13,7 +13,7 @@ namespace libchar {
 
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
   std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n";
-  for (std::size_t c = 0; c < curves.size(); ++c)
+  for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c)
     for (const AllanPoint& p : curves[c].points)
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
                           csv_cell(channels[c].name),

@@ -89,5 +89,6 @@ TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in 
   CHECK_THROWS_WITH(log_spectra(path), Contains("rate"));
   LogSpectraOptions options = at_100_hz();
   options.spectrum.segment = 8192;
-  CHECK_THROWS_WITH(log_spectra(path, options), Contains("no channel gives a spectrum"));
+  CHECK_THROWS_WITH(log_spectra(path, options),
+                    Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
 }
