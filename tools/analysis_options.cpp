@@ -6,7 +6,6 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
-#include "libchar/core/text.hpp"
 
 namespace sensorchar {
 namespace {

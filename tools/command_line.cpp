@@ -10,6 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 #include "verb.hpp"
 

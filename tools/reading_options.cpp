@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {

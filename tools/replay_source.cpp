@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "fault_help.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"

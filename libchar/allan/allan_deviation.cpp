@@ -29,9 +29,9 @@
 #include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 
 namespace libchar {
 namespace {

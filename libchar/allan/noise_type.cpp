@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 
 namespace libchar {
 namespace {

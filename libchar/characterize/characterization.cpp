@@ -11,8 +11,8 @@
 
 #include "libchar/characterize/detail/channel_stages.hpp"
 #include "libchar/characterize/detail/still.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 
 namespace libchar {
 namespace {

@@ -13,14 +13,12 @@
 #include <cmath>
 
 #include "libchar/characterize/verdict.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr double kNormal = 1.959963984540054;
 
 bool relied_on(const Coefficient& c) {
   return c.status == Status::detected || c.status == Status::given ||
@@ -41,7 +39,7 @@ void compare_values(ComparedTerm& t) {
   t.ratio = std::exp(log_ratio);
   t.ratio_ci95 = {std::exp(log_ratio - down), std::exp(log_ratio + up)};
   const double facing = log_ratio > 0 ? down : up;
-  const double z = facing > 0 ? kNormal * std::abs(log_ratio) / facing : 0;
+  const double z = facing > 0 ? kNormal95 * std::abs(log_ratio) / facing : 0;
   t.p = std::erfc(z / std::sqrt(2.0));
 }
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 

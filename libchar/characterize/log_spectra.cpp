@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"

@@ -15,7 +15,6 @@
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -9,7 +9,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/model/sensor_model.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

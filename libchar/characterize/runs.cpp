@@ -18,7 +18,6 @@
 #include "libchar/characterize/detail/alike_runs.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {

@@ -7,8 +7,8 @@
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/characterize/summary.hpp"
 #include "libchar/characterize/verification.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -14,7 +14,6 @@
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/detail/match.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"

@@ -1,6 +1,6 @@
 #include "libchar/core/file_name.hpp"
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 namespace libchar {
 namespace {

@@ -7,4 +7,7 @@ struct Interval {
   double low = 0, high = 0;
 };
 
+/// A standard normal value lies within this of zero with 95 %.
+inline constexpr double kNormal95 = 1.959963984540054;
+
 }  // namespace libchar

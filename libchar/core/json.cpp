@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 namespace libchar {
 namespace {

@@ -14,7 +14,7 @@
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 namespace libchar {
 namespace {

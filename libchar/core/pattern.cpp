@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 namespace libchar {
 namespace {

@@ -7,8 +7,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

@@ -100,7 +100,7 @@ RandomEffects random_effects(std::span<const double> y, std::span<const double> 
   out.count = y.size();
   const double dof = static_cast<double>(y.size()) - 1;
   if (y.size() < 2) {
-    const double half = 1.959963984540054 * std::sqrt(v[0]);
+    const double half = kNormal95 * std::sqrt(v[0]);
     out.mean = y[0];
     out.mean_ci95 = {y[0] - half, y[0] + half};
     out.spread = kNone;

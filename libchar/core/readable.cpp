@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 
 namespace libchar {
 namespace {

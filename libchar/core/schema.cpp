@@ -6,8 +6,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 
 namespace libchar {
 namespace {

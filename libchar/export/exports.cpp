@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {

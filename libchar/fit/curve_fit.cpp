@@ -31,7 +31,8 @@
 #include "libchar/fit/detail/curve_likelihood.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/profile.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -265,7 +266,7 @@ CurveJudgement judged(const CurveProblem& problem,
   out.mean_square = best.sum_of_squares / out.free_points;
   const bool estimated = judge.scatter == Scatter::estimated;
   out.scale = estimated ? out.mean_square : std::max(1.0, out.mean_square);
-  out.quantile = estimated ? student_quantile(0.975, out.free_points) : 1.959963984540054;
+  out.quantile = estimated ? student_quantile(0.975, out.free_points) : kNormal95;
   out.covariance =
       inverse_of(curve_information(problem, best.theta, out.positive), out.positive) * out.scale;
   return out;

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libchar/core/json.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

@@ -16,7 +16,10 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/median.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/fit/events.hpp"
+#include "libchar/fit/noise_powers.hpp"
 
 namespace libchar {
 namespace {
@@ -62,12 +65,6 @@ double mean_of_most(std::vector<double> difference) {
   return sum / static_cast<double>(difference.size() - 2);
 }
 
-double median_of(std::vector<double> difference) {
-  const auto middle = difference.begin() + static_cast<std::ptrdiff_t>(difference.size() / 2);
-  std::nth_element(difference.begin(), middle, difference.end());
-  return *middle;
-}
-
 /// `blocks` blocks around the one that begins at `from`.
 std::span<const double> around(std::span<const double> value,
                                std::size_t from,
@@ -98,7 +95,8 @@ Activity activity_of(std::span<const double> value) {
   for (std::size_t i = 0; i + block <= value.size(); i += block) {
     activity.fine.push_back(mean_of_most(differences(value.subspan(i, block), 1)));
     activity.coarse[0].push_back(mean_of_most(differences(around(value, i, block, 4), 4)));
-    activity.coarse[1].push_back(median_of(differences(around(value, i, block, 16), 16)));
+    std::vector<double> slow = differences(around(value, i, block, 16), 16);
+    activity.coarse[1].push_back(median_in_place(slow, Middle::upper));
   }
   take_logarithms(activity.fine);
   for (std::vector<double>& coarse : activity.coarse) take_logarithms(coarse);
@@ -245,7 +243,7 @@ std::vector<StrengthChange> changes_of(const Activity& activity,
          event.at_s,
          {event.at_ci95.low - block_s, event.at_ci95.high + block_s},
          std::exp(event.size),
-         {std::exp(event.size - 1.96 * event.sd), std::exp(event.size + 1.96 * event.sd)},
+         {std::exp(event.size - kNormal95 * event.sd), std::exp(event.size + kNormal95 * event.sd)},
          event.score,
          event.threshold});
   return changes;

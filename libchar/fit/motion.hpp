@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "libchar/core/interval.hpp"
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/event.hpp"
+#include "libchar/fit/event_series.hpp"
 
 namespace libchar {
 

@@ -393,12 +393,13 @@ NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
                     const FitOptions& options,
-                    FitWorkspace* workspace) {
+                    FitWorkspace* workspace,
+                    const TemperatureRecord* temperature) {
   const DespikedRecord despiked =
       options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
   std::span<const double> data =
       despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
-  const RecordMeans means = without_means(data, rate_hz, options);
+  const RecordMeans means = without_means(data, rate_hz, options, temperature);
   if (!means.samples.empty()) data = means.samples;
   AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
   if (allan != nullptr && data.data() != record.data()) {

@@ -1,141 +1,17 @@
 #pragma once
 // Noise coefficients of a record with honest uncertainties. Theory and figures: docs/theory/fit.md.
 
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/coefficient.hpp"
-#include "libchar/core/interval.hpp"
-#include "libchar/core/noise_shape.hpp"
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/power_bins.hpp"
-#include "libchar/fit/stationarity.hpp"
 #include "libchar/fit/temperature.hpp"
 
 namespace libchar {
-
-/// A bin of squared transform coefficients (or a point of a curve) against the model, for residual plots.
-struct FitResidual {
-  double frequency_hz = 0;  ///< or tau_s for a fit of an Allan curve
-  double measured = 0;      ///< two-sided density (or Allan deviation)
-  double model = 0;
-  double dof = 0;
-  double z = 0;        ///< residual as a standard normal deviate
-  bool inside = true;  ///< of the band that is fitted
-};
-
-/// Covariance-weighted fit of the Allan curve, the second opinion.
-struct SecondOpinion {
-  std::array<std::optional<double>, kTerms> value;
-  std::array<double, kTerms> sd{};
-  Goodness goodness;
-  bool agrees = true;    ///< every detected term within 3 combined sd
-  std::string sentence;  ///< what disagrees, or "agrees"
-};
-
-/// What was done to the data before the fit, because an alarm asked for it.
-struct Remedy {
-  std::string
-      kind;  ///< "spikes", "lines", "ramp", "lowest_bins", "band", "shape", "bandwidth", "quantization"
-  std::string alarm;   ///< the figure that asked ("kurtosis of differences 29.8 > 3.2")
-  std::string action;  ///< what was done ("212 samples replaced by the mean of their neighbours")
-  std::uint64_t count = 0;
-};
-
-/// Over which frequencies the noise terms, times the shape, describe the record: all coefficients come from there.
-struct FitBand {
-  double top_hz = 0;  ///< upper end; half the rate unless something is left out above
-  bool whole = true;  ///< every bin is inside
-  int orders = 0;     ///< of the polynomial of the shape inside (docs/theory/fit.md)
-  std::vector<Interval>
-      left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
-};
-
-/// A first-order Gauss-Markov process (core/gauss_markov.hpp) in the record.
-struct GaussMarkovFit {
-  Coefficient sigma;  ///< standard deviation, in the channel's unit
-  Coefficient tau_s;  ///< correlation time; an interval without an upper end is infinite
-  /// false: looked for and not needed. Undetermined: with white noise alone it is as likely as the terms, which are the model.
-  bool in_model = true;
-};
-
-struct NoiseFit {
-  Coefficients term;  ///< indexed by Term
-  FitBand band;
-  NoiseShape
-      shape;  ///< what multiplies the terms' density: of a filter inside the band, of whatever was measured outside
-  std::optional<double> bandwidth_hz;  ///< corner of the first-order low-pass, when it was needed
-  std::optional<Interval> bandwidth_ci95;
-  std::optional<GaussMarkovFit> gauss_markov;
-  /// of a clock: F of flicker phase noise, y_t = F (x_t - x_{t-1})/dt with x unit flicker (power_laws.hpp)
-  std::optional<Coefficient> flicker_phase;
-  Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
-  /// of ln(theta) of the terms with a value
-  std::array<std::array<double, kTerms>, kTerms> covariance{};
-  Goodness goodness;
-  std::optional<SecondOpinion> second_opinion;
-  std::vector<Remedy> remedies;
-  std::vector<Event>
-      events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
-  std::vector<Interval>
-      moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
-  std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
-  Stationarity stationarity;  ///< of a record that is kept; not tested of one that streams
-  std::vector<FitResidual> residuals;
-  std::vector<PowerBin>
-      bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
-  /// a sentence: "the record cannot tell bias instability from random walk…"
-  std::vector<std::string> sentences;
-  std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …
-  bool converged = true;
-  int iterations = 0;
-  double rate_hz = 0;
-  double duration_s = 0;
-  std::uint64_t samples = 0;
-  const Coefficient& operator[](Term t) const { return term[static_cast<std::size_t>(t)]; }
-};
-
-struct FitOptions {
-  std::array<bool, kTerms> terms = {
-      true,
-      true,
-      true,
-      false,
-      false};  ///< offered from the start; quantization and ramp are added on alarm
-  /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
-  bool remedies = true;
-  /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
-  bool gauss_markov = true;
-  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
-  bool clock = false;
-  /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
-  bool events = true;
-  /// stretches of the record are compared (a record that is kept only, remedies on)
-  bool stationarity = true;
-  /// its effect is taken out before the noise is fitted (a record that is kept only); null: none
-  std::shared_ptr<const TemperatureRecord> temperature;
-  /// of the record's first differences, where it is known: spikes are looked for above an alarm
-  std::optional<double> difference_kurtosis;
-  std::string unit;         ///< of the samples, in sentences
-  double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
-  double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
-  bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first
-  int threads = 1;
-};
-
-/// What the fits of one log's channels share, from any number of threads: it saves time and changes
-/// no result.
-struct FitWorkspace {
-  AllanCovarianceCache covariances;
-};
 
 /// Widens intervals, limits and covariance by a factor >= 1 and calls what has a value a misfit: the coefficients scatter more than the
 /// likelihood says.
@@ -159,11 +35,13 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     const FitOptions& options = {},
                     FitWorkspace* workspace = nullptr);
 
-/// Whole record in memory: bins, alarms, remedies, fit, second opinion.
+/// Whole record in memory: bins, alarms, remedies, fit, second opinion. What a temperature does to it is taken out before the noise is
+/// fitted; null: none is known.
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
                     const FitOptions& options = {},
-                    FitWorkspace* workspace = nullptr);
+                    FitWorkspace* workspace = nullptr,
+                    const TemperatureRecord* temperature = nullptr);
 
 }  // namespace libchar

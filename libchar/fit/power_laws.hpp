@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
 
 namespace libchar {

@@ -22,11 +22,11 @@
 
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/distributions.hpp"
+#include "libchar/core/median.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr double kMadToSd = 1.482602218505602;  // 1 / Phi^-1(3/4)
 constexpr std::size_t kPlaces = std::size_t{1} << 14U;
 constexpr double kSpikeLimit = 6, kSpikeShoulder = 5;  // robust standard deviations
 constexpr std::int64_t kLongestRun = 16;
@@ -172,10 +172,7 @@ void SpikeCleaner::look_at_start() {
     std::vector<double> behind(held_.begin() + count, held_.begin() + count + kSpikeReach);
     std::erase_if(behind, [](double value) { return !std::isfinite(value); });
     if (behind.size() < 8) continue;
-    std::nth_element(behind.begin(),
-                     behind.begin() + static_cast<std::ptrdiff_t>(behind.size() / 2),
-                     behind.end());
-    const double level = behind[behind.size() / 2];
+    const double level = median_in_place(behind, Middle::upper);
     bool away = true;
     for (std::int64_t t = 0; t < count; ++t) away &= !(std::abs(at(t) - level) <= limit);
     if (!away || !(std::abs(at(count) - level) <= limit)) continue;

@@ -25,7 +25,7 @@
 #include "libchar/core/present.hpp"
 #include "libchar/core/random_effects.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {

@@ -18,6 +18,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/fit/events/series_powers.hpp"
 #include "libchar/fit/events/temperature_columns.hpp"
+#include "libchar/fit/noise_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

@@ -7,17 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "libchar/fusion/delay_taps.hpp"
+
 namespace libchar::fusion {
-
-/// How a sample between two instants is read. `sinc`: 24 taps, Kaiser window 8, within 1e-4 of the
-/// amplitude up to 0.37 of the rate. `cubic`: 4 taps (Lagrange), within 1e-2 up to 0.12 of the rate;
-/// it damps what is faster, most at half a sample, and aliased vibration with it.
-enum class Interpolation { sinc, cubic };
-
-struct AlignmentOptions {
-  bool delay = true, bias = true, gain = true, misalignment = true;
-  Interpolation interpolation = Interpolation::sinc;
-};
 
 /// One channel against the common input x:  y(t) = bias + (1 + gain) x(t - delay) + sum m_k c_k(t).
 struct ChannelAlignment {
@@ -44,38 +36,6 @@ struct Alignment {
   std::vector<ChannelLimits> limits;  ///< of all rows of the samples, those of other axes included
   std::int64_t instants = 0;          ///< it was learnt from
   std::vector<std::string> notes;     ///< what the stretch could not tell, sentences
-};
-
-/// What is learnt from: rows of consecutive instants, in one or several stretches.
-struct AlignmentData {
-  /// n rows of one quantity, then n rows a further axis (the same sensors in the same order).
-  Eigen::MatrixXd samples;
-  Eigen::Index channels = 0;
-  Eigen::RowVectorXd truth;          ///< empty: blind, the mean of the channels is the truth
-  std::vector<Eigen::Index> starts;  ///< first column of each stretch
-};
-
-/// Instants that the interpolation looks at on either side, a delay of at most kMostDelay included.
-inline constexpr double kMostDelay = 8;
-inline constexpr Eigen::Index kAlignmentMargin = 21;
-
-/// Blind: sum of delays, of biases and of gains zero. Throws Error(numeric) when fewer than two
-/// channels (taught: one) have samples, or when there are fewer than 64 instants.
-Alignment learn_alignment(const AlignmentData& data, const AlignmentOptions& options);
-
-/// Weights of the instants floor(delay) + first … of a sample read `delay` instants later.
-struct DelayTaps {
-  DelayTaps(double delay, Interpolation interpolation);
-  /// y(t + delay), of `size` values. Where a tap is missing: linear between its neighbours, NaN
-  /// where one of these is missing; `strict`: NaN.
-  double at(const double* y,
-            Eigen::Index stride,
-            Eigen::Index size,
-            Eigen::Index t,
-            bool strict = false) const;
-  std::vector<double> weights;
-  Eigen::Index first = 0, floor = 0;
-  double fraction = 0;
 };
 
 /// The mean over the sensors of each further axis at one instant, saturated samples left out.

@@ -7,6 +7,8 @@
 //   sum x^2 - rows mean(v)/n,   sum e_i x - rows (v_i - mean(v))/n,   v by MINQUE of the residuals.
 // Delays start from the peak of the correlation below a tenth of the rate. Normal equations of
 // centred regressors scaled to one. Standard errors: delete-one jackknife over stretches.
+#include "libchar/fusion/alignment_learning.hpp"
+
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -16,7 +18,6 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/alignment.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
 
 namespace libchar::fusion {

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 
 namespace libchar::fusion {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/fusion/algorithms/blind_calibration.hpp"
 #include "libchar/fusion/algorithms/blind_gls.hpp"
 #include "libchar/fusion/algorithms/bounds.hpp"

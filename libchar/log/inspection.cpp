@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 

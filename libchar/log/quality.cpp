@@ -7,9 +7,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/median.hpp"
 
 namespace libchar {
 namespace {
@@ -278,9 +279,7 @@ class CounterWatch {
     for (std::size_t i = 0; i < n; ++i)
       if (starts == nullptr || starts[i] == 0) d.push_back(x[i] - before[i]);
     if (d.empty()) return;
-    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-    std::nth_element(d.begin(), middle, d.end());
-    usual_ = *middle;
+    usual_ = median_in_place(d, Middle::upper);
   }
   void step(double d, double value) {
     ++steps_;

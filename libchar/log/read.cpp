@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"

@@ -6,7 +6,7 @@
 
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/model/detail/noise_term.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 
 namespace libchar {
 

@@ -6,8 +6,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

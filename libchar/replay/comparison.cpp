@@ -10,9 +10,10 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/replay/detail/likeness.hpp"
 
 namespace libchar {
@@ -52,13 +53,6 @@ double order(const AlgorithmSummary* one) {
              : std::numeric_limits<double>::infinity();
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return kNone;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
 std::string best_of(const ReplaySummary& r) {
   const AlgorithmSummary* best = r.find(r.best);
   return best == nullptr ? "none" : fmt::format("{} ({})", best->label, significant(best->rmse, 5));
@@ -89,7 +83,7 @@ std::string comparison_verdict(const Comparison& c) {
       comma = ", ";
     }
   out += ".";
-  if (const double typical = median(ns); std::isfinite(typical))
+  if (const double typical = median_in_place(ns); std::isfinite(typical))
     out += fmt::format(" Time a sample: {:+.1f} % (median).", 100 * typical);
   return out + fmt::format(" Best: {} in A, {} in B.", best_of(c.a), best_of(c.b));
 }

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/detail/instants.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"

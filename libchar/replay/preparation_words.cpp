@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/replay/detail/band_filter.hpp"
 
 namespace libchar {

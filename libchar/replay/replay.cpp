@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/detail/alignment_stage.hpp"

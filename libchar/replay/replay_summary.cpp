@@ -12,7 +12,6 @@
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/schema.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/model/model_reader.hpp"
 
 namespace libchar {

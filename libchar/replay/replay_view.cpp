@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fusion/fault_log.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/detail/thinned_tracks.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/replay/ranking.hpp"
 
 namespace libchar {

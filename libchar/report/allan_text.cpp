@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/csv_cell.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {

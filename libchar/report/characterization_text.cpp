@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "libchar/characterize/verification.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/fit_text.hpp"
 #include "libchar/report/limits_text.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/csv_cell.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/characterize/summary.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"

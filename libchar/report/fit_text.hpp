@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {

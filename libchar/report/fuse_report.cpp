@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/allan_text.hpp"

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
 #include "libchar/report/detail/escape.hpp"

@@ -4,18 +4,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/simulated_scene.hpp"
 
 namespace libchar {
 
-std::string simulation_text(const SimulationSummary& summary) {
-  const ArraySimulation& s = *summary.simulation;
+std::string simulation_text(const ArraySimulation& s, const SimulatedLog& written) {
   std::string text = fmt::format("{}: {} samples of {} channel{} at {} Hz, {} s, seed {}\n",
-                                 printable(summary.files.at(0)),
+                                 printable(written.files.at(0)),
                                  s.samples,
-                                 summary.channels,
-                                 summary.channels == 1 ? "" : "s",
+                                 written.channels,
+                                 written.channels == 1 ? "" : "s",
                                  significant(s.rate_hz, 6),
                                  significant(static_cast<double>(s.samples) / s.rate_hz, 6),
                                  s.seed);
@@ -24,29 +24,28 @@ std::string simulation_text(const SimulationSummary& summary) {
     if (m.scale_factor.spread > 0 || m.bias.spread > 0)
       text += fmt::format("  {}: drew scale factor {}, bias {} {}\n",
                           printable(s.sensors[i].name),
-                          significant(summary.draws[i].scale_factor, 6),
-                          significant(summary.draws[i].bias, 6),
+                          significant(written.draws[i].scale_factor, 6),
+                          significant(written.draws[i].bias, 6),
                           printable(m.unit));
   }
-  for (std::size_t i = 1; i < summary.files.size(); ++i)
-    text += fmt::format("wrote {}\n", printable(summary.files[i]));
+  for (std::size_t i = 1; i < written.files.size(); ++i)
+    text += fmt::format("wrote {}\n", printable(written.files[i]));
   return text;
 }
 
-Json simulation_json(const SimulationSummary& summary) {
-  const ArraySimulation& s = *summary.simulation;
+Json simulation_json(const ArraySimulation& s, const SimulatedLog& written) {
   Json out = {{"samples", s.samples},
               {"rate_hz", s.rate_hz},
               {"seed", s.seed},
               {"output", Json::array()},
               {"sensors", Json::array()},
               {"truth", s.truth_names}};
-  for (const std::string& file : summary.files) out["output"].push_back(printable(file));
+  for (const std::string& file : written.files) out["output"].push_back(printable(file));
   for (std::size_t i = 0; i < s.sensors.size(); ++i)
     out["sensors"].push_back({{"name", printable(s.sensors[i].name)},
                               {"unit", printable(output_unit(s.sensors[i].model))},
-                              {"scale_factor", summary.draws[i].scale_factor},
-                              {"bias", summary.draws[i].bias}});
+                              {"scale_factor", written.draws[i].scale_factor},
+                              {"bias", written.draws[i].bias}});
   return out;
 }
 

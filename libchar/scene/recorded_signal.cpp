@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/read.hpp"
 
 namespace libchar {

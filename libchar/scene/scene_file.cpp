@@ -13,6 +13,7 @@
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/sha256.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"

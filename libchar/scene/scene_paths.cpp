@@ -8,6 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/scene/scene.hpp"
 

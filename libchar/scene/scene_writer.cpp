@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_fields.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"

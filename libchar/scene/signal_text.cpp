@@ -1,8 +1,8 @@
 #include "libchar/scene/signal_text.hpp"
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_signal.hpp"
 
 namespace libchar {

@@ -15,9 +15,9 @@
 #include <optional>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/detail/welch_workspace.hpp"

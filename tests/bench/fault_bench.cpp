@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithms/minque.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -366,7 +367,7 @@ void matrix(int trials) {
   const Eigen::MatrixXd& h = array.observation_matrix;
   const Eigen::MatrixXd weighted = deviations.cwiseAbs2().cwiseInverse().asDiagonal() * h;
   const double leverage =
-      (h.row(2) * (h.transpose() * weighted).inverse() * weighted.row(2).transpose()).value();
+      (h.row(2) * test::inverse(h.transpose() * weighted) * weighted.row(2).transpose()).value();
   const double v = deviations[2] * deviations[2] / (1 - leverage);
   const double input = 7.854 * 7.854 / 2 + arms[2] * arms[2] * 25 / 2;
   const double ratio = 9 * (1 - leverage) + leverage;

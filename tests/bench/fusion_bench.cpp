@@ -7,8 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -16,6 +15,7 @@
 
 #include "libchar/fusion/registry.hpp"
 #include "libchar/fusion/why_not.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -137,12 +137,7 @@ void timing() {
 
 /// MATLAB's inv and pinv.
 Eigen::MatrixXd inverted(const Eigen::MatrixXd& matrix, bool pseudo) {
-  if (!pseudo) return matrix.inverse();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double least = svd.singularValues()[0] * 1e-15 * static_cast<double>(matrix.rows());
-  const Eigen::VectorXd inverse =
-      (svd.singularValues().array() > least).select(svd.singularValues().cwiseInverse(), 0);
-  return svd.matrixV() * inverse.asDiagonal() * svd.matrixU().transpose();
+  return pseudo ? test::pseudo_inverse(matrix) : test::inverse(matrix);
 }
 
 /// MINQUE with identity weights and the threshold on the variances as [RV 4, 5] writes them, a
@@ -161,7 +156,7 @@ double plain_minque(const Eigen::MatrixXd& y, bool pseudo) {
     const Eigen::MatrixXd h = Eigen::MatrixXd::Ones(m, 1);
     const Eigen::VectorXd samples = y.col(k)(healthy);
     const Eigen::MatrixXd p =
-        Eigen::MatrixXd::Identity(m, m) - h * (h.transpose() * h).inverse() * h.transpose();
+        Eigen::MatrixXd::Identity(m, m) - h * test::inverse(h.transpose() * h) * h.transpose();
     const Eigen::MatrixXd squared = p.cwiseProduct(p);
     const Eigen::VectorXd residual = p * samples, delta = residual - mean(healthy);
     moment(healthy) = gamma * (moment(healthy) + (1 - gamma) * delta.cwiseProduct(delta));
@@ -169,9 +164,9 @@ double plain_minque(const Eigen::MatrixXd& y, bool pseudo) {
     const Eigen::VectorXd estimated = inverted(squared, pseudo) * moment(healthy);
     variances(healthy) = estimated.cwiseAbs().cwiseMax(1e-12);
     const Eigen::MatrixXd r = Eigen::VectorXd(variances(healthy)).asDiagonal();
-    const Eigen::MatrixXd r_inverse = r.inverse();
+    const Eigen::MatrixXd r_inverse = test::inverse(r);
     const Eigen::MatrixXd x =
-        (h.transpose() * r_inverse * h).inverse() * h.transpose() * r_inverse * samples;
+        test::inverse(h.transpose() * r_inverse * h) * h.transpose() * r_inverse * samples;
     sum += x(0, 0);
     healthy.clear();
     for (Eigen::Index i = 0; i < n; ++i)

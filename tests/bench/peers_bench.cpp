@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -24,6 +24,7 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/places.hpp"
@@ -140,7 +141,7 @@ Eigen::VectorXd relative_nnls(const Curve& curve) {
     Eigen::MatrixXd part = a(Eigen::all, columns);
     const Eigen::RowVectorXd scale = part.colwise().norm();
     part.array().rowwise() /= scale.array();
-    const Eigen::VectorXd x = part.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(n));
+    const Eigen::VectorXd x = test::solution(part, Eigen::VectorXd::Ones(n));
     const double misfit = (part * x - Eigen::VectorXd::Ones(n)).squaredNorm();
     if (x.minCoeff() < 0 || misfit >= lowest) continue;
     lowest = misfit;
@@ -188,7 +189,7 @@ Fitted log_least_squares(const Curve& curve, const Eigen::VectorXd& start, doubl
     const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     Eigen::MatrixXd damped = normal;
     damped.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
-    const Eigen::VectorXd next = c - damped.ldlt().solve(jacobian.transpose() * r);
+    const Eigen::VectorXd next = c - test::solution(damped, jacobian.transpose() * r);
     const Eigen::VectorXd tried = residuals(next, nullptr);
     if (tried.squaredNorm() < r.squaredNorm()) {
       const bool done = r.squaredNorm() - tried.squaredNorm() < 1e-14 * r.squaredNorm();

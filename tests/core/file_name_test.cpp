@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 using namespace libchar;
 

@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/spelling.hpp"
+
 using namespace libchar;
 
 TEST_CASE("printable escapes everything a terminal would obey") {

@@ -10,7 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "tests/export/imu_models.hpp"
 

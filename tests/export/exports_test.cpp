@@ -9,9 +9,9 @@
 #include <regex>
 #include <set>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/model/model_json.hpp"

@@ -9,6 +9,8 @@
 #include "libchar/fit/detail/bounds.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/noise_fit.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/fit/events.hpp"
+#include "libchar/fit/noise_powers.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"

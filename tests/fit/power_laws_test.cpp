@@ -8,6 +8,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/detail/dct_means.hpp"
 #include "libchar/fit/detail/flicker_phase_means.hpp"
+#include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "tests/support/noise.hpp"

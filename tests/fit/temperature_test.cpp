@@ -55,9 +55,8 @@ TEST_CASE("temperature: what it does is found with its lag, and the walk stays w
     clean += fit_record(y, kWarmRate, nullptr, options).theta[2];
     const TemperatureRecord t = weather(Weather::daily, kWarmSamples, source.gauss());
     add_effect(y, t, kWarmRate, 60, 0.02);
-    options.temperature = std::make_shared<TemperatureRecord>(t);
     options.unit = "deg/s";
-    const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options);
+    const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, &t);
     REQUIRE(fit.temperature.has_value());
     const TemperatureEffect& effect = *fit.temperature;
     REQUIRE(effect.order >= 1);
@@ -97,8 +96,7 @@ TEST_CASE("temperature: a step of the sensor beside it is a step") {
   for (std::size_t i = kWarmSamples / 3; i < kWarmSamples; ++i) y[i] += 0.1;
   FitOptions options;
   options.second_opinion = false;
-  options.temperature = std::make_shared<TemperatureRecord>(t);
-  const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options);
+  const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, &t);
   REQUIRE(fit.temperature->order >= 1);
   CHECK(fit.temperature->coefficient[0] == Approx(0.02).epsilon(0.1));
   REQUIRE(fit.events.size() == 1);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/error_budget.hpp"
 #include "tests/support/noise.hpp"
 

@@ -2,10 +2,11 @@
 
 #include "libchar/fusion/algorithms/covariance_intersection.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -51,7 +52,7 @@ TEST_CASE("covariance-intersection: shares of the least determinant") {
   const CovarianceIntersection fusion(array, test::settings("covariance-intersection", {}));
   const Eigen::MatrixXd& h = array.observation_matrix;
   const Eigen::VectorXd information = fusion.shares().cwiseQuotient(array.noise_levels);
-  const Eigen::MatrixXd p = (h.transpose() * information.asDiagonal() * h).inverse();
+  const Eigen::MatrixXd p = test::inverse(h.transpose() * information.asDiagonal() * h);
   for (Eigen::Index i = 0; i < 7; ++i) {
     const double leverage = h.row(i).dot(p * h.row(i).transpose()) / array.noise_levels[i];
     CHECK(leverage < 3 * (1 + 1e-3));

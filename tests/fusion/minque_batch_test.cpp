@@ -2,12 +2,13 @@
 
 #include "libchar/fusion/detail/minque_batch.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <numeric>
 
 #include "libchar/fusion/detail/generalized_least_squares.hpp"
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 
 using namespace libchar::fusion;
 
@@ -62,9 +63,10 @@ TEST_CASE("two inputs: variances, gain, estimates") {
     gls.solve(y.col(k).data(), x.col(k).data(), residual.data());
   CHECK(test::worst(x, expected.values.rightCols(2).transpose(), 1.78e-15, 3.52e-14) <= 1);
   // Variance of the inputs: diagonal of (H' R^-1 H)^-1.
-  const Eigen::Matrix2d normal = h.transpose() * v.cwiseInverse().asDiagonal() * h;
-  CHECK(gls.variance(0) == Approx(normal.inverse()(0, 0)));
-  CHECK(gls.variance(1) == Approx(normal.inverse()(1, 1)));
+  const Eigen::Matrix2d variances =
+      test::inverse(h.transpose() * v.cwiseInverse().asDiagonal() * h);
+  CHECK(gls.variance(0) == Approx(variances(0, 0)));
+  CHECK(gls.variance(1) == Approx(variances(1, 1)));
 }
 
 TEST_CASE("which variances the differences of the channels determine") {

@@ -1,11 +1,12 @@
 // Recursive re-weighted MINQUE: the 50-digit vector, efficiency against the information bound of
 // restricted maximum likelihood (docs/theory/fusion.md), faults.
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/detail/minque_batch.hpp"
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -108,7 +109,7 @@ Eigen::VectorXd regret(const Eigen::MatrixXd& h,
   const Recorded m = made(h, variances, 60000, 11);
   const test::Run out = test::run(runner, m.y, h.cols());
   const Eigen::MatrixXd weighted = variances.cwiseInverse().asDiagonal() * h;
-  const Eigen::MatrixXd best = (h.transpose() * weighted).ldlt().solve(weighted.transpose() * m.y);
+  const Eigen::MatrixXd best = test::solution(h.transpose() * weighted, weighted.transpose() * m.y);
   const Eigen::Index tail = m.y.cols() - from;
   return (out.x - m.x)
       .rightCols(tail)

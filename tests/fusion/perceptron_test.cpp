@@ -5,12 +5,13 @@
 
 #include <tbb/global_control.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/detail/network_training.hpp"
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -142,7 +143,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
   // The best there can be: least squares with a constant, from the same window.
   Eigen::MatrixXd design(4000, 4);
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
-  const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
+  const Eigen::VectorXd affine = test::solution(design, s.x.head(4000));
   const Eigen::MatrixXd rest = s.y.rightCols(18000);
   const double best =
       rms_of((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
@@ -164,7 +165,7 @@ TEST_CASE("perceptron: learns a bent sensor") {
       rms_of(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
-  const Eigen::VectorXd affine = design.colPivHouseholderQr().solve(s.x.head(4000));
+  const Eigen::VectorXd affine = test::solution(design, s.x.head(4000));
   const double straight = rms_of((s.y.rightCols(4000).transpose() * affine.head(3)).array() +
                                  affine[3] - s.x.tail(4000).array());
   CHECK(ours < 0.8 * straight);

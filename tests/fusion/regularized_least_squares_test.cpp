@@ -1,12 +1,13 @@
 // Least squares on a shrunk covariance and with weights of at least zero: closed forms, the conditions of
 // the optimum, and what they are for.
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/algorithms/least_squares.hpp"
 #include "libchar/fusion/detail/error_weights.hpp"
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -15,11 +16,11 @@ namespace {
 
 /// Columns whose second moments are exactly S.
 Eigen::MatrixXd errors_of(const Eigen::MatrixXd& s) {
-  return s.llt().matrixU();
+  return test::upper_root(s);
 }
 
 Eigen::VectorXd optimum(const Eigen::MatrixXd& s) {
-  const Eigen::VectorXd v = s.ldlt().solve(Eigen::VectorXd::Ones(s.rows()));
+  const Eigen::VectorXd v = test::solution(s, Eigen::VectorXd::Ones(s.rows()));
   return v / v.sum();
 }
 

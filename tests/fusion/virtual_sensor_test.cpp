@@ -3,12 +3,13 @@
 
 #include "libchar/fusion/algorithms/virtual_sensor.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar::fusion;
@@ -45,8 +46,9 @@ struct Textbook {
     const Eigen::MatrixXd hp = h(present, Eigen::all), cp = c(present, Eigen::all);
     Eigen::MatrixXd s = cp * p * cp.transpose();
     s.diagonal() += white(present);
-    const Eigen::MatrixXd inverse = s.inverse();
-    const Eigen::MatrixXd w = (hp.transpose() * inverse * hp).inverse() * hp.transpose() * inverse;
+    const Eigen::MatrixXd inverse = test::inverse(s);
+    const Eigen::MatrixXd w =
+        test::inverse(hp.transpose() * inverse * hp) * hp.transpose() * inverse;
     const Eigen::VectorXd e = y(present) - cp * b;
     const Eigen::VectorXd x = w * e;
     const Eigen::MatrixXd gain =
@@ -249,7 +251,7 @@ TEST_CASE("virtual-sensor: a model of the input, its steady state by plain itera
   Eigen::Matrix3d updated;
   for (int k = 0; k < 5000; ++k) {
     const Eigen::Matrix<double, 3, 2> gain =
-        p * c.transpose() * (c * p * c.transpose() + r).inverse();
+        p * c.transpose() * test::inverse(c * p * c.transpose() + r);
     const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * c;
     updated = left * p * left.transpose() + gain * r * gain.transpose();  // Joseph
     p = f * updated * f.transpose() + q;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/quantity_text.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/csv/number.hpp"
 #include "libchar/log/csv/vector_rows.hpp"
 #include "tests/fuzz/fuzz_support.hpp"

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <map>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/shared.hpp"
 

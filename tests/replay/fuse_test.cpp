@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/replay/detail/step_noise.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/scene_text.hpp"

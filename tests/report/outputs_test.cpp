@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "libchar/characterize/verdict.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/export/consumers.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/csv_curves.hpp"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace test {
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "heap_meter.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"

@@ -3,18 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "fault_help.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/warnings.hpp"
-#include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
@@ -25,9 +23,8 @@
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "libchar/scene/scene_paths.hpp"
-#include "libchar/scene/scene_writer.hpp"
 #include "libchar/scene/signal_text.hpp"
-#include "libchar/scene/simulated_scene.hpp"
+#include "libchar/scene/simulated_log.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "verb.hpp"
 #include "writing_options.hpp"
@@ -38,7 +35,6 @@ namespace {
 using namespace libchar;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kRows = std::size_t{1} << 14U;
 constexpr std::uint64_t kMostDevices = 10000;
 
 struct SimulateVerb {
@@ -109,26 +105,6 @@ void add_faults(const SimulateVerb& verb, ArraySimulation& simulation) {
     simulation.faults.push_back(parse_fault(fault, names));
 }
 
-void warn_of_late_faults(const ArraySimulation& simulation, Warnings& warnings) {
-  const double end_s = static_cast<double>(simulation.samples) / simulation.rate_hz;
-  for (const SensorFault& fault : simulation.faults)
-    if (fault.from_s >= end_s)
-      warnings.add("fault_after_end",
-                   "a fault begins after the end of the recording and changes nothing",
-                   fmt::format("{} from {} s, the end is at {} s",
-                               simulation.sensors[fault.sensor].name,
-                               significant(fault.from_s, 6),
-                               significant(end_s, 6)));
-}
-
-void check_names(const ArraySimulation& simulation, const SimulateVerb& verb) {
-  if (verb.no_truth || !simulation.temperature) return;
-  std::vector<std::string> names = simulation.truth_names;
-  for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
-  if (std::find(names.begin(), names.end(), "temperature") != names.end())
-    refuse_simulate("simulate", "a channel has the name of the temperature column", "temperature");
-}
-
 // What the command line says on top of models or scene.
 void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& simulation) {
   set_length(verb, simulation);
@@ -142,10 +118,8 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
     read_recorded(verb, simulation.truth[0], "--truth", simulation, warnings);
   if (!verb.temperature.empty())
     read_recorded(verb, *simulation.temperature, "--temperature", simulation, warnings);
-  warn_of_late_faults(simulation, warnings);
+  warnings.merge(late_faults(simulation));
   session.terminal.warn(warnings, "simulate");
-  check(simulation);
-  check_names(simulation, verb);
 }
 
 // Where log and scene go; neither is an input.
@@ -206,50 +180,9 @@ Scene read_source(Session& session, SimulateVerb& verb) {
   return scene;
 }
 
-void stream(Session& session,
-            const SimulateVerb& verb,
-            const ArraySimulation& simulation,
-            LogWriter& writer) {
-  ArraySimulator simulator(simulation, 0);
-  const std::size_t columns = simulation.sensors.size();
-  std::uint64_t done = 0;
-  for (auto block = simulator.next(kRows); !block.empty(); block = simulator.next(kRows)) {
-    session.terminal.update(static_cast<double>(done) / static_cast<double>(simulation.samples),
-                            "simulating");
-    writer.write(verb.no_truth ? block.first(columns) : block);
-    done += block[0].size();
-  }
-}
-
 // argv without the program.
 std::vector<std::string> words_of(const Session& session) {
   return {session.command.begin() + (session.command.empty() ? 0 : 1), session.command.end()};
-}
-
-// Writes the log and the scene that replays it.
-SimulationSummary write_recording(Session& session,
-                                  const SimulateVerb& verb,
-                                  const ArraySimulation& simulation,
-                                  const Scene& scene) {
-  const SimulatedRecording recording{
-      verb.output, verb.scene_path, write_options(verb.writing), !verb.no_truth, words_of(session)};
-  const LogInfo info = log_info(simulation, recording);
-  const auto writer = open_log_writer(verb.output, info, recording.writing);
-  std::optional<WholeFile> scene_file;
-  if (!verb.no_scene) {
-    scene_file.emplace(verb.scene_path, recording.writing.overwrite);
-    scene_file->write(scene_yaml(replay_scene(simulation, recording, scene)));
-  }
-  stream(session, verb, simulation, *writer);
-  session.terminal.clear();
-  session.terminal.update(1, "writing " + verb.output);  // the last chance to be stopped
-  std::vector<WholeFile*> outputs = writer->complete();
-  if (scene_file) outputs.push_back(&*scene_file);
-  commit_together(outputs);
-  std::vector<std::string> files = writer->files();
-  if (scene_file) files.push_back(verb.scene_path);
-  session.terminal.clear();
-  return {&simulation, ArraySimulator(simulation).draws(), files, info.channels.size()};
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
@@ -262,10 +195,16 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   inputs.reserve(verb.sources.size());
   for (const std::string& source : verb.sources) read.push_back(document_info(source));
   for (const LogInfo& one : read) inputs.push_back(&one);
-  const SimulationSummary summary = write_recording(session, verb, simulation, scene);
-  if (!verb.json) return print_summary(session, verb.output, simulation_text(summary));
+  const SimulatedRecording recording{verb.output,
+                                     verb.no_scene ? "" : verb.scene_path,
+                                     write_options(verb.writing),
+                                     !verb.no_truth,
+                                     words_of(session)};
+  const SimulatedLog written = simulate_log(simulation, recording, scene, session.terminal);
+  session.terminal.clear();
+  if (!verb.json) return print_summary(session, verb.output, simulation_text(simulation, written));
   Json document = document_head(session, "simulation", inputs);
-  document.update(simulation_json(summary));
+  document.update(simulation_json(simulation, written));
   print(dump_json(document));
 }
 

@@ -8,7 +8,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/missing_samples.hpp"
 #include "libchar/allan/detail/present_sums.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 
 namespace libchar {
 namespace {

@@ -10,6 +10,7 @@
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fit/motion.hpp"
+#include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
@@ -213,7 +214,6 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
   FitOptions options = options_->fit;
   if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
   options.clock = options_->data != SampleKind::rate;
-  options.temperature = temperature_;
   // What is fitted of a clock is not what is in the log.
   if (!options.clock) options.difference_kurtosis = found_.difference_kurtosis;
   const bool opinion = !octaves.points.empty();
@@ -224,7 +224,8 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
                             rate_hz,
                             opinion ? cleaned ? &own : &octaves : nullptr,
                             options,
-                            &workspace_->fit);
+                            &workspace_->fit,
+                            temperature_.get());
   add_spike_answer(despiked_.answer, fit);
   return fit;
 }

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

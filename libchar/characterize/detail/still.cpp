@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fit/motion.hpp"
 
 namespace libchar {

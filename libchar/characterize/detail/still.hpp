@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/event_series.hpp"
 
 namespace libchar {
 

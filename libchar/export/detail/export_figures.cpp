@@ -14,8 +14,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

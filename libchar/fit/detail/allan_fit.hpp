@@ -1,8 +1,9 @@
 #pragma once
 // The covariance-weighted fit of the Allan curve: the second opinion.
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

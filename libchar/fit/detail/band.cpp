@@ -16,6 +16,7 @@
 #include <numbers>
 #include <span>
 
+#include "libchar/core/median.hpp"
 #include "libchar/fit/detail/gauss_markov_means.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/scoring.hpp"
@@ -186,9 +187,7 @@ double median_of_ratio(const std::vector<double>& ratio, std::size_t from, std::
   if (to < from + 3) return std::numeric_limits<double>::infinity();
   std::vector<double> part(ratio.begin() + static_cast<std::ptrdiff_t>(from),
                            ratio.begin() + static_cast<std::ptrdiff_t>(to));
-  const auto middle = part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2);
-  std::nth_element(part.begin(), middle, part.end());
-  return *middle;
+  return median_in_place(part, Middle::upper);
 }
 
 /// Neighbouring bins that stand above those on both sides of them.

@@ -2,7 +2,7 @@
 // What a fit says of its band: residuals of every bin, the shape, and what was left out, in words.
 
 #include "libchar/fit/detail/band.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

@@ -4,11 +4,10 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/detail/decisions.hpp"
 #include "libchar/fit/detail/polish.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
-
-inline constexpr double kNormal95 = 1.959963984540054;  ///< two-sided 95 % of a standard normal
 
 /// Fills term, theta, covariance, converged, iterations and the sentences about what cannot be told
 /// apart; gives back the maximum of the likelihood.

@@ -2,7 +2,7 @@
 // Where the record itself speaks against a fitted coefficient.
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

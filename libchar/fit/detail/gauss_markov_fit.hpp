@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libchar/fit/detail/band.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

@@ -7,7 +7,7 @@
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/power_bins.hpp"
 
 namespace libchar {

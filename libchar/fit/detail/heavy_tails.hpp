@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 

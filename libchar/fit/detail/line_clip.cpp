@@ -9,18 +9,13 @@
 #include <cmath>
 
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/median.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::uint64_t kLowest = 32;
 constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients long, joined by straight
 /// lines in log-log, so that the slope of flicker and walk within a stretch is not taken for a line.
@@ -36,7 +31,8 @@ class LocalFloor {
                   mean.begin() + static_cast<std::ptrdiff_t>(hi));
       log_k_.push_back(
           0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
-      log_floor_.push_back(std::log(std::max(median_of(part), 1e-300) / chi_median));
+      log_floor_.push_back(
+          std::log(std::max(median_in_place(part, Middle::upper), 1e-300) / chi_median));
       lo = hi;
     }
   }

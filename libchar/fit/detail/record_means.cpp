@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/fit/noise_fit.hpp"
 
 namespace libchar {
 namespace {
@@ -98,26 +99,26 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
 
 RecordMeans without_means(std::span<const double> record,
                           double rate_hz,
-                          const FitOptions& options) {
+                          const FitOptions& options,
+                          const TemperatureRecord* temperature) {
   RecordMeans out;
-  if (options.temperature)
-    out.temperature = find_temperature_effect(record, rate_hz, *options.temperature);
+  if (temperature != nullptr)
+    out.temperature = find_temperature_effect(record, rate_hz, *temperature);
   const std::vector<double> warm = moves(out.temperature)
                                        ? less(record, rate_hz, nullptr, out.temperature)
                                        : std::vector<double>{};
   out.search = search_events(warm.empty() ? record : warm, rate_hz, options);
   out.events_taken = take_events(out.search);
   const EventSearch* events = out.events_taken ? &out.search : nullptr;
-  if (options.temperature && events != nullptr) {
-    TemperatureEffect again = find_temperature_effect(
-        less(record, rate_hz, events, std::nullopt), rate_hz, *options.temperature);
+  if (temperature != nullptr && events != nullptr) {
+    TemperatureEffect again =
+        find_temperature_effect(less(record, rate_hz, events, std::nullopt), rate_hz, *temperature);
     if (again.order > 0) out.temperature = std::move(again);
   }
   if (events != nullptr || moves(out.temperature))
     out.samples = less(record, rate_hz, events, out.temperature);
   if (!moves(out.temperature)) return out;
   FitOptions without = options;
-  without.temperature = nullptr;
   without.second_opinion = false;
   const NoiseFit left_in = fit_record(record, rate_hz, nullptr, without);
   out.temperature->without = left_in.term;

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/events.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
 
@@ -16,10 +18,11 @@ struct RecordMeans {
   std::optional<TemperatureEffect> temperature;
 };
 
-/// Looks for what `options` asks for.
+/// Looks for what `options` asks for, and for what a temperature does where one is given (else null).
 RecordMeans without_means(std::span<const double> record,
                           double rate_hz,
-                          const FitOptions& options);
+                          const FitOptions& options,
+                          const TemperatureRecord* temperature);
 
 /// What the temperature takes from the transform coefficients, for the bins.
 void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins);

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/event.hpp"
+#include "libchar/fit/event_series.hpp"
 
 namespace libchar {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/event_series.hpp"
 #include "libchar/fit/temperature.hpp"
 
 namespace libchar {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar::fusion {
 namespace {

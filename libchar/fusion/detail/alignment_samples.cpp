@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/median.hpp"
+
 namespace libchar::fusion {
 namespace {
 
@@ -39,19 +41,12 @@ double upper_limit(const Eigen::Ref<const Eigen::VectorXd>& y, double sign) {
   return std::isfinite(next) && hits >= 3 && runs >= 1 && hits >= 3 * next_hits ? top : none;
 }
 
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 void drop_wild_of(Eigen::Ref<Eigen::VectorXd> samples, const Eigen::VectorXd& middle) {
   std::vector<double> deviations;
   for (Eigen::Index t = 0; t < samples.size(); ++t)
     if (std::isfinite(samples(t))) deviations.push_back(samples(t) - middle(t));
   if (deviations.size() < 32) return;
-  const double offset = median_of(deviations);
+  const double offset = median_in_place(deviations);
   for (double& d : deviations) d = std::abs(d - offset);
   const std::size_t kept = deviations.size() - std::max<std::size_t>(3, deviations.size() / 100);
   std::nth_element(
@@ -79,7 +74,7 @@ void drop_wild(Eigen::Ref<Eigen::MatrixXd> samples) {
       values.clear();
       for (Eigen::Index i = 0; i < samples.cols(); ++i)
         if (std::isfinite(samples(from + t, i))) values.push_back(samples(from + t, i));
-      middle(t) = values.empty() ? 0 : median_of(values);
+      middle(t) = values.empty() ? 0 : median_in_place(values);
     }
     for (Eigen::Index i = 0; i < samples.cols(); ++i)
       drop_wild_of(samples.col(i).segment(from, size), middle);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/median.hpp"
 
 #if defined(LIBCHAR_X86_64)
 #include <emmintrin.h>
@@ -221,10 +222,8 @@ void FaultBaseline::learn(const std::vector<double>& tops, double frozen) {
 void FaultBaseline::find_excess(const int* index, int m, std::vector<double>& scratch) {
   scratch.clear();
   for (int k = 0; k < m; ++k) scratch.push_back(recent[static_cast<std::size_t>(index[k])]);
-  const auto middle = scratch.begin() + m / 2;
-  std::nth_element(scratch.begin(), middle, scratch.end());
   // The lower of the two in the middle: half of the sensors may be wrong.
-  const double median = m % 2 == 1 ? *middle : *std::max_element(scratch.begin(), middle);
+  const double median = median_in_place(scratch, Middle::lower);
   excess = median > kLeastExcess ? median : 1;
 }
 

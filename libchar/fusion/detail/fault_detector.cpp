@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/median.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/reweighting_limits.hpp"
 
@@ -97,11 +98,10 @@ void FaultDetector::begin() {
     median_.clear();
     for (std::size_t i = 0; i < base_.n; ++i)
       if (!std::isnan(row[i])) median_.push_back(row[i]);
-    const auto middle = median_.begin() + static_cast<std::ptrdiff_t>(median_.size() / 2);
-    std::nth_element(median_.begin(), middle, median_.end());
+    const double middle = median_in_place(median_, Middle::upper);
     for (std::size_t i = 0; i < base_.n; ++i) {
       if (std::isnan(row[i])) continue;
-      const double off = general_ ? 0 : row[i] - *middle;
+      const double off = general_ ? 0 : row[i] - middle;
       new_count_[i] += 1;
       const double by = off - mean[i];
       mean[i] += by / new_count_[i];

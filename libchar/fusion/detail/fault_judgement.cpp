@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/fusion/detail/fault_detector.hpp"
 
 namespace libchar::fusion {

@@ -6,7 +6,6 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fusion/detail/generalized_least_squares.hpp"
 
 namespace libchar::fusion {

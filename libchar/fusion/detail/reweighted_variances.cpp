@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "libchar/core/dense.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/fusion/detail/reweighting_limits.hpp"
 
 namespace libchar::fusion {
@@ -66,12 +67,8 @@ double ReweightedVariances::fuse(const double* y, const int* index, int m) {
 
 /// Before anything is known of the channels: one that is far off moves nothing.
 double ReweightedVariances::median(const double* y) {
-  const auto from = sorted_.begin(), to = from + m_, middle = from + m_ / 2;
   for (int k = 0; k < m_; ++k) sorted_[static_cast<std::size_t>(k)] = y[index_[k]];
-  std::nth_element(from, middle, to);
-  const double high = *middle;
-  const double low = m_ % 2 == 1 ? high : *std::max_element(from, middle);
-  const double x = low + (high - low) / 2;
+  const double x = median_in_place({sorted_.data(), static_cast<std::size_t>(m_)});
   for (int k = 0; k < m_; ++k) r_[index_[k]] = y[index_[k]] - x;
   return x;
 }

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/utf8.hpp"
 
 namespace libchar {
 namespace {

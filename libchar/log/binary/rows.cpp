@@ -9,9 +9,9 @@
 #include <optional>
 #include <system_error>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/time/time_column.hpp"

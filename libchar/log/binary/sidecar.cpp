@@ -12,7 +12,7 @@
 #include "libchar/core/fields.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/output_files.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/reading_fields.hpp"

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
 #include "libchar/log/csv/dialect.hpp"

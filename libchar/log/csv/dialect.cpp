@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/core/utf8.hpp"
 #include "libchar/log/csv/content.hpp"
 #include "libchar/log/csv/delimiter.hpp"
 #include "libchar/log/csv/header.hpp"

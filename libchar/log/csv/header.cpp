@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/csv/number.hpp"
 #include "libchar/log/reading_fields.hpp"

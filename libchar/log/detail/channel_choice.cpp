@@ -7,7 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/pattern.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 
 namespace libchar {
 namespace {

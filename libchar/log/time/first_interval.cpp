@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/median.hpp"
+
 namespace libchar {
 namespace {
 
@@ -21,10 +23,7 @@ constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
 constexpr double kLongestPacket = 40;  // rows
 
 double middle_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : median_in_place(values, Middle::lower);
 }
 
 /// The steps between stamps in file order; those back in time are left out.
@@ -61,7 +60,7 @@ CommonStep common_step(const std::vector<std::int64_t>& stamps, const FirstSteps
   const double middle = middle_of(steps.rising);
   std::vector<double> scatter;
   for (const double step : steps.rising) scatter.push_back(std::fabs(step - middle));
-  const double deviation = 1.4826 * middle_of(std::move(scatter));
+  const double deviation = kMadToSd * middle_of(std::move(scatter));
   double sum = 0;
   std::size_t close = 0;
   for (const double step : steps.rising) {

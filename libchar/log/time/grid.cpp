@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

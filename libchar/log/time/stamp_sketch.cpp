@@ -6,15 +6,13 @@
 #include <cstring>
 
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/median.hpp"
 
 namespace libchar {
 namespace {
 
 double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : median_in_place(values, Middle::lower);
 }
 
 }  // namespace
@@ -144,7 +142,7 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
     result.largest = std::max(
         {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
   for (double& value : r) value = std::fabs(value - centre);
-  result.robust = 1.4826 * median(r);
+  result.robust = kMadToSd * median(r);
   return result;
 }
 

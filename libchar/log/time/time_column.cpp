@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
@@ -117,10 +118,7 @@ double median_step(const std::vector<double>& values) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
   if (steps.empty()) return 0;
-  std::nth_element(steps.begin(),
-                   steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2),
-                   steps.end());
-  return steps[(steps.size() - 1) / 2];
+  return median_in_place(steps, Middle::lower);
 }
 
 bool near_uniform_and_rising(const std::vector<double>& values) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/detail/column_name.hpp"

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

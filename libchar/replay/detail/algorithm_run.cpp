@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 #include "libchar/replay/detail/timeline.hpp"
@@ -182,11 +183,8 @@ void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
 }
 
 double AlgorithmRun::median_ns() const {
-  if (ns_.empty()) return kNone;
-  std::vector<double> sorted = ns_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  std::vector<double> blocks = ns_;
+  return median_in_place(blocks, Middle::upper);
 }
 
 void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip) {

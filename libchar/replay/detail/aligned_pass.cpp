@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/replay/detail/instants.hpp"
 
 namespace libchar {

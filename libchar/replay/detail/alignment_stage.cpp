@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/error_budget.hpp"
 #include "libchar/replay/detail/instants.hpp"
 

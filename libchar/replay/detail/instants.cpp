@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

@@ -21,8 +21,8 @@
 #include <numbers>
 #include <vector>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {

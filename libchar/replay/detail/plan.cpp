@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/replay/detail/reference_track.hpp"
 
 namespace libchar {
@@ -34,9 +35,7 @@ std::size_t column_of(const LogInfo& log, const std::string& name) {
 double median_step(const std::vector<double>& stamps) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < stamps.size(); ++k) steps.push_back(stamps[k] - stamps[k - 1]);
-  std::nth_element(
-      steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
+  return median_in_place(steps, Middle::upper);
 }
 
 // Rows in rising order of time, within the window that was asked for.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/median.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 
 namespace libchar {
@@ -158,11 +159,7 @@ void RunTracker::find_medians(const Eigen::MatrixXd& samples) {
     for (Eigen::Index i = 0; i < samples.rows(); ++i)
       if (const double v = samples(i, k) / h_(i); std::isfinite(v)) sorted_.push_back(v);
     if (sorted_.size() < 2) continue;
-    const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-    std::nth_element(sorted_.begin(), middle, sorted_.end());
-    median_[static_cast<std::size_t>(k)] =
-        sorted_.size() % 2 == 1 ? *middle
-                                : 0.5 * (*middle + *std::max_element(sorted_.begin(), middle));
+    median_[static_cast<std::size_t>(k)] = median_in_place(sorted_);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/replay/detail/resampled.hpp"
 
 namespace libchar {

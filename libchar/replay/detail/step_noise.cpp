@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/dense.hpp"
+#include "libchar/core/median.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
@@ -16,16 +18,11 @@ namespace {
 constexpr std::int64_t kStretchesOfNoise = 32;
 /// Pairs of instants in a stretch, at least.
 constexpr std::int64_t kPairsInStretch = 16;
-/// A median of normal values has this many times the standard error of their mean, and their deviation
-/// is this many times the median of what they are off.
-constexpr double kMedianError = 1.2533, kFromMedianOff = 1.4826;
 constexpr double kBeyondDoubt = 6;
 constexpr double kWorthSaying = 1.25;  // of deviations
 
 double median_of_stretches(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median_in_place(values, Middle::upper);
 }
 
 /// Beyond, what grows with the cube of the number of sensors is done in closed form.
@@ -38,7 +35,7 @@ std::optional<StepNoise> typical(const std::vector<double>& logs) {
   std::vector<double> off;
   off.reserve(logs.size());
   for (const double value : logs) off.push_back(std::abs(value - out.log_variance));
-  const double deviation = kFromMedianOff * median_of_stretches(off);
+  const double deviation = kMadToSd * median_of_stretches(off);
   out.error = kMedianError * deviation / std::sqrt(static_cast<double>(logs.size()));
   if (!std::isfinite(out.error)) return std::nullopt;
   return out;

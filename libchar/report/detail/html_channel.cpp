@@ -9,8 +9,8 @@
 
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/power_laws.hpp"
 #include "libchar/report/detail/escape.hpp"

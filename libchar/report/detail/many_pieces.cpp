@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/log/recording_json.hpp"

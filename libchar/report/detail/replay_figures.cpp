@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_plots.hpp"
 #include "libchar/report/detail/html_tables.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/replay_words.hpp"

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 

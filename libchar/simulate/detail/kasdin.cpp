@@ -9,9 +9,9 @@
 #include <cassert>
 #include <string>
 
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
-#include "libchar/core/text.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

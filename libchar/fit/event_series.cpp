@@ -2,13 +2,14 @@
 // straight line between the means of as many values before and after it (of fewer where another stretch is near): single values would
 // put their own noise into the lowest frequencies. Bridged stretches are remembered: it is not known where in them something happened.
 // The number of means has no prime factor above 7, for the transforms' sake: at most one per cent of the record's end is not looked at.
+#include "libchar/fit/event_series.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/fit/events.hpp"
 
 namespace libchar {
 namespace {

@@ -1,0 +1,45 @@
+#pragma once
+// What is asked of a fit, and what the fits of one log share.
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/core/noise_terms.hpp"
+
+namespace libchar {
+
+struct FitOptions {
+  std::array<bool, kTerms> terms = {
+      true,
+      true,
+      true,
+      false,
+      false};  ///< offered from the start; quantization and ramp are added on alarm
+  /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
+  bool remedies = true;
+  /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
+  bool gauss_markov = true;
+  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
+  bool clock = false;
+  /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
+  bool events = true;
+  /// stretches of the record are compared (a record that is kept only, remedies on)
+  bool stationarity = true;
+  /// of the record's first differences, where it is known: spikes are looked for above an alarm
+  std::optional<double> difference_kurtosis;
+  std::string unit;         ///< of the samples, in sentences
+  double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
+  double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
+  bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first
+  int threads = 1;
+};
+
+/// What the fits of one log's channels share, from any number of threads: it saves time and changes
+/// no result.
+struct FitWorkspace {
+  AllanCovarianceCache covariances;
+};
+
+}  // namespace libchar

@@ -1,0 +1,34 @@
+#pragma once
+// What makes sensors of one quantity differ that is no noise, learnt from a stretch of their samples.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "libchar/fusion/alignment.hpp"
+#include "libchar/fusion/delay_taps.hpp"
+
+namespace libchar::fusion {
+
+struct AlignmentOptions {
+  bool delay = true, bias = true, gain = true, misalignment = true;
+  Interpolation interpolation = Interpolation::sinc;
+};
+
+/// What is learnt from: rows of consecutive instants, in one or several stretches.
+struct AlignmentData {
+  /// n rows of one quantity, then n rows a further axis (the same sensors in the same order).
+  Eigen::MatrixXd samples;
+  Eigen::Index channels = 0;
+  Eigen::RowVectorXd truth;          ///< empty: blind, the mean of the channels is the truth
+  std::vector<Eigen::Index> starts;  ///< first column of each stretch
+};
+
+/// Instants that the interpolation looks at on either side, a delay of at most kMostDelay included.
+inline constexpr double kMostDelay = 8;
+inline constexpr Eigen::Index kAlignmentMargin = 21;
+
+/// Blind: sum of delays, of biases and of gains zero. Throws Error(numeric) when fewer than two
+/// channels (taught: one) have samples, or when there are fewer than 64 instants.
+Alignment learn_alignment(const AlignmentData& data, const AlignmentOptions& options);
+
+}  // namespace libchar::fusion

@@ -1,0 +1,29 @@
+#pragma once
+// A sampled signal read between its instants.
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace libchar::fusion {
+
+/// How a sample between two instants is read. `sinc`: 24 taps, Kaiser window 8, within 1e-4 of the
+/// amplitude up to 0.37 of the rate. `cubic`: 4 taps (Lagrange), within 1e-2 up to 0.12 of the rate;
+/// it damps what is faster, most at half a sample, and aliased vibration with it.
+enum class Interpolation { sinc, cubic };
+
+/// Weights of the instants floor(delay) + first … of a sample read `delay` instants later.
+struct DelayTaps {
+  DelayTaps(double delay, Interpolation interpolation);
+  /// y(t + delay), of `size` values. Where a tap is missing: linear between its neighbours, NaN
+  /// where one of these is missing; `strict`: NaN.
+  double at(const double* y,
+            Eigen::Index stride,
+            Eigen::Index size,
+            Eigen::Index t,
+            bool strict = false) const;
+  std::vector<double> weights;
+  Eigen::Index first = 0, floor = 0;
+  double fraction = 0;
+};
+
+}  // namespace libchar::fusion
