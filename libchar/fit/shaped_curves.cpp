@@ -37,7 +37,7 @@ double flicker_phase_theta(const NoiseFit& fit) {
   return f * f;
 }
 
-double plain_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
+double unshaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
   const double terms = spectrum(fit.theta, frequency_hz, dt_s) +
                        flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
   if (!has_process(fit)) return terms;
@@ -46,7 +46,7 @@ double plain_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
          sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
 }
 
-double plain_variance(const NoiseFit& fit, double m, double dt_s) {
+double unshaped_variance(const NoiseFit& fit, double m, double dt_s) {
   return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s) +
          flicker_phase_theta(fit) * flicker_phase_allan_variance(m, dt_s);
 }
@@ -74,7 +74,7 @@ double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_h
     const double f = low_hz + width * (i + 0.5) / nodes;
     const double sine = std::sin(kPi * f * m * dt_s), step = m * std::sin(kPi * f * dt_s);
     const double transfer = (many ? 0.375 : sine * sine * sine * sine) / (step * step);
-    sum += (ratio_at(fit, f, dt_s) - 1) * plain_density(fit, f, dt_s) * transfer;
+    sum += (ratio_at(fit, f, dt_s) - 1) * unshaped_density(fit, f, dt_s) * transfer;
   }
   return 4 * sum * width / nodes;
 }
@@ -82,11 +82,11 @@ double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_h
 }  // namespace
 
 double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  return plain_density(fit, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s);
+  return unshaped_density(fit, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s);
 }
 
 double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s) {
-  double variance = plain_variance(fit, m, dt_s);
+  double variance = unshaped_variance(fit, m, dt_s);
   if (!has_shape(fit)) return variance;
   const double lowest_hz = shape_from_hz(fit, dt_s), step = std::exp2(-kStretch);
   for (double high = 0.5 / dt_s; high > lowest_hz; high *= step)
@@ -126,8 +126,8 @@ double plain_from_s(const NoiseFit& fit, const AllanCurve& curve) {
   double from_s = 0;
   for (const AllanPoint& point : curve.points) {
     const auto m = static_cast<double>(point.m);
-    const double plain = plain_variance(fit, m, curve.dt_s);
-    if (std::abs(shaped_allan_variance(fit, m, curve.dt_s) - plain) > kSameWithin * plain)
+    const double unshaped = unshaped_variance(fit, m, curve.dt_s);
+    if (std::abs(shaped_allan_variance(fit, m, curve.dt_s) - unshaped) > kSameWithin * unshaped)
       from_s = point.tau_s * (1 + 1e-9);
   }
   return from_s;

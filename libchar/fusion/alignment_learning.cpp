@@ -1,5 +1,5 @@
 // Learning an alignment. With z the samples as aligned so far and x their mean (blind: its noise is
-// shared by all, and by Gauss-Markov hardly correlated with z - x) or the reference (taught):
+// shared by all, and by Gauss-Markov hardly correlated with z - x) or the reference (with a reference):
 //   e_i = z_i - x = b0 + g (x - x0) + sum_k m_k (c_k - c0_k) - d dz_i/dd + noise
 // is solved for each channel, put on top of what is known, and repeated (Gauss-Newton; the delay,
 // whose derivative is that of the interpolated samples, with its second derivative: Newton).

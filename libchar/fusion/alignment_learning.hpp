@@ -28,7 +28,7 @@ inline constexpr double kMostDelay = 8;
 inline constexpr Eigen::Index kAlignmentMargin = 21;
 
 /// Blind: sum of delays, of biases and of gains zero. Throws Error(numeric) when fewer than two
-/// channels (taught: one) have samples, or when there are fewer than 64 instants.
+/// channels (with a truth: one) have samples, or when there are fewer than 64 instants.
 Alignment learn_alignment(const AlignmentData& data, const AlignmentOptions& options);
 
 }  // namespace libchar::fusion

@@ -19,11 +19,11 @@ constexpr double kNormal95 = 2.045;  // Student, 29 degrees of freedom
 
 }  // namespace
 
-BudgetMeter::BudgetMeter(Index channels, Index axes, std::int64_t instants, bool taught)
+BudgetMeter::BudgetMeter(Index channels, Index axes, std::int64_t instants, bool with_truth)
     : n_(channels),
       axes_(axes),
       batch_(std::max<std::int64_t>(16, (instants + kBatches - 1) / kBatches)),
-      taught_(taught),
+      with_truth_(with_truth),
       c0_(Eigen::VectorXd::Zero(axes)) {}
 
 void BudgetMeter::push(const Eigen::VectorXd& recorded,
@@ -31,7 +31,7 @@ void BudgetMeter::push(const Eigen::VectorXd& recorded,
                        const Eigen::VectorXd& aligned,
                        const Eigen::VectorXd& cross,
                        double truth) {
-  Instant now{recorded, undelayed, aligned, cross, taught_ ? truth : aligned.mean(), false};
+  Instant now{recorded, undelayed, aligned, cross, with_truth_ ? truth : aligned.mean(), false};
   now.complete =
       recorded.allFinite() && aligned.allFinite() && cross.allFinite() && std::isfinite(now.x);
   if (std::isnan(x0_) && now.complete) {
@@ -76,10 +76,10 @@ void BudgetMeter::add(const Instant& before, const Instant& now, const Instant& 
   s.count += 1;
   const auto n = static_cast<double>(n_);
   const double others = (n / (n - 1)) * (n / (n - 1)) / n;
-  s.before += taught_ ? u(n_) * u(n_)
-                      : others * (now.recorded.array() - now.recorded.mean()).square().sum();
-  s.after +=
-      taught_ ? r(n_) * r(n_) : others * (now.aligned.array() - now.aligned.mean()).square().sum();
+  s.before += with_truth_ ? u(n_) * u(n_)
+                          : others * (now.recorded.array() - now.recorded.mean()).square().sum();
+  s.after += with_truth_ ? r(n_) * r(n_)
+                         : others * (now.aligned.array() - now.aligned.mean()).square().sum();
 }
 
 BudgetMeter::Sums BudgetMeter::total(std::size_t without) const {
@@ -166,13 +166,13 @@ ErrorBudget BudgetMeter::result() const {
       without.push_back(powers(total(b), nullptr));
   const auto parts = static_cast<Index>(kErrorParts);
   // Blind: the channels' own errors, taken together, are what leaving one out shows.
-  const double everything = taught_ ? power.col(n_).sum() : power.leftCols(n_).sum();
+  const double everything = with_truth_ ? power.col(n_).sum() : power.leftCols(n_).sum();
   const auto saving = [&](double gone) {
     return everything > 0 ? 1 - std::sqrt(std::max(0.0, 1 - gone / everything)) : 0;
   };
   const auto n = static_cast<double>(n_);
   const auto gone = [&](Index part, Index i) {
-    if (!taught_) return power(part, i);
+    if (!with_truth_) return power(part, i);
     if (part >= 4) return std::min(power(part, i) / (n * n), power(part, n_));
     const Index from = part < 3 ? part : loadings.rows() - 1, size = part == 2 ? axes_ : 1;
     const auto own = loadings.col(i).segment(from, size),
@@ -200,7 +200,7 @@ ErrorBudget BudgetMeter::result() const {
   }
   for (Index part = 0; part < parts; ++part)
     out.savings[static_cast<std::size_t>(part)] =
-        saving(taught_ ? power(part, n_) : power.row(part).head(n_).sum());
+        saving(with_truth_ ? power(part, n_) : power.row(part).head(n_).sum());
   return out;
 }
 

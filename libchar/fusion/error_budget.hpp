@@ -28,7 +28,7 @@ struct ChannelBudget {
 struct ErrorBudget {
   std::vector<ChannelBudget> channels;
   std::vector<double> savings;  ///< a part: were it gone from every channel
-  /// RMS of the mean's error (taught), or of the mean of the others against each channel (blind),
+  /// RMS of the mean's error (with a truth), or of the mean of the others against each channel (blind),
   /// on the same instants: as recorded, and aligned.
   double before = 0, after = 0;
   std::int64_t instants = 0;
@@ -37,8 +37,8 @@ struct ErrorBudget {
 /// Accumulates over consecutive instants; memory does not grow with their number.
 class BudgetMeter {
  public:
-  /// `instants`: how many will come, for the length of the batches. `taught`: columns have a truth.
-  BudgetMeter(Eigen::Index channels, Eigen::Index axes, std::int64_t instants, bool taught);
+  /// `instants`: how many will come, for the length of the batches. `with_truth`: columns have one.
+  BudgetMeter(Eigen::Index channels, Eigen::Index axes, std::int64_t instants, bool with_truth);
   /// One instant: samples as recorded, with their delays alone taken out (`in_time`), aligned, the
   /// mean of each further axis, the truth (NaN when blind). An instant at which anything is missing
   /// is left out.
@@ -69,7 +69,7 @@ class BudgetMeter {
 
   Eigen::Index n_, axes_;
   std::int64_t batch_, seen_ = 0;
-  bool taught_;
+  bool with_truth_;
   Instant last_[2];
   double x0_ = kNoOrigin;
   Eigen::VectorXd c0_;

@@ -74,7 +74,7 @@ std::string how(const AlignmentResult& a) {
                      significant(a.window.from_s, 6),
                      significant(a.window.to_s, 6),
                      a.learnt.instants,
-                     a.taught ? "the reference" : "the mean of the sensors",
+                     a.by_reference ? "the reference" : "the mean of the sensors",
                      a.applied ? "taken out of the sensors before they are fused"
                                : "reported only: the sensors are fused as recorded");
 }
@@ -86,7 +86,7 @@ std::string effect(const ReplayResult& r, const AlignmentResult& a) {
   return fmt::format(
       "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples "
       "of all sensors below their limits.",
-      a.taught ? "RMSE of the mean" : "Leave-one-out RMS of the mean",
+      a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean",
       significant(a.budget.before, 4),
       unit,
       significant(a.budget.after, 4),

@@ -29,8 +29,8 @@ struct SensorResult {
 /// What was learnt of the sensors before fusion, and what their errors are made of on the run.
 struct AlignmentResult {
   fusion::Alignment learnt;
-  TimeWindow window;    ///< it was learnt on
-  bool taught = false;  ///< by the reference; else by the sensors' mean
+  TimeWindow window;          ///< it was learnt on
+  bool by_reference = false;  ///< by the reference; else by the sensors' mean
   bool applied = false;
   bool overlaps = false;  ///< learnt on a part of what is judged
   fusion::ErrorBudget budget;

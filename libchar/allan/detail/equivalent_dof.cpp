@@ -42,12 +42,12 @@ PerTerm covariance(Family family, double m, double lag, double dt) {
 
 /// sum_k (M - |k|) R^2 and sum_k (M - |k|) R.
 struct Sums {
-  double square = 0, plain = 0;
+  double square = 0, single = 0;
   void operator+=(const Sums& o) {
     square += o.square;
-    plain += o.plain;
+    single += o.single;
   }
-  Sums operator*(double w) const { return {square * w, plain * w}; }
+  Sums operator*(double w) const { return {square * w, single * w}; }
 };
 
 double discrete_dof(
@@ -72,7 +72,7 @@ double discrete_dof(
   for (double j = 1; j <= family.reach(); ++j) breakpoints.push_back(j * m / stride);
   const Sums side = lag_sum<Sums>(weighted, 1, terms - 1, breakpoints);
   const double mu = mean_square / variance;
-  const double total = (terms + 2 * side.square) + 2 * mu * (terms + 2 * side.plain);
+  const double total = (terms + 2 * side.square) + 2 * mu * (terms + 2 * side.single);
   return std::clamp(terms * terms * (1 + mu) * (1 + mu) / total, 1.0, kCertain);
 }
 

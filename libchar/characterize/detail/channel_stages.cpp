@@ -41,7 +41,8 @@ void ChannelStages::begin(const LogInfo& so_far) {
   if (!options_.temperature.empty()) find_temperature(so_far);
   for (std::size_t c = 0; c < channels; ++c)
     stages_.emplace_back(
-        !options_.temperature.empty() && c == temperature_index_ ? plain_ : options_, workspace_);
+        !options_.temperature.empty() && c == temperature_index_ ? temperature_options_ : options_,
+        workspace_);
   arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
   too_long_ = needs_all_samples_.empty() && surely_too_long(so_far);
   if (too_long_) return;
@@ -100,8 +101,8 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
                  fmt::format("{} is the only channel: there is none that it could move", *found),
                  "",
                  ""});
-  plain_ = options_;
-  plain_.data = SampleKind::rate;
+  temperature_options_ = options_;
+  temperature_options_.data = SampleKind::rate;
 }
 
 // In degC or K: what is said per degree is said per K.

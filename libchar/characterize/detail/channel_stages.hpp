@@ -48,7 +48,7 @@ class ChannelStages final : public BlockSink {
   bool too_long_ = false;          ///< to be kept: streamed, or refused and only counted
   tbb::task_arena arena_;
   std::vector<ChannelStage> stages_;
-  CharacterizeOptions plain_;  ///< of the temperature: no phase, no frequency
+  CharacterizeOptions temperature_options_;  ///< of the temperature: no phase, no frequency
   std::size_t temperature_index_ = 0;
   std::shared_ptr<const TemperatureRecord> temperature_;
 };

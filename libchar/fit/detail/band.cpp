@@ -335,10 +335,10 @@ Band find_band(const std::vector<PowerBin>& bins,
   Band whole = whole_band(bins, rate_hz);
   whole.tau_s = options.tau_s;
   Search search{bins, rate_hz, terms, options, std::nullopt};
-  const std::optional<Trial> plain = search.at(whole);
-  if (!plain) return whole;
-  if (std::min(plain->band.goodness.p, plain->band.top.p) >= options.probability_plain) {
-    Band band = plain->band;
+  const std::optional<Trial> unshaped = search.at(whole);
+  if (!unshaped) return whole;
+  if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped) {
+    Band band = unshaped->band;
     band.passes = true;
     return band;
   }
@@ -357,14 +357,14 @@ Band find_band(const std::vector<PowerBin>& bins,
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
-  const bool barely = std::min(plain->band.goodness.p, plain->band.top.p) >= options.misfit;
+  const bool barely = std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.misfit;
   if (barely && (!best || best->top_hz < rate_hz / 2 * kDeepCut)) {
-    Band band = plain->band;
+    Band band = unshaped->band;
     band.passes = true;
     return band;
   }
   if (best) return search.with_margin(*best);
-  return search.closest ? search.closest->band : plain->band;
+  return search.closest ? search.closest->band : unshaped->band;
 }
 
 }  // namespace libchar

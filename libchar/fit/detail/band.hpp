@@ -29,7 +29,7 @@ struct Band {
 struct BandOptions {
   double probability =
       0.02;  ///< of more chi-square than in the residuals, below which a band does not pass
-  double probability_plain =
+  double probability_unshaped =
       0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
   double misfit = 1e-3;  ///< from here on the whole spectrum is cut at most by two octaves
   int most_orders = 4;

@@ -43,11 +43,11 @@ class AtTau {
       : rate_hz_(rate_hz), terms_(terms) {
     terms_[kLent] = true;
     if (band.quantized) terms_[static_cast<std::size_t>(Term::quantization)] = true;
-    Band plain = band;
-    plain.tau_s = std::nullopt;
+    Band without = band;
+    without.tau_s = std::nullopt;
     for (std::size_t j = 0; j < bins.size(); ++j)
       if (band.inside[j] != 0) inside_.push_back(bins[j]);
-    const std::vector<PowerBin> filtered = bins_of(bins, plain, rate_hz);
+    const std::vector<PowerBin> filtered = bins_of(bins, without, rate_hz);
     problem_ = bin_problem(filtered, band.orders, band.top_hz);
     for (std::size_t j = 0; j < inside_.size(); ++j)
       gain_.push_back(filtered[j].unit[0] / inside_[j].unit[0]);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -14,13 +15,13 @@ Mean::Mean(const Array& array) : levels_(array.noise_levels), channels_(array.ch
 }
 
 Estimate Mean::step(const Sample& y) const {
-  if (!general_) return plain(y);
+  if (!general_) return unweighted(y);
   Estimate estimate = general_->step(y);
   estimate.variance.setConstant(std::nan(""));  // how noisy the channels are is not stated
   return estimate;
 }
 
-Estimate Mean::plain(const Sample& y) const {
+Estimate Mean::unweighted(const Sample& y) const {
   const double* const v = y.data();
   const double base = v[0];
   double a = 0, b = 0;
@@ -52,6 +53,10 @@ Estimate Mean::of_present(const Sample& y) const {
 Eigen::MatrixXd Mean::weights() const {
   if (general_) return general_->weights();
   return Eigen::MatrixXd::Constant(channels_, 1, 1 / static_cast<double>(channels_));
+}
+
+Entry mean_algorithm() {
+  return entry<Mean>();
 }
 
 }  // namespace libchar::fusion

@@ -21,7 +21,7 @@ struct Mean {
   Eigen::MatrixXd weights() const;
 
  private:
-  Estimate plain(const Sample& y) const;
+  Estimate unweighted(const Sample& y) const;
   Estimate of_present(const Sample& y) const;
   Eigen::VectorXd levels_;  // noise variances, empty: not known
   Eigen::Index channels_;

@@ -21,7 +21,7 @@ using InstantsBlock = std::function<void(
 struct SceneAlignment {
   fusion::Alignment alignment;
   Eigen::VectorXd h;  ///< a weight a sensor
-  bool taught = false;
+  bool by_reference = false;
   std::int64_t from = 0, to = 0;  ///< instants it was learnt on
 };
 

@@ -96,9 +96,9 @@ class Gathered {
       truths_.middleCols(at, to - from) = truth.middleCols(from - first, to - from);
     }
   }
-  void finish(bool taught) {
+  void finish(bool by_reference) {
     for (std::int64_t s = 0; s < stretches_; ++s) data.starts.push_back(s * each_);
-    if (taught) data.truth = truths_.row(0);
+    if (by_reference) data.truth = truths_.row(0);
   }
   bool in_part() const { return stretches_ > 1; }
   fusion::AlignmentData data;
@@ -117,7 +117,7 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
                                      Progress& progress) {
   SceneAlignment out;
   out.h = weights_of(scene, instants);
-  out.taught = instants.info().has_reference && scene.align->by != "sensors";
+  out.by_reference = instants.info().has_reference && scene.align->by != "sensors";
   const LearningWindow window = window_of_alignment(scene, plan, instants);
   out.from = window.from;
   out.to = window.to;
@@ -131,7 +131,7 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
         gathered.take(first, samples, truth);
       },
       progress);
-  gathered.finish(out.taught);
+  gathered.finish(out.by_reference);
   gathered.data.channels = out.h.size();
   if (gathered.data.samples.size() > 0)
     gathered.data.samples.topRows(out.h.size()).array().colwise() /= out.h.array();
@@ -158,7 +158,7 @@ AlignmentResult measure_alignment(const Scene& scene,
                                   Progress& progress) {
   AlignmentResult out;
   out.learnt = alignment.alignment;
-  out.taught = alignment.taught;
+  out.by_reference = alignment.by_reference;
   out.applied = scene.align->apply;
   const auto at = [&](std::int64_t instant) {
     return instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz;
@@ -178,7 +178,7 @@ AlignmentResult measure_alignment(const Scene& scene,
     }
   const auto n = static_cast<Eigen::Index>(used.size());
   const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
-  fusion::BudgetMeter meter(n, axes, plan.run_to - plan.run_from, out.taught);
+  fusion::BudgetMeter meter(n, axes, plan.run_to - plan.run_from, out.by_reference);
   Eigen::VectorXd cross;
   each_aligned(
       instants,

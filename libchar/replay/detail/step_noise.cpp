@@ -44,8 +44,8 @@ std::optional<StepNoise> typical(const std::vector<double>& logs) {
 }  // namespace
 
 StepNoiseMeter::StepNoiseMeter(const Eigen::MatrixXd& h, std::int64_t instants)
-    : plain_(h.cols() == 1 && (h.array() == 1).all()),
-      many_alike_(plain_ && h.rows() > kManySensors),
+    : one_input_alike_(h.cols() == 1 && (h.array() == 1).all()),
+      many_alike_(one_input_alike_ && h.rows() > kManySensors),
       each_(std::max(instants / 2 / kStretchesOfNoise, kPairsInStretch)),
       squares_(Eigen::VectorXd::Zero(h.rows())) {
   const Eigen::Index n = h.rows();
@@ -69,7 +69,7 @@ void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
     }
     if (!complete || !has_last_) continue;
     e_ = samples.col(k) - last_;
-    if (plain_)
+    if (one_input_alike_)
       e_.array() -= e_.mean();
     else
       e_ = (residual_ * e_).eval();

@@ -39,8 +39,8 @@ class StepNoiseMeter {
   Eigen::VectorXd solved(const Eigen::VectorXd& squares) const;
 
   Eigen::MatrixXd residual_;  // M; empty where many_alike_
-  bool plain_;                // one input seen alike by all: M d = d - mean
-  bool many_alike_;           // plain_, and so many sensors that the inverse is not written out
+  bool one_input_alike_;      // one input seen alike by all: M d = d - mean
+  bool many_alike_;  // one_input_alike_, and so many sensors that the inverse is not written out
   std::optional<Eigen::MatrixXd> inverse_;  // of M o M
   double trace_ = 0;
   std::int64_t each_, now_ = 0, pairs_ = 0;

@@ -154,7 +154,7 @@ Json alignment_json(const ReplayResult& r) {
       {"from_s", json_number(a.window.from_s)},
       {"to_s", json_number(a.window.to_s)},
       {"instants", a.learnt.instants},
-      {"taught", a.taught},
+      {"taught", a.by_reference},
       {"applied", a.applied},
       {"judged_where_learnt", a.overlaps},
       {"interpolation", a.learnt.interpolation == fusion::Interpolation::sinc ? "sinc" : "cubic"},
