@@ -2,9 +2,7 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::fusion {
@@ -82,11 +80,6 @@ std::string why_not(const Description& description, const Array& array) {
   if (needs.rate && !(array.rate_hz > 0))
     return name + " needs the sampling rate; the recording has no time axis";
   return "";
-}
-
-void refuse_where_it_cannot_run(const Description& description, const Array& array) {
-  if (std::string sentence = why_not(description, array); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
 }
 
 }  // namespace libchar::fusion

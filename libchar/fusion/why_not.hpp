@@ -10,7 +10,4 @@ namespace libchar::fusion {
 /// Empty: the algorithm can run on this. Else the sentence that a report prints.
 std::string why_not(const Description& description, const Array& array);
 
-/// Throws Error(usage) with that sentence.
-void refuse_where_it_cannot_run(const Description& description, const Array& array);
-
 }  // namespace libchar::fusion

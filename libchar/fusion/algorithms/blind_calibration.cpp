@@ -6,7 +6,6 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -159,14 +158,6 @@ Estimate BlindCalibrationPublished::step(const Sample& y) {
     x += inverse_gain_[i] * (y[i] - offset_[i]);
   }
   return Estimate::scalar(x / static_cast<double>(n), std::numeric_limits<double>::quiet_NaN());
-}
-
-Entry blind_calibration_algorithm() {
-  return entry<BlindCalibration>();
-}
-
-Entry blind_calibration_published_algorithm() {
-  return entry<BlindCalibrationPublished>();
 }
 
 }  // namespace libchar::fusion

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -93,10 +92,6 @@ void BlindGls::remarks(Warnings& warnings) const {
   if (!solved_)
     warnings.add("not_calibrated",
                  "blind-gls found no common movement of the channels: it was the plain mean");
-}
-
-Entry blind_gls_algorithm() {
-  return entry<BlindGls>();
 }
 
 }  // namespace libchar::fusion

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -88,18 +87,6 @@ Estimate SectionedLeastSquares::step(const Sample& y) {
 
 Eigen::MatrixXd SectionedLeastSquares::weights() const {
   return means_[running_].learnt().weights;
-}
-
-Entry best_sensor_algorithm() {
-  return entry<BestSensor>();
-}
-
-Entry optimal_weights_algorithm() {
-  return entry<OptimalWeights>();
-}
-
-Entry sectioned_least_squares_algorithm() {
-  return entry<SectionedLeastSquares>();
 }
 
 }  // namespace libchar::fusion

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "libchar/core/dense.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -80,10 +79,6 @@ Estimate CovarianceIntersection::step(const Sample& y) {
     if (usable(y[i])) present += shares_[i];
   estimate.variance *= present;
   return estimate;
-}
-
-Entry covariance_intersection_algorithm() {
-  return entry<CovarianceIntersection>();
 }
 
 }  // namespace libchar::fusion

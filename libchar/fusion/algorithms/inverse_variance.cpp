@@ -2,7 +2,6 @@
 
 #include <cassert>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -23,10 +22,6 @@ Estimate InverseVariance::step(const Sample& y) const {
   if (general_) return general_->step(y);
   const WeightedMean mean = weighted_mean(y.data(), weights_.data(), weights_.size());
   return Estimate::scalar(mean.x, variance_ / mean.used);
-}
-
-Entry inverse_variance_algorithm() {
-  return entry<InverseVariance>();
 }
 
 }  // namespace libchar::fusion

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -179,14 +178,6 @@ void KalmanTakensTaught::finish_learning() {
                "the learning window holds fewer than two stretches of the past for each neighbour",
                std::to_string(filter_.learnt_stretches()),
                "lengthen the learning window, or ask for fewer neighbours"});
-}
-
-Entry kalman_takens_algorithm() {
-  return entry<KalmanTakens>();
-}
-
-Entry kalman_takens_taught_algorithm() {
-  return entry<KalmanTakensTaught>();
 }
 
 }  // namespace libchar::fusion

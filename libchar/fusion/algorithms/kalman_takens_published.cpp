@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/fusion/detail/entry.hpp"
-
 namespace libchar::fusion {
 
 KalmanTakensPublished::KalmanTakensPublished(const Array& array, const Settings& settings)
@@ -43,10 +41,6 @@ Estimate KalmanTakensPublished::step(const Sample& y) {
   std::copy(recent_.begin() + 1, recent_.end(), recent_.begin());
   recent_.back() = average;
   return Estimate::scalar(x_, p_);
-}
-
-Entry kalman_takens_published_algorithm() {
-  return entry<KalmanTakensPublished>();
 }
 
 }  // namespace libchar::fusion

@@ -6,7 +6,6 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/error_weights.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
@@ -261,22 +260,6 @@ void remark_on(const LearntWeights& learnt, std::string_view name, Warnings& war
                  std::string(name) + " found channels that are combinations of others",
                  {},
                  static_cast<std::uint64_t>(learnt.dependent));
-}
-
-Entry least_squares_algorithm() {
-  return entry<LeastSquares>();
-}
-
-Entry least_squares_published_algorithm() {
-  return entry<LeastSquaresPublished>();
-}
-
-Entry shrunk_least_squares_algorithm() {
-  return entry<ShrunkLeastSquares>();
-}
-
-Entry non_negative_least_squares_algorithm() {
-  return entry<NonNegativeLeastSquares>();
 }
 
 }  // namespace libchar::fusion

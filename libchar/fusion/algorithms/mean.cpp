@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -53,10 +52,6 @@ Estimate Mean::of_present(const Sample& y) const {
 Eigen::MatrixXd Mean::weights() const {
   if (general_) return general_->weights();
   return Eigen::MatrixXd::Constant(channels_, 1, 1 / static_cast<double>(channels_));
-}
-
-Entry mean_algorithm() {
-  return entry<Mean>();
 }
 
 }  // namespace libchar::fusion

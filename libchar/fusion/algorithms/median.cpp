@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -38,10 +37,6 @@ Estimate Median::step(const Sample& y) {
   if (n % 2 == 1) return Estimate::scalar(*middle, std::nan(""));
   const double below = *std::max_element(first, middle);
   return Estimate::scalar(below + (*middle - below) / 2, std::nan(""));
-}
-
-Entry median_algorithm() {
-  return entry<Median>();
 }
 
 }  // namespace libchar::fusion

@@ -4,7 +4,6 @@
 #include <numeric>
 #include <string>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -164,10 +163,6 @@ Eigen::MatrixXd Minque::weights() const {
 Eigen::VectorXd Minque::variances() const {
   const std::vector<double>& v = general_ ? general_->variances() : scalar_.variances();
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
-
-Entry minque_algorithm() {
-  return entry<Minque>();
 }
 
 }  // namespace libchar::fusion

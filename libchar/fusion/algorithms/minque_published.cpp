@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -118,10 +117,6 @@ void MinquePublished::remarks(Warnings& warnings) const {
         "minque-published used the simple mean where an estimated variance was not above zero",
         {},
         static_cast<std::uint64_t>(plain_means_));
-}
-
-Entry minque_published_algorithm() {
-  return entry<MinquePublished>();
 }
 
 }  // namespace libchar::fusion

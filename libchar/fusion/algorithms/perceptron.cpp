@@ -7,7 +7,6 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/network_training.hpp"
 
 namespace libchar::fusion {
@@ -162,10 +161,6 @@ void Perceptron::remarks(Warnings& warnings) const {
                  "the perceptron has " + std::to_string(network_.hidden) + " neurons instead of " +
                      std::to_string(asked_) + ": most_weights allows no more for " +
                      std::to_string(network_.inputs) + " channels");
-}
-
-Entry perceptron_algorithm() {
-  return entry<Perceptron>();
 }
 
 }  // namespace libchar::fusion

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -93,14 +92,6 @@ Estimate RandomWeightingPublished::step(const Sample& y) {
   double x = 0;
   for (Eigen::Index i = 0; i < n; ++i) x += weights_[i] * (y[i] - y[0]);
   return Estimate::scalar(y[0] + x, std::numeric_limits<double>::quiet_NaN());
-}
-
-Entry random_weighting_algorithm() {
-  return entry<RandomWeighting>();
-}
-
-Entry random_weighting_published_algorithm() {
-  return entry<RandomWeightingPublished>();
 }
 
 }  // namespace libchar::fusion

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "libchar/fusion/detail/entry.hpp"
-
 namespace libchar::fusion {
 namespace {
 
@@ -36,17 +34,5 @@ TiltComplementary::TiltComplementary(const Array& array, const Settings& setting
               1 / array.rate_hz,
               settings["start_at_zero"] == 1,
               settings["start_s"]) {}
-
-Entry tilt_gyroscope_algorithm() {
-  return entry<TiltGyroscope>();
-}
-
-Entry tilt_accelerometer_algorithm() {
-  return entry<TiltAccelerometer>();
-}
-
-Entry tilt_complementary_algorithm() {
-  return entry<TiltComplementary>();
-}
 
 }  // namespace libchar::fusion

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "libchar/fusion/detail/entry.hpp"
-
 namespace libchar::fusion {
 
 TiltKalmanFilter::TiltKalmanFilter(const TiltNoise& noise,
@@ -83,9 +81,5 @@ TiltKalman::TiltKalman(const Array& array, const Settings& settings)
               1 / array.rate_hz,
               settings["start_bias_variance"],
               settings["start_at_zero"] == 1) {}
-
-Entry tilt_kalman_algorithm() {
-  return entry<TiltKalman>();
-}
 
 }  // namespace libchar::fusion

@@ -6,7 +6,6 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -140,14 +139,6 @@ void TiltKalmanTuned::remarks(Warnings& warnings) const {
                  "angle_noise " + shortest(noise_.angle) + " rad^2/s, bias_noise " +
                      shortest(noise_.bias) + " (rad/s)^2/s, gravity_variance " +
                      shortest(noise_.gravity) + " rad^2");
-}
-
-Entry tilt_complementary_tuned_algorithm() {
-  return entry<TiltComplementaryTuned>();
-}
-
-Entry tilt_kalman_tuned_algorithm() {
-  return entry<TiltKalmanTuned>();
 }
 
 }  // namespace libchar::fusion

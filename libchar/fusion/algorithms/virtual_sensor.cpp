@@ -8,7 +8,6 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 #include "libchar/fusion/detail/riccati.hpp"
 
 namespace libchar::fusion {
@@ -330,10 +329,6 @@ void VirtualSensor::remarks(Warnings& warnings) const {
         "no_drift",
         "virtual-sensor found no drift in the sensors' models that shows above their white "
         "noise: its weights stand still");
-}
-
-Entry virtual_sensor_algorithm() {
-  return entry<VirtualSensor>();
 }
 
 }  // namespace libchar::fusion

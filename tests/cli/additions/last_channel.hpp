@@ -1,11 +1,9 @@
-// The smallest fusion algorithm, for the test that it costs its files and a line: x is the last channel.
-#include <cmath>
+#pragma once
+// The smallest fusion algorithm, for the test that it costs a file and a line: x is the last channel.
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/entry.hpp"
 
 namespace libchar::fusion {
-namespace {
 
 struct LastChannel {
   static constexpr Description description{.name = "last-channel",
@@ -15,11 +13,5 @@ struct LastChannel {
   explicit LastChannel(const Array&) {}
   Estimate step(const Sample& y) const { return Estimate::scalar(y[y.size() - 1], std::nan("")); }
 };
-
-}  // namespace
-
-Entry last_channel_algorithm() {
-  return entry<LastChannel>();
-}
 
 }  // namespace libchar::fusion
