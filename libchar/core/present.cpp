@@ -90,10 +90,11 @@ std::size_t count_missing(std::span<const double> samples) {
   return missing_in(samples.data(), samples.size());
 }
 
-double mean_present(std::span<const double> samples) {
+PresentMean present_mean(std::span<const double> samples) {
   if (std::isfinite(samples[0])) {
     const double sum = sum_about(samples, samples[0]);
-    if (std::isfinite(sum)) return samples[0] + sum / static_cast<double>(samples.size());
+    if (std::isfinite(sum))
+      return {samples[0] + sum / static_cast<double>(samples.size()), samples.size()};
   }
   double first = kNone, sum = 0;
   std::uint64_t present = 0;
@@ -103,7 +104,11 @@ double mean_present(std::span<const double> samples) {
     sum += x - first;
     ++present;
   }
-  return present == 0 ? kNone : first + sum / static_cast<double>(present);
+  return {present == 0 ? kNone : first + sum / static_cast<double>(present), present};
+}
+
+double mean_present(std::span<const double> samples) {
+  return present_mean(samples).mean;
 }
 
 }  // namespace libchar

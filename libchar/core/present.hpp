@@ -14,7 +14,14 @@ std::size_t finite_run(std::span<const double> samples);
 
 std::size_t count_missing(std::span<const double> samples);
 
+struct PresentMean {
+  double mean = 0;
+  std::size_t count = 0;  ///< of finite ones
+};
+
 /// Mean of the finite ones, about the first of them: an offset costs no digits. NaN where there is none; at least one sample.
+PresentMean present_mean(std::span<const double> samples);
+/// The mean alone.
 double mean_present(std::span<const double> samples);
 
 }  // namespace libchar

@@ -412,20 +412,16 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   std::vector<double> filled;
-  if (options.remedies && present_run(data) < data.size()) filled = bridged(data);
+  const bool whole = present_run(data) == data.size(), as_recorded = data.data() == record.data();
+  const std::uint64_t samples = record.size() - (whole && as_recorded ? 0 : count_missing(record));
+  if (options.remedies && !whole) filled = bridged(data);
   binner.push(filled.empty() ? data : filled);
-  NoiseFit fit = fit_bins_beside(binner,
-                                 rate_hz,
-                                 record.size() - count_missing(record),
-                                 allan,
-                                 options,
-                                 workspace,
-                                 means.temperature);
+  NoiseFit fit =
+      fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, means.temperature);
   if (!options.clock) {
-    const bool known = options.difference_kurtosis && data.data() == record.data();
-    widen_for_tails(known ? *options.difference_kurtosis : kurtosis_of_differences(data),
-                    record.size() - count_missing(record),
-                    fit);
+    const bool known = options.difference_kurtosis && as_recorded;
+    widen_for_tails(
+        known ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
   }
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);

@@ -132,8 +132,8 @@ std::vector<double> means_of(std::span<const double> values, std::uint64_t r) {
   std::vector<double> means;
   for (std::size_t i = 0; i + r <= values.size(); i += r) {
     const auto part = values.subspan(i, r);
-    const bool whole = present_run(part) == r;
-    means.push_back(whole || 2 * count_missing(part) < r ? mean_present(part) : kNoMean);
+    const PresentMean mean = present_mean(part);
+    means.push_back(2 * mean.count > r ? mean.mean : kNoMean);
   }
   return means;
 }
@@ -243,8 +243,8 @@ Stationarity test_stationarity(std::span<const double> record,
                                double rate_hz,
                                const NoiseFit& fit) {
   Stationarity out;
-  const auto missing = static_cast<double>(count_missing(record));
-  if (record.size() < kShortest || missing > kMostMissing * static_cast<double>(record.size()))
+  const double size = static_cast<double>(record.size());
+  if (record.size() < kShortest || static_cast<double>(fit.samples) < (1 - kMostMissing) * size)
     return out;
   std::vector<OctaveTest> tests;
   try {

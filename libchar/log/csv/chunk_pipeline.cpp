@@ -41,22 +41,30 @@ void ChunkPipeline::stop() {
   driver_.join();
 }
 
+// While hashing goes along with parsing there is work for one thread: further ones would only wait for it, and TBB's wait busily.
 void ChunkPipeline::drive(int threads) {
   try {
+    if (chunks_.interleaves_hash()) tbb::task_arena(1).execute([this] { run(true); });
     // TBB warns on stderr of more threads than there are cores.
-    tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute([this] { run(); });
+    if (!stop_)
+      tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute([this] {
+        run(false);
+      });
   } catch (...) {  // no memory for a task
     failure_ = std::current_exception();
     done_.push(nullptr);
   }
 }
 
-void ChunkPipeline::run() {
+void ChunkPipeline::run(bool while_usual) {
   using tbb::filter_mode;
   tbb::parallel_pipeline(
-      items_.size(),
+      while_usual ? 1 : items_.size(),
       tbb::make_filter<void, Item*>(filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-        return read(flow);
+        Item* item = nullptr;
+        if (!while_usual || usual_) item = read();
+        if (item == nullptr) flow.stop();
+        return item;
       }) & tbb::make_filter<Item*, Item*>(filter_mode::serial_in_order, [&](Item* item) {
         parse_while_hashing(*item);
         return item;
@@ -69,13 +77,10 @@ void ChunkPipeline::run() {
 }
 
 // The next chunk, as soon as an item is free: so neither the parsed chunks nor those that wait for their hash pile up.
-ChunkPipeline::Item* ChunkPipeline::read(tbb::flow_control& flow) {
+ChunkPipeline::Item* ChunkPipeline::read() {
   Item* item = nullptr;
   if (!stop_) item = free_.pop();
-  if (item == nullptr || stop_) {
-    flow.stop();
-    return nullptr;
-  }
+  if (item == nullptr || stop_) return nullptr;
   item->sequence = read_++;
   item->parsed = item->hashed = false;
   try {

@@ -74,8 +74,8 @@ class ChunkPipeline {
     std::exception_ptr failure;
   };
   void drive(int threads);
-  void run();
-  Item* read(tbb::flow_control& flow);
+  void run(bool while_usual);
+  Item* read();
   void parse_while_hashing(Item& item);
   void parse(Item& item, Sha256Blocks* hash) const;
   void hand_out(Item& item);
