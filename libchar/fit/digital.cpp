@@ -15,7 +15,6 @@
 #include <limits>
 #include <numbers>
 
-#include "libchar/core/lanes.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/core/readable.hpp"
 
@@ -27,65 +26,8 @@ constexpr std::uint64_t kFewestAtRail = 8;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
-/// Extremes of a record, how often it is at them, and how often it repeats a value.
-struct Census {
-  double low = std::numeric_limits<double>::infinity(),
-         high = -std::numeric_limits<double>::infinity();
-  std::uint64_t at_low = 0, at_high = 0, repeats = 0;
-};
-
-// No comparison holds of a missing sample.
-LIBCHAR_WIDE_LANES void take_extremes(const double* x, std::size_t fours, Census& census) {
-  Four low = Four{} + census.low, high = Four{} + census.high;
-  for (std::size_t i = 0; i < fours; ++i) {
-    const Four v = LIBCHAR_FOUR(x + 4 * i);
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  for (int lane = 0; lane < 4; ++lane) {
-    census.low = std::min(census.low, low[lane]);
-    census.high = std::max(census.high, high[lane]);
-  }
-}
-
-// A comparison that holds is minus one. Reads one sample beyond the last of the fours.
-LIBCHAR_WIDE_LANES void count_fours(const double* x, std::size_t fours, Census& census) {
-  Four none = {};
-  auto at_low = none != none, at_high = at_low, repeats = at_low;
-  const Four low = none + census.low, high = none + census.high;
-  for (std::size_t i = 0; i < fours; ++i) {
-    const Four v = LIBCHAR_FOUR(x + 4 * i), next = LIBCHAR_FOUR(x + 4 * i + 1);
-    at_low += v == low;
-    at_high += v == high;
-    repeats += v == next;
-  }
-  for (int lane = 0; lane < 4; ++lane) {
-    census.at_low -= static_cast<std::uint64_t>(at_low[lane]);
-    census.at_high -= static_cast<std::uint64_t>(at_high[lane]);
-    census.repeats -= static_cast<std::uint64_t>(repeats[lane]);
-  }
-}
-
-Census census_of(std::span<const double> record) {
-  Census census;
-  const std::size_t fours = record.size() / 4;
-  take_extremes(record.data(), fours, census);
-  for (const double x : record.subspan(4 * fours)) {
-    census.low = x < census.low ? x : census.low;
-    census.high = x > census.high ? x : census.high;
-  }
-  const std::size_t with_next = record.empty() ? 0 : (record.size() - 1) / 4;
-  count_fours(record.data(), with_next, census);
-  for (std::size_t t = 4 * with_next; t < record.size(); ++t) {
-    census.at_low += record[t] == census.low ? 1 : 0;
-    census.at_high += record[t] == census.high ? 1 : 0;
-    if (t + 1 < record.size()) census.repeats += record[t] == record[t + 1] ? 1 : 0;
-  }
-  return census;
-}
-
 std::optional<Rail> rail_of(std::span<const double> record,
-                            const Census& census,
+                            const ValueCensus& census,
                             bool high,
                             double present) {
   const double at = high ? census.high : census.low, range = census.high - census.low;
@@ -210,12 +152,37 @@ void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view uni
 
 }  // namespace
 
+ValueCensus value_census(std::span<const double> record) {
+  ValueCensus census;
+  census.low = std::numeric_limits<double>::infinity();
+  census.high = -std::numeric_limits<double>::infinity();
+  for (const double x : record) {  // no comparison holds of a missing sample
+    census.low = x < census.low ? x : census.low;
+    census.high = x > census.high ? x : census.high;
+  }
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (const double x : record) {
+    census.at_low += x == census.low ? 1 : 0;
+    census.at_high += x == census.high ? 1 : 0;
+    census.repeats += x == before ? 1 : 0;
+    before = x;
+  }
+  return census;
+}
+
 DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step,
                                   std::string_view unit) {
+  return find_digital_faults(record, value_census(record), rate_hz, step, unit);
+}
+
+DigitalFaults find_digital_faults(std::span<const double> record,
+                                  const ValueCensus& census,
+                                  double rate_hz,
+                                  std::optional<double> step,
+                                  std::string_view unit) {
   DigitalFaults faults;
-  const Census census = census_of(record);
   if (!(census.low < census.high)) return faults;
   if (census.repeats >= kFewestRuns) {
     const Runs runs = runs_of_values(record);

@@ -39,8 +39,23 @@ struct DigitalFaults {
   std::vector<std::string> sentences;
 };
 
-/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
+/// Extremes of a record, how often it is at them, and how often it repeats a value.
+struct ValueCensus {
+  double low = 0, high = 0;  ///< low > high: no value at all
+  std::uint64_t at_low = 0, at_high = 0, repeats = 0;
+};
+
+ValueCensus value_census(std::span<const double> record);
+
+/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`). `census` of the record.
 /// No finding in a record of noise that is sampled and rounded finely, whatever its length.
+DigitalFaults find_digital_faults(std::span<const double> record,
+                                  const ValueCensus& census,
+                                  double rate_hz,
+                                  std::optional<double> step = {},
+                                  std::string_view unit = {});
+
+/// The same where nobody has counted yet.
 DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step = {},

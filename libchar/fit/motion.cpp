@@ -45,6 +45,7 @@ struct Activity {
 /// |Differences| of neighbouring means of `width` values.
 std::vector<double> differences(std::span<const double> value, std::size_t width) {
   std::vector<double> difference;
+  difference.reserve(value.size() / width);
   double before = 0;
   for (std::size_t i = 0; i + width <= value.size(); i += width) {
     double mean = 0;
@@ -57,11 +58,14 @@ std::vector<double> differences(std::span<const double> value, std::size_t width
 }
 
 /// Their mean but for the two largest, which a step takes.
-double mean_of_most(std::vector<double> difference) {
-  const auto end = difference.end() - 2;
-  std::nth_element(difference.begin(), end, difference.end());
-  double sum = 0;
-  for (auto d = difference.begin(); d != end; ++d) sum += *d;
+double mean_of_most(std::span<const double> difference) {
+  double largest = std::max(difference[0], difference[1]),
+         second = std::min(difference[0], difference[1]), sum = 0;
+  for (const double d : difference.subspan(2)) {
+    sum += std::min(d, second);  // which of the two is no longer among the largest
+    second = std::clamp(d, second, largest);
+    largest = std::max(d, largest);
+  }
   return sum / static_cast<double>(difference.size() - 2);
 }
 

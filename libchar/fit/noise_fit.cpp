@@ -394,12 +394,13 @@ NoiseFit fit_record(std::span<const double> record,
                     const AllanCurve* allan,
                     const FitOptions& options,
                     FitWorkspace* workspace,
-                    const TemperatureRecord* temperature) {
+                    const RecordKnowledge& known) {
   const DespikedRecord despiked =
       options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
   std::span<const double> data =
       despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
-  const RecordMeans means = without_means(data, rate_hz, options, temperature);
+  const EventSeries* series = despiked.samples.empty() ? known.series : nullptr;
+  const RecordMeans means = without_means(data, rate_hz, options, known.temperature, series);
   if (!means.samples.empty()) data = means.samples;
   AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
   if (allan != nullptr && data.data() != record.data()) {
@@ -412,16 +413,18 @@ NoiseFit fit_record(std::span<const double> record,
       data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
   PowerBinner binner(block);
   std::vector<double> filled;
-  const bool whole = present_run(data) == data.size(), as_recorded = data.data() == record.data();
-  const std::uint64_t samples = record.size() - (whole && as_recorded ? 0 : count_missing(record));
+  const bool as_recorded = data.data() == record.data();
+  const std::uint64_t missing = known.missing ? *known.missing : count_missing(record);
+  const std::uint64_t samples = record.size() - missing;
+  const bool whole = despiked.samples.empty() ? missing == 0 : present_run(data) == data.size();
   if (options.remedies && !whole) filled = bridged(data);
   binner.push(filled.empty() ? data : filled);
   NoiseFit fit =
       fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, means.temperature);
   if (!options.clock) {
-    const bool known = options.difference_kurtosis && as_recorded;
+    const bool counted = options.difference_kurtosis && as_recorded;
     widen_for_tails(
-        known ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
+        counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
   }
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);

@@ -2,10 +2,12 @@
 // Noise coefficients of a record with honest uncertainties. Theory and figures: docs/theory/fit.md.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/fit/event_series.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/power_bins.hpp"
@@ -35,13 +37,20 @@ NoiseFit fit_binned(const PowerBinner& binner,
                     const FitOptions& options = {},
                     FitWorkspace* workspace = nullptr);
 
-/// Whole record in memory: bins, alarms, remedies, fit, second opinion. What a temperature does to it is taken out before the noise is
-/// fitted; null: none is known.
+/// What the caller of `fit_record` knows of its record; none of it is needed.
+struct RecordKnowledge {
+  /// what it does to the record is taken out before the noise is fitted
+  const TemperatureRecord* temperature = nullptr;
+  const EventSeries* series = nullptr;   ///< of the record at its rate, computed already
+  std::optional<std::uint64_t> missing;  ///< samples, counted already
+};
+
+/// Whole record in memory: bins, alarms, remedies, fit, second opinion.
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
                     const FitOptions& options = {},
                     FitWorkspace* workspace = nullptr,
-                    const TemperatureRecord* temperature = nullptr);
+                    const RecordKnowledge& known = {});
 
 }  // namespace libchar

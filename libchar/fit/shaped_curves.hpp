@@ -1,6 +1,7 @@
 #pragma once
 // Curves of a fit with its shape: what the noise terms give once a filter and what lies outside the band are on top.
 
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {

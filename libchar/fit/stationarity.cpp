@@ -138,6 +138,19 @@ std::vector<double> means_of(std::span<const double> values, std::uint64_t r) {
   return means;
 }
 
+/// Degrees of freedom of every point; stretches without missing samples have the same.
+void add_dof(std::vector<AllanCurve>& curves, const NoiseFit& fit) {
+  const AllanCurve* whole = nullptr;
+  for (AllanCurve& curve : curves) {
+    if (curve.missing > 0 || whole == nullptr)
+      add_fit_intervals(curve, fit);
+    else
+      for (std::size_t i = 0; i < curve.points.size(); ++i)
+        curve.points[i].edf = whole->points[i].edf;
+    if (curve.missing == 0) whole = &curve;
+  }
+}
+
 /// Curves of the stretches from a record's means of r samples, at the averaging factors of the record.
 Curves coarse_curves(std::span<const double> means,
                      std::size_t stretches,
@@ -150,8 +163,8 @@ Curves coarse_curves(std::span<const double> means,
     curve.samples *= r;
     curve.missing *= r;
     for (AllanPoint& point : curve.points) point.m *= r;
-    add_fit_intervals(curve, fit);
   }
+  add_dof(curves, fit);
   return curves;
 }
 

@@ -199,7 +199,7 @@ NoiseBeside noise_beside_counted(const TemperatureSearch& search,
   EventSeries left = series_without(search, lag, size);
   const std::vector<double> taken = leverage_of(search, lag, size, weight),
                             rest = transformed(left.value);
-  TrigonometricSums back(left.value.size(), TrigonometricSums::Kind::cosines);
+  CosineSums back(left.value.size());
   const std::span<double> c = back.input();
   c[0] = 0;
   for (std::size_t k = 0; k < rest.size(); ++k)

@@ -356,7 +356,7 @@ struct QualityMeter::State {
   DistinctValues distinct;
   CounterWatch counter;
   Extreme top{1}, bottom{-1};
-  std::uint64_t missing = 0, run = 0, longest_run = 0;
+  std::uint64_t missing = 0, run = 0, longest_run = 0, repeated = 0;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
   bool float32 = true;
@@ -485,7 +485,9 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
   }
   for (std::size_t i = 0; i < n; ++i) {
     const bool start = any_start && starts[i] != 0;
-    run = x[i] - before[i] == 0 && !start ? run + 1 : 1;
+    const bool repeats_last = x[i] - before[i] == 0 && !start;
+    repeated += repeats_last ? 1 : 0;
+    run = repeats_last ? run + 1 : 1;
     longest_run = std::max(longest_run, run);
   }
 }
@@ -562,6 +564,9 @@ ChannelQuality QualityMeter::finish() const {
   }
   q.distinct_values = state.distinct.values().size();
   q.longest_stuck = state.longest_run;
+  q.at_minimum = state.bottom.count;
+  q.at_maximum = state.top.count;
+  q.repeats = state.repeated;
   if (state.top.value > -state.bottom.value)
     q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();

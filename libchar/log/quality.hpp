@@ -22,8 +22,10 @@ struct ChannelQuality {
   std::uint64_t saturated =
       0;  ///< samples at the minimum or maximum, where three stand in a row and the value next to it has less than half as many
   std::uint64_t longest_stuck = 0;  ///< longest run of one value
-  double difference_kurtosis = 3;   ///< kurtosis of first differences: 3 Gaussian, above = spikes
-  double difference_sd = 0;         ///< standard deviation of first differences
+  std::uint64_t at_minimum = 0, at_maximum = 0;
+  std::uint64_t repeats = 0;       ///< samples that equal the one right before
+  double difference_kurtosis = 3;  ///< kurtosis of first differences: 3 Gaussian, above = spikes
+  double difference_sd = 0;        ///< standard deviation of first differences
   /// why the channel is a clock or a counter and no measurement ("rises by 1 with every sample"); ""
   /// when it is none
   std::string counter;

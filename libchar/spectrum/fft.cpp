@@ -6,61 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <mutex>
-#include <new>
 #include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
-
-// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
-// FFTW asserts anything in a release build. What the planner held is lost: the process has no memory anyway.
-extern "C" void fftw_assertion_failed(const char*, int, const char*) {
-  throw std::bad_alloc();
-}
+#include "libchar/spectrum/detail/fft_plan.hpp"
 
 namespace libchar {
-namespace {
 
-// FFTW's planner is the one part of it that must not run twice at once.
-std::mutex& planner() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-struct Freed {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
-template <typename T>
-using Aligned = std::unique_ptr<T[], Freed>;
-
-// Always fftw_malloc: the alignment of a buffer decides which code FFTW runs and so the last bits
-// of the result.
-template <typename T>
-Aligned<T> aligned(std::size_t n) {
-  void* memory = n <= std::numeric_limits<std::ptrdiff_t>::max() / sizeof(T)
-                     ? fftw_malloc(n * sizeof(T))
-                     : nullptr;
-  if (memory == nullptr)
-    throw Error({ErrorKind::numeric,
-                 "E0403",
-                 "",
-                 fmt::format("not enough memory for a Fourier transform of {} values", n),
-                 "",
-                 ""});
-  return Aligned<T>(static_cast<T*>(memory));
-}
-
-struct Destroyed {
-  void operator()(fftw_plan plan) const {
-    const std::lock_guard lock(planner());
-    fftw_destroy_plan(plan);
-  }
-};
-using Plan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, Destroyed>;
-
-}  // namespace
+using fft_plan::Aligned;
+using fft_plan::aligned;
+using fft_plan::Plan;
 
 struct RealFft::State {
   std::size_t n;
@@ -80,15 +36,6 @@ RealFft::RealFft(std::size_t n) : state_(std::make_unique<State>()) {
   state_->n = n;
   state_->values = aligned<double>(n);
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
-  const fftw_iodim64 dimension = state_->dimension();
-  const std::lock_guard lock(planner());
-  state_->forward.reset(fftw_plan_guru64_dft_r2c(1,
-                                                 &dimension,
-                                                 0,
-                                                 nullptr,
-                                                 state_->values.get(),
-                                                 state_->bins(),
-                                                 FFTW_ESTIMATE | FFTW_DESTROY_INPUT));
 }
 
 RealFft::~RealFft() = default;
@@ -103,19 +50,31 @@ std::span<std::complex<double>> RealFft::coefficients() {
   return {state_->spectrum.get(), state_->n / 2 + 1};
 }
 
+// Planned where it is used: FFTW's estimate leaves what stands in the buffers.
 std::span<const std::complex<double>> RealFft::transform() {
-  fftw_execute(state_->forward.get());
+  if (!state_->forward)
+    state_->forward = fft_plan::planned(fft_plan::Kind::real_forward, state_->n, [&] {
+      const fftw_iodim64 dimension = state_->dimension();
+      return fftw_plan_guru64_dft_r2c(1,
+                                      &dimension,
+                                      0,
+                                      nullptr,
+                                      state_->values.get(),
+                                      state_->bins(),
+                                      FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    });
+  fftw_execute_dft_r2c(state_->forward.get(), state_->values.get(), state_->bins());
   return {state_->spectrum.get(), state_->n / 2 + 1};
 }
 
 std::span<const double> RealFft::inverse() {
-  if (!state_->backward) {
-    const fftw_iodim64 dimension = state_->dimension();
-    const std::lock_guard lock(planner());
-    state_->backward.reset(fftw_plan_guru64_dft_c2r(
-        1, &dimension, 0, nullptr, state_->bins(), state_->values.get(), FFTW_ESTIMATE));
-  }
-  fftw_execute(state_->backward.get());
+  if (!state_->backward)
+    state_->backward = fft_plan::planned(fft_plan::Kind::real_backward, state_->n, [&] {
+      const fftw_iodim64 dimension = state_->dimension();
+      return fftw_plan_guru64_dft_c2r(
+          1, &dimension, 0, nullptr, state_->bins(), state_->values.get(), FFTW_ESTIMATE);
+    });
+  fftw_execute_dft_c2r(state_->backward.get(), state_->bins(), state_->values.get());
   return {state_->values.get(), state_->n};
 }
 
@@ -189,9 +148,9 @@ void ComplexFft::State::plan_two_steps(std::size_t a, std::size_t step, fftw_com
   const fftw_iodim64 every_m1[2] = {iodim(a, b * together, step), iodim(together, 1, distance)};
   between = aligned<std::complex<double>>(n * together);
   auto* const packed = reinterpret_cast<fftw_complex*>(between.get());
-  plan.reset(
+  plan = fft_plan::owned(
       fftw_plan_guru64_dft(1, &over_t1, 2, every_t2, values, packed, FFTW_FORWARD, FFTW_ESTIMATE));
-  second.reset(
+  second = fft_plan::owned(
       fftw_plan_guru64_dft(1, &over_t2, 2, every_m1, packed, values, FFTW_FORWARD, FFTW_ESTIMATE));
   for (std::size_t m1 = 0; m1 < a; ++m1)
     for (std::size_t t2 = 0; t2 < b; ++t2) {
@@ -245,11 +204,11 @@ ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::
   s.distance = distance;
   s.together = count % 4 == 0 && distance == 1 ? 4 : 1;
   const std::size_t a = first_step(n);
-  const std::lock_guard lock(planner());
+  const std::lock_guard lock(fft_plan::planner());
   if (a != 0 && (s.together == 4 || n % 2 == 0))
     s.plan_two_steps(a, step, memory.values);
   else
-    s.plan.reset(fftw_plan_guru64_dft(
+    s.plan = fft_plan::owned(fftw_plan_guru64_dft(
         1, &dimension, 1, &batch, memory.values, memory.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 
@@ -260,11 +219,11 @@ ComplexFft::ComplexFft(std::size_t n) : state_(std::make_unique<State>()) {
   s.n = s.distance = n;
   s.count = 1;
   const std::size_t a = first_step(n);
-  const std::lock_guard lock(planner());
+  const std::lock_guard lock(fft_plan::planner());
   if (a != 0 && n % 2 == 0)
     s.plan_two_steps(a, 1, from.values);
   else
-    s.plan.reset(fftw_plan_guru64_dft(
+    s.plan = fft_plan::owned(fftw_plan_guru64_dft(
         1, &dimension, 0, nullptr, from.values, to.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 ComplexFft::~ComplexFft() = default;
@@ -384,58 +343,76 @@ std::span<const double> Dct::transform(std::span<const double> y) {
   return {c, n};
 }
 
-// FFTW's REDFT01 is c_0 + 2 sum c_k cos(...), its RODFT00 of n - 1 values 2 sum c_k sin(...).
-struct TrigonometricSums::State {
+// c_k sin(pi k t / n) is twice the real part of (-i c_k / 2) exp(2 pi i k t / 2n): one real transform of 2n values, as FFTW's own
+// RODFT00 does it, which takes long to plan.
+struct SineSums::State {
+  explicit State(std::size_t n) : values(n), fft(2 * n) {}
+  std::vector<double> values;
+  RealFft fft;
+};
+
+SineSums::SineSums(std::size_t n) : state_(std::make_unique<State>(n)) {}
+SineSums::~SineSums() = default;
+SineSums::SineSums(SineSums&&) noexcept = default;
+SineSums& SineSums::operator=(SineSums&&) noexcept = default;
+
+std::span<double> SineSums::input() {
+  return state_->values;
+}
+
+std::span<const double> SineSums::transform() {
+  State& s = *state_;
+  const std::span<std::complex<double>> bins = s.fft.coefficients();
+  bins.front() = bins.back() = 0;
+  for (std::size_t k = 1; k < s.values.size(); ++k) bins[k] = {0, -0.5 * s.values[k]};
+  s.fft.inverse();
+  const std::span<double> sums = s.fft.input().first(s.values.size());
+  sums[0] = 0;
+  return sums;
+}
+
+// FFTW's REDFT01 is c_0 + 2 sum c_k cos(...).
+struct CosineSums::State {
   std::size_t n;
-  Kind kind;
   Aligned<double> values, sums;
   Plan plan;
 };
 
-TrigonometricSums::TrigonometricSums(std::size_t n, Kind kind) : state_(std::make_unique<State>()) {
-  const bool sines = kind == Kind::sines;
-  if (n < (sines ? 2 : 1))
-    throw Error({ErrorKind::numeric,
-                 "E0413",
-                 "",
-                 fmt::format("trigonometric sums need at least {} values", sines ? 2 : 1),
-                 "",
-                 ""});
+CosineSums::CosineSums(std::size_t n) : state_(std::make_unique<State>()) {
+  if (n == 0)
+    throw Error(
+        {ErrorKind::numeric, "E0413", "", "sums of cosines need at least one value", "", ""});
   State& s = *state_;
   s.n = n;
-  s.kind = kind;
-  s.values = aligned<double>(n + 1);
-  s.sums = aligned<double>(n + 1);
-  const fftw_iodim64 dimension = {static_cast<std::ptrdiff_t>(sines ? n - 1 : n), 1, 1};
-  const fftw_r2r_kind r2r = sines ? FFTW_RODFT00 : FFTW_REDFT01;
-  const std::size_t first = sines ? 1 : 0;
-  const std::lock_guard lock(planner());
-  s.plan.reset(fftw_plan_guru64_r2r(1,
-                                    &dimension,
-                                    0,
-                                    nullptr,
-                                    s.values.get() + first,
-                                    s.sums.get() + first,
-                                    &r2r,
-                                    FFTW_ESTIMATE | FFTW_DESTROY_INPUT));
+  s.values = aligned<double>(n);
+  s.sums = aligned<double>(n);
+  s.plan = fft_plan::planned(fft_plan::Kind::sums_of_cosines, n, [&] {
+    const fftw_iodim64 dimension = {static_cast<std::ptrdiff_t>(n), 1, 1};
+    const fftw_r2r_kind r2r = FFTW_REDFT01;
+    return fftw_plan_guru64_r2r(1,
+                                &dimension,
+                                0,
+                                nullptr,
+                                s.values.get(),
+                                s.sums.get(),
+                                &r2r,
+                                FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+  });
 }
-TrigonometricSums::~TrigonometricSums() = default;
-TrigonometricSums::TrigonometricSums(TrigonometricSums&&) noexcept = default;
-TrigonometricSums& TrigonometricSums::operator=(TrigonometricSums&&) noexcept = default;
+CosineSums::~CosineSums() = default;
+CosineSums::CosineSums(CosineSums&&) noexcept = default;
+CosineSums& CosineSums::operator=(CosineSums&&) noexcept = default;
 
-std::span<double> TrigonometricSums::input() {
+std::span<double> CosineSums::input() {
   return {state_->values.get(), state_->n};
 }
 
-std::span<const double> TrigonometricSums::transform() {
+std::span<const double> CosineSums::transform() {
   const State& s = *state_;
-  const double n = static_cast<double>(s.n);
-  const bool sines = s.kind == Kind::sines;
-  const double scale = sines ? 0.5 : std::sqrt(0.5 / n);
+  const double n = static_cast<double>(s.n), scale = std::sqrt(0.5 / n);
   for (std::size_t k = 1; k < s.n; ++k) s.values[k] *= scale;
-  s.values[0] = sines ? 0 : s.values[0] / std::sqrt(n);
-  fftw_execute(s.plan.get());
-  if (sines) s.sums[0] = 0;
+  s.values[0] /= std::sqrt(n);
+  fftw_execute_r2r(s.plan.get(), s.values.get(), s.sums.get());
   return {s.sums.get(), s.n};
 }
 

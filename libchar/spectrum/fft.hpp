@@ -1,6 +1,6 @@
 #pragma once
-// FFTW behind two small classes; no other file includes fftw3.h. Plans are FFTW_ESTIMATE (same bits
-// every run), created under one mutex, and run on aligned buffers owned by the object.
+// FFTW behind a few small classes; nothing beside them includes fftw3.h. Plans are FFTW_ESTIMATE (same bits every run), created under
+// one mutex, kept for the next of their length, and run on aligned buffers owned by the object.
 
 #include <complex>
 #include <cstddef>
@@ -67,18 +67,29 @@ class Dct {
   std::unique_ptr<State> state_;
 };
 
-/// Sums that undo a cosine transform and sums of sines, both real to real and of fixed length n.
-class TrigonometricSums {
+/// y_t = c_0 / sqrt(n) + sqrt(2/n) sum_k c_k cos(pi k (t + 1/2) / n), t = 0..n-1: Dct undone.
+class CosineSums {
  public:
-  enum class Kind {
-    cosines,  ///< y_t = c_0 / sqrt(n) + sqrt(2/n) sum_k c_k cos(pi k (t + 1/2) / n): Dct undone
-    sines,    ///< y_t = sum_k c_k sin(pi k t / n), t = 1..n-1; y_0 = 0, c_0 is not looked at
-  };
-  TrigonometricSums(std::size_t n, Kind kind);
-  ~TrigonometricSums();
-  TrigonometricSums(TrigonometricSums&&) noexcept;
-  TrigonometricSums& operator=(TrigonometricSums&&) noexcept;
+  explicit CosineSums(std::size_t n);
+  ~CosineSums();
+  CosineSums(CosineSums&&) noexcept;
+  CosineSums& operator=(CosineSums&&) noexcept;
   std::span<double> input();            ///< c_0..c_{n-1}, to fill in before every transform
+  std::span<const double> transform();  ///< y_0..y_{n-1}, valid until the next call
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// y_t = sum_k c_k sin(pi k t / n), k and t = 1..n-1; y_0 = 0, and c_0 is not looked at.
+class SineSums {
+ public:
+  explicit SineSums(std::size_t n);
+  ~SineSums();
+  SineSums(SineSums&&) noexcept;
+  SineSums& operator=(SineSums&&) noexcept;
+  std::span<double> input();            ///< c_0..c_{n-1}
   std::span<const double> transform();  ///< y_0..y_{n-1}, valid until the next call
 
  private:

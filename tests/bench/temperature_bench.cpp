@@ -57,7 +57,7 @@ void print_effect(const Kind& kind, double lag_s, int records) {
     const auto t = test::weather(kind.weather, kSamples, source.gauss());
     test::add_effect(y, t, kRate, lag_s, kPerK);
     const double untreated = fit_record(y, kRate, nullptr, options).theta[2];
-    const NoiseFit fit = fit_record(y, kRate, nullptr, options, nullptr, &t);
+    const NoiseFit fit = fit_record(y, kRate, nullptr, options, nullptr, {&t, nullptr, {}});
     if (!fit.temperature || fit.temperature->order == 0) continue;
     ++found;
     const Interval& ci = fit.temperature->ci95;

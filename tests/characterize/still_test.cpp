@@ -2,11 +2,15 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fit/digital.hpp"
+#include "libchar/log/quality.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"
 #include "tests/support/noise.hpp"
@@ -102,6 +106,28 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
   CHECK(test::refusal(recording, options) ==
         "E0705 the channel gyr_y moves throughout: the log has no still stretch");
   CHECK(test::refusal(two_channels(500, 3), options).find("E0705 no channel can be searched") == 0);
+}
+
+TEST_CASE("the quality of a channel counts values as the search for digital faults does") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::vector<double> y = test::NoiseSource(20'000, 100, seed).record(5e-3, 5e-3, 1.5e-3);
+    const double step = 0.02 * static_cast<double>(seed);
+    for (std::size_t t = 0; t < y.size(); ++t) {
+      y[t] = std::clamp(std::round(y[t] / step) * step, -3 * step, 2 * step);
+      if (t % 137 < seed) y[t] = std::numeric_limits<double>::quiet_NaN();
+    }
+    QualityMeter meter;
+    meter.push(std::span(y).first(7777));
+    meter.push(std::span(y).subspan(7777));
+    const ChannelQuality quality = meter.finish();
+    const ValueCensus census = value_census(y);
+    CHECK(census.repeats > 0);
+    CHECK(quality.minimum == census.low);
+    CHECK(quality.maximum == census.high);
+    CHECK(quality.at_minimum == census.at_low);
+    CHECK(quality.at_maximum == census.at_high);
+    CHECK(quality.repeats == census.repeats);
+  }
 }
 
 TEST_CASE("digital faults stand in the result, and their coefficients are not believed") {

@@ -56,7 +56,7 @@ TEST_CASE("temperature: what it does is found with its lag, and the walk stays w
     const TemperatureRecord t = weather(Weather::daily, kWarmSamples, source.gauss());
     add_effect(y, t, kWarmRate, 60, 0.02);
     options.unit = "deg/s";
-    const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, &t);
+    const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, {&t, nullptr, {}});
     REQUIRE(fit.temperature.has_value());
     const TemperatureEffect& effect = *fit.temperature;
     REQUIRE(effect.order >= 1);
@@ -96,7 +96,7 @@ TEST_CASE("temperature: a step of the sensor beside it is a step") {
   for (std::size_t i = kWarmSamples / 3; i < kWarmSamples; ++i) y[i] += 0.1;
   FitOptions options;
   options.second_opinion = false;
-  const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, &t);
+  const NoiseFit fit = fit_record(y, kWarmRate, nullptr, options, nullptr, {&t, nullptr, {}});
   REQUIRE(fit.temperature->order >= 1);
   CHECK(fit.temperature->coefficient[0] == Approx(0.02).epsilon(0.1));
   REQUIRE(fit.events.size() == 1);

@@ -180,6 +180,9 @@ TEST_CASE("the result does not depend on how the samples are pushed") {
     CHECK(q.difference_kurtosis == whole.difference_kurtosis);
     CHECK(q.saturated == whole.saturated);
     CHECK(q.longest_stuck == whole.longest_stuck);
+    CHECK(q.at_minimum == whole.at_minimum);
+    CHECK(q.at_maximum == whole.at_maximum);
+    CHECK(q.repeats == whole.repeats);
     CHECK(q.suggestions == whole.suggestions);
   }
 }

@@ -217,7 +217,7 @@ TEST_CASE("trigonometric sums: cosines undo the cosine transform") {
     const std::vector<double> y = gaussian(n, 5, 3);
     Dct dct(n);
     const auto c = dct.transform(y);
-    TrigonometricSums sums(n, TrigonometricSums::Kind::cosines);
+    CosineSums sums(n);
     for (int again = 0; again < 2; ++again) {
       std::copy(c.begin(), c.end(), sums.input().begin());
       const auto back = sums.transform();
@@ -229,7 +229,7 @@ TEST_CASE("trigonometric sums: cosines undo the cosine transform") {
 TEST_CASE("trigonometric sums: sines are the sums they say") {
   for (const std::size_t n : {2U, 3U, 8U, 31U, 250U}) {
     const std::vector<double> c = gaussian(n, 6);
-    TrigonometricSums sums(n, TrigonometricSums::Kind::sines);
+    SineSums sums(n);
     std::copy(c.begin(), c.end(), sums.input().begin());
     const auto y = sums.transform();
     CHECK(y[0] == 0);
@@ -239,6 +239,6 @@ TEST_CASE("trigonometric sums: sines are the sums they say") {
       REQUIRE(y[t] == Approx(static_cast<double>(wanted)).margin(1e-12 * static_cast<double>(n)));
     }
   }
-  CHECK_THROWS_AS(TrigonometricSums(1, TrigonometricSums::Kind::sines), Error);
-  CHECK_THROWS_AS(TrigonometricSums(0, TrigonometricSums::Kind::cosines), Error);
+  CHECK_THROWS_AS(SineSums(0), Error);
+  CHECK_THROWS_AS(CosineSums(0), Error);
 }

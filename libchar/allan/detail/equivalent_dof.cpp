@@ -34,10 +34,10 @@ Family family_of(DeviationType type) {
   return {row.order == 3 && !row.of_sum, row.of_sum};
 }
 
-PerTerm covariance(Family family, double m, double lag, double dt) {
+PerTerm covariance(Family family, double m, double lag, double dt, bool with_flicker) {
   if (family.third) return hadamard_term_covariance(m, lag, dt);
   if (family.modified) return modified_term_covariance(m, lag, dt);
-  return allan_term_covariance(m, m, lag, dt);
+  return allan_term_covariance(m, m, lag, dt, with_flicker);
 }
 
 /// sum_k (M - |k|) R^2 and sum_k (M - |k|) R.
@@ -52,8 +52,9 @@ struct Sums {
 
 double discrete_dof(
     Family family, const Mixture& theta, double m, double terms, double stride, double dt) {
+  const bool flicker = theta[static_cast<std::size_t>(Term::flicker)] > 0;
   const auto at = [&](double lag) {
-    const PerTerm unit = covariance(family, m, lag, dt);
+    const PerTerm unit = covariance(family, m, lag, dt, flicker);
     double sum = 0;
     for (std::size_t t = 0; t < kRandomTerms; ++t) sum += theta[t] * unit[t];
     return sum;

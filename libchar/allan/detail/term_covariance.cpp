@@ -98,7 +98,7 @@ PerTerm sixth_differences(Function f, Tail tail, double m, double lag, double fa
 
 }  // namespace
 
-PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s) {
+PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s, bool with_flicker) {
   const double small = std::min(m1, m2), large = std::max(m1, m2), n = std::fabs(lag);
   const double scale = 1 / (m1 * m2);
   PerTerm value{};
@@ -112,6 +112,7 @@ PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s) {
         difference_again([&](double p) { return quantization_difference(p, small); }, n, large) *
         scale / (dt_s * dt_s);
   }
+  if (!with_flicker) return value;
   value[kFlicker] =
       n > kFar * large
           ? flicker_tail(n, m1, m2) / scale

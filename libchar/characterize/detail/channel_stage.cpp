@@ -1,6 +1,8 @@
 #include "libchar/characterize/detail/channel_stage.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -219,13 +221,19 @@ NoiseFit ChannelStage::fit_of_kept(const AllanCurve& octaves,
   const bool opinion = !octaves.points.empty();
   const bool cleaned = !despiked_.samples.empty();
   AllanCurve own;
+  RecordKnowledge known;
+  known.temperature = temperature_.get();
+  if (!cleaned) {
+    known.series = series_ ? &*series_ : nullptr;
+    if (options_->data == SampleKind::rate) known.missing = found_.missing;
+  }
   if (cleaned && opinion) own = pyramid_deviation(despiked_.samples, 1 / rate_hz);
   NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
                             rate_hz,
                             opinion ? cleaned ? &own : &octaves : nullptr,
                             options,
                             &workspace_->fit,
-                            temperature_.get());
+                            known);
   add_spike_answer(despiked_.answer, fit);
   return fit;
 }
@@ -274,13 +282,14 @@ bool ChannelStage::is_noise(ChannelResult& result) const {
 // where a stretch of it does.
 bool ChannelStage::is_at_rest(ChannelResult& result,
                               double rate_hz,
-                              std::vector<Interval>& moving_s) const {
+                              std::vector<Interval>& moving_s) {
   if (options_->data != SampleKind::rate || !options_->wanted.fit || !options_->fit.remedies)
     return true;
   // Filled gaps are stiller than any sensor.
   const std::uint64_t missing = found_.missing;
   if (kept_.size() < kFewestForMotion || missing * 100 > kept_.size()) return true;
-  result.motion = find_motion(event_series(kept_, rate_hz));
+  series_ = event_series(kept_, rate_hz);
+  result.motion = find_motion(*series_);
   for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
   moving_s = result.motion.moving_s;
   if (result.motion.whole)
@@ -291,22 +300,47 @@ bool ChannelStage::is_at_rest(ChannelResult& result,
 // Of samples as the log has them: those of other kinds are differences or ratios.
 void ChannelStage::find_digital(ChannelResult& result, double rate_hz) const {
   if (options_->data != SampleKind::rate || !options_->wanted.fit) return;
-  result.digital = find_digital_faults(kept_, rate_hz, found_.resolution, result.channel.unit);
+  if (found_.samples == 0) return;
+  const ValueCensus census{
+      found_.minimum, found_.maximum, found_.at_minimum, found_.at_maximum, found_.repeats};
+  result.digital =
+      find_digital_faults(kept_, census, rate_hz, found_.resolution, result.channel.unit);
   for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
 }
 
+// A thread that has no channel of its own left takes the spectrum of another's. Isolated: one that waits for it begins no other channel,
+// whose memory would come on top.
 void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
-  AllanCurve octaves;
-  if (wants_fit())
-    attempt(result, "Allan deviation", [&] {
-      octaves = octaves_of_kept(rate_hz);
-      result.allan = wanted_of_kept(octaves, rate_hz);
-    });
-  if (options_->wanted.spectrum)
-    attempt(result, "spectrum", [&] {
+  ChannelResult beside;
+  std::size_t before = 0;  // problems that come before those of the spectrum
+  const auto allan_and_fit = [&] {
+    AllanCurve octaves;
+    if (wants_fit())
+      attempt(result, "Allan deviation", [&] {
+        octaves = octaves_of_kept(rate_hz);
+        result.allan = wanted_of_kept(octaves, rate_hz);
+      });
+    before = result.problems.size();
+    fit_kept(octaves, rate_hz, result);
+  };
+  const auto spectrum = [&] {
+    attempt(beside, "spectrum", [&] {
       add_spectrum(
-          result, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
+          beside, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
     });
+  };
+  if (options_->wanted.spectrum)
+    tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(allan_and_fit, spectrum); });
+  else
+    allan_and_fit();
+  result.spectrum = std::move(beside.spectrum);
+  result.lines = std::move(beside.lines);
+  result.problems.insert(result.problems.begin() + static_cast<std::ptrdiff_t>(before),
+                         beside.problems.begin(),
+                         beside.problems.end());
+}
+
+void ChannelStage::fit_kept(const AllanCurve& octaves, double rate_hz, ChannelResult& result) {
   if (!is_noise(result)) return;
   find_digital(result, rate_hz);
   attempt(result, "noise fit", [&] {
@@ -406,6 +440,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
     add_intervals(result.allan, white_alone(result.allan));
   kept_ = {};
   despiked_ = {};
+  series_.reset();
   return result;
 }
 

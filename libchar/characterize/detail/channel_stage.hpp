@@ -88,9 +88,10 @@ class ChannelStage {
   ChannelQuality quality_of_rate() const;
   bool is_noise(ChannelResult& result) const;
   void doubt_frequency(ChannelResult& result) const;
-  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) const;
+  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s);
   void find_digital(ChannelResult& result, double rate_hz) const;
   void finish_kept(ChannelResult& result, double rate_hz);
+  void fit_kept(const AllanCurve& octaves, double rate_hz, ChannelResult& result);
   void finish_streams(ChannelResult& result, double rate_hz);
 
   const CharacterizeOptions* options_;
@@ -103,7 +104,8 @@ class ChannelStage {
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
   std::vector<double> fractional_;           // scratch of as_rate
   std::vector<NoiseType> noise_types_;
-  DespikedRecord despiked_;  // rate of the phase without its spikes, when it has some
+  DespikedRecord despiked_;            // rate of the phase without its spikes, when it has some
+  std::optional<EventSeries> series_;  // of what is kept, where the search for motion has made it
   std::uint64_t samples_ = 0;
   std::shared_ptr<const TemperatureRecord> temperature_;
 };

@@ -25,10 +25,12 @@ bool take_events(const EventSearch& search) {
 
 EventSearch search_events(std::span<const double> record,
                           double rate_hz,
-                          const FitOptions& options) {
+                          const FitOptions& options,
+                          const EventSeries* known) {
   if (!options.events || !options.remedies || record.size() < kFewestForEvents) return {};
   try {
-    const EventSeries series = event_series(record, rate_hz);
+    const EventSeries own = known != nullptr ? EventSeries{} : event_series(record, rate_hz);
+    const EventSeries& series = known != nullptr ? *known : own;
     if (series.value.size() < kFewestPoints) return {};
     // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
     EventOptions how;
@@ -100,14 +102,16 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
 RecordMeans without_means(std::span<const double> record,
                           double rate_hz,
                           const FitOptions& options,
-                          const TemperatureRecord* temperature) {
+                          const TemperatureRecord* temperature,
+                          const EventSeries* series) {
   RecordMeans out;
   if (temperature != nullptr)
     out.temperature = find_temperature_effect(record, rate_hz, *temperature);
   const std::vector<double> warm = moves(out.temperature)
                                        ? less(record, rate_hz, nullptr, out.temperature)
                                        : std::vector<double>{};
-  out.search = search_events(warm.empty() ? record : warm, rate_hz, options);
+  out.search = warm.empty() ? search_events(record, rate_hz, options, series)
+                            : search_events(warm, rate_hz, options, nullptr);
   out.events_taken = take_events(out.search);
   const EventSearch* events = out.events_taken ? &out.search : nullptr;
   if (temperature != nullptr && events != nullptr) {

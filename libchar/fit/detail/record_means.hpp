@@ -18,11 +18,13 @@ struct RecordMeans {
   std::optional<TemperatureEffect> temperature;
 };
 
-/// Looks for what `options` asks for, and for what a temperature does where one is given (else null).
+/// Looks for what `options` asks for, and for what a temperature does where one is given (else null). `series` of the record, where it
+/// is there already.
 RecordMeans without_means(std::span<const double> record,
                           double rate_hz,
                           const FitOptions& options,
-                          const TemperatureRecord* temperature);
+                          const TemperatureRecord* temperature,
+                          const EventSeries* series = nullptr);
 
 /// What the temperature takes from the transform coefficients, for the bins.
 void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins);

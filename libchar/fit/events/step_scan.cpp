@@ -34,13 +34,12 @@ std::vector<double> half_cosecants(std::uint64_t n) {
 }
 
 /// sum_k W_k s_k(t) x_k for every t.
-std::vector<double> products(TrigonometricSums& sines,
+std::vector<double> products(SineSums& sines,
                              std::span<const double> weight,
                              std::span<const double> cosecant,
                              std::span<const double> x) {
   const std::span<double> input = sines.input();
   const double scale = -std::sqrt(2 / static_cast<double>(input.size()));
-  input[0] = 0;
   for (std::size_t k = 1; k < input.size(); ++k)
     input[k] = scale * weight[k - 1] * x[k - 1] * cosecant[k - 1];
   const std::span<const double> sums = sines.transform();
@@ -86,7 +85,7 @@ StepScan scan_steps(const Regression& beside,
                     std::uint64_t points,
                     std::uint64_t margin) {
   const std::vector<double> cosecant = half_cosecants(points);
-  TrigonometricSums sines(points, TrigonometricSums::Kind::sines);
+  SineSums sines(points);
   std::vector<double> information = step_information(weight, cosecant);
   double step = 0;
   for (const double w : weight) step += w / static_cast<double>(points);

@@ -1,0 +1,85 @@
+#include "libchar/spectrum/detail/fft_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <list>
+#include <new>
+
+#include "libchar/core/error.hpp"
+
+// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
+// FFTW asserts anything in a release build. What the planner held is lost: the process has no memory anyway.
+extern "C" void fftw_assertion_failed(const char*, int, const char*) {
+  throw std::bad_alloc();
+}
+
+namespace libchar::fft_plan {
+namespace {
+
+/// All lengths together: a plan's own tables take about as much as its values.
+constexpr std::size_t kMostKept = std::size_t{1} << 19U;
+
+struct KeptPlan {
+  Kind kind{};
+  std::size_t n = 0;
+  Plan plan;
+};
+
+/// Those used last come first. Like the planner's own memory of plans it changes no result: of one length there is one plan.
+std::list<KeptPlan>& kept_plans() {
+  static std::list<KeptPlan> kept;
+  return kept;
+}
+
+void keep_to_room() {
+  std::list<KeptPlan>& kept = kept_plans();
+  std::size_t sum = 0;
+  auto at = kept.begin();
+  while (at != kept.end() && (sum += at->n) <= kMostKept) ++at;
+  kept.erase(at, kept.end());
+}
+
+}  // namespace
+
+void* allocated(std::size_t values, std::size_t bytes_each) {
+  void* memory = values <= std::numeric_limits<std::ptrdiff_t>::max() / bytes_each
+                     ? fftw_malloc(values * bytes_each)
+                     : nullptr;
+  if (memory == nullptr)
+    throw Error({ErrorKind::numeric,
+                 "E0403",
+                 "",
+                 fmt::format("not enough memory for a Fourier transform of {} values", values),
+                 "",
+                 ""});
+  return memory;
+}
+
+std::recursive_mutex& planner() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+Plan owned(fftw_plan plan) {
+  return {plan, [](fftw_plan gone) {
+            const std::lock_guard lock(planner());
+            fftw_destroy_plan(gone);
+          }};
+}
+
+Plan planned(Kind kind, std::size_t n, const std::function<fftw_plan()>& make) {
+  const std::lock_guard lock(planner());
+  std::list<KeptPlan>& kept = kept_plans();
+  for (auto at = kept.begin(); at != kept.end(); ++at)
+    if (at->kind == kind && at->n == n) {
+      kept.splice(kept.begin(), kept, at);
+      return at->plan;
+    }
+  kept.push_front({kind, n, owned(make())});
+  Plan plan = kept.front().plan;
+  keep_to_room();
+  return plan;
+}
+
+}  // namespace libchar::fft_plan
