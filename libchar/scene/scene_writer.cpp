@@ -12,6 +12,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/model/model_fields.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_paths.hpp"
 
@@ -22,12 +23,6 @@ using Entries = std::vector<Entry>;
 
 void append(Entries& to, Entries more) {
   for (Entry& entry : more) to.push_back(std::move(entry));
-}
-
-Entry word_entry(std::string key, std::string word) {
-  Entry entry{std::move(key), std::move(word)};
-  entry.bare = true;
-  return entry;
 }
 
 // A scene of thousands of devices is read again: the comments of their models are left out.
@@ -133,18 +128,10 @@ Entry reference_entry(const SceneReference& r, const std::string& scene) {
   if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 &&
       !r.estimate_offset)
     return {"reference", r.channels};
-  Entries below = {{"channels", r.channels}};
-  append(below, entries_of(reference_fields(), r));
+  Entries below = entries_of(reference_fields(), r);
+  below.push_back({"channels", r.channels});
   if (r.recording) below.push_back(recording_entry(*r.recording, r.reading, scene));
-  if (r.estimate_lag)
-    below.push_back(word_entry("lag_s", "estimate"));
-  else if (r.lag_s != 0)
-    below.push_back({"lag_s", r.lag_s});
-  if (r.estimate_offset)
-    below.push_back(word_entry("offset", "estimate"));
-  else if (r.offset != 0)
-    below.push_back({"offset", r.offset});
-  return part_entry("reference", std::move(below));
+  return part_entry("reference", ordered(std::move(below), keys_of(reference_fields())));
 }
 
 Entry tilt_entry(const Scene& scene) {
@@ -155,30 +142,14 @@ Entry tilt_entry(const Scene& scene) {
   return part_entry("tilt", entries_of(tilt_fields(), text), Entry::Form::flow);
 }
 
-// [from, to], or [from, end].
-Entry window_entry(const char* key, const TimeWindow& w) {
-  if (std::isfinite(w.to_s)) return {key, std::vector<double>{w.from_s, w.to_s}};
-  return word_entry(key, "[" + shortest_yaml(w.from_s) + ", end]");
-}
-
 Entry align_entry(const SceneAlign& align) {
   Entries below;
   if (align.window)
-    below.push_back(window_entry("learn", *align.window));
+    write_window("learn", align.window, below);
   else
     below.push_back(word_entry("learn", align.learn));
   append(below, entries_of(align_fields(), align));
   return part_entry("align", std::move(below));
-}
-
-Entries preparation_entries(const ScenePreparation& p) {
-  Entries out;
-  if (p.detrend != "none") out.push_back(word_entry("detrend", p.detrend));
-  if (p.to_hz > 0)
-    out.push_back({"band_hz", std::vector<double>{p.from_hz, p.to_hz}});
-  else if (p.filters())
-    out.push_back({"high_pass_hz", p.from_hz});
-  return out;
 }
 
 Entry faults_entry(const std::vector<SensorFault>& faults, const Scene& scene) {
@@ -228,17 +199,12 @@ Entries scene_entries(const Scene& scene) {
   out.push_back(sensors_entry(scene));
   if (scene.reference) out.push_back(reference_entry(*scene.reference, scene.file));
   if (scene.tilt) out.push_back(tilt_entry(scene));
-  if (scene.learning) out.push_back(window_entry("learning", *scene.learning));
-  if (scene.evaluation) out.push_back(window_entry("evaluation", *scene.evaluation));
-  if (scene.rest) out.push_back(window_entry("rest", *scene.rest));
-  if (scene.warm_up_s) out.push_back({"warm_up_s", *scene.warm_up_s});
-  append(out, preparation_entries(scene.preparation));
+  append(out, entries_of(scene_time_fields(), scene));
   if (scene.align) out.push_back(align_entry(*scene.align));
-  if (scene.fault_free_s) out.push_back({"fault_free_s", *scene.fault_free_s});
   if (!scene.faults.empty()) out.push_back(faults_entry(scene.faults, scene));
   if (scene.simulated) out.push_back(simulated_entry(scene));
   if (!scene.algorithms.empty()) out.push_back(algorithms_entry(scene));
-  return out;
+  return ordered(std::move(out), keys_of(scene_fields()));
 }
 
 }  // namespace

@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "libchar/log/reading_fields.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr Word kInterpolations[] = {{"sinc", 0}, {"cubic", 1}};
 constexpr Word kTeachers[] = {{"reference", 0}, {"sensors", 1}};
+constexpr Word kDetrendWords[] = {{kDetrends[0], 0}, {kDetrends[1], 1}, {kDetrends[2], 2}};
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
 
 // Beside the value of a member: read and written by whoever knows the rest of the scene.
@@ -22,29 +26,59 @@ Row<T> elsewhere(std::string_view key, std::string_view kind, const FieldText& t
   return custom<T, read_elsewhere<T>, written_elsewhere<T>>(key, kind, text);
 }
 
-Row<Scene> detrend_row() {
-  return elsewhere<Scene>("detrend",
-                          "none, mean, line",
-                          {.meaning = "what is subtracted from each sensor and the reference: its "
-                                      "mean, or its line of least "
-                                      "squares, over the whole recording",
-                           .otherwise = "none"});
+template <auto Window>
+using HasWindow = typename fields_detail::MemberOf<decltype(Window)>::Class;
+
+template <auto Window>
+void read_window(const MapReader& at, std::string_view key, HasWindow<Window>& object) {
+  object.*Window = window_of(at, key);
+}
+template <auto Window>
+void window_written(const Field& field, const HasWindow<Window>& object, std::vector<Entry>& out) {
+  write_window(field.key, object.*Window, out);
+}
+template <auto Window>
+auto window_row(std::string_view key, const FieldText& text) {
+  return custom<HasWindow<Window>, read_window<Window>, window_written<Window>>(
+      key, "[from, to]", text);
 }
 
-Row<Scene> high_pass_hz_row() {
-  return elsewhere<Scene>(
-      "high_pass_hz",
-      "Hz",
-      {.meaning = "all sensors and the reference go through one high-pass (below)",
-       .otherwise = "none"});
+void read_high_pass(const MapReader& at, std::string_view key, Scene& scene) {
+  if (!at.has(key)) return;
+  scene.preparation.from_hz = at.number(key, kPositive);
+}
+void high_pass_written(const Field& field, const Scene& scene, std::vector<Entry>& out) {
+  const ScenePreparation& p = scene.preparation;
+  if (p.filters() && p.to_hz == 0) out.push_back({std::string(field.key), p.from_hz});
 }
 
-Row<Scene> band_hz_row() {
-  return elsewhere<Scene>(
-      "band_hz",
-      "[low, high]",
-      {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
-       .otherwise = "none"});
+void read_band(const MapReader& at, std::string_view key, Scene& scene) {
+  if (!at.has(key)) return;
+  std::tie(scene.preparation.from_hz, scene.preparation.to_hz) = at.interval(key);
+}
+void band_written(const Field& field, const Scene& scene, std::vector<Entry>& out) {
+  const ScenePreparation& p = scene.preparation;
+  if (p.to_hz > 0) out.push_back({std::string(field.key), std::vector<double>{p.from_hz, p.to_hz}});
+}
+
+void read_lag(const MapReader& at, std::string_view key, SceneReference& reference) {
+  if (!at.has(key)) return;
+  const OrEstimate said = number_or_estimate(at, key, "a number of seconds");
+  reference.lag_s = said.value;
+  reference.estimate_lag = said.estimate;
+}
+void lag_written(const Field& field, const SceneReference& reference, std::vector<Entry>& out) {
+  write_or_estimate(field.key, {reference.lag_s, reference.estimate_lag}, out);
+}
+
+void read_offset(const MapReader& at, std::string_view key, SceneReference& reference) {
+  if (!at.has(key)) return;
+  const OrEstimate said = number_or_estimate(at, key, "a number");
+  reference.offset = said.value;
+  reference.estimate_offset = said.estimate;
+}
+void offset_written(const Field& field, const SceneReference& reference, std::vector<Entry>& out) {
+  write_or_estimate(field.key, {reference.offset, reference.estimate_offset}, out);
 }
 
 Row<Scene> align_row() {
@@ -77,32 +111,47 @@ const Fields<Scene>& scene_fields() {
           "tilt",
           "map",
           {.meaning = "sensors of a tilt, atan2(x, z); then the reference is the angle (below)"}),
-      elsewhere<Scene>("learning",
-                       "[from, to]",
-                       {.meaning = "in seconds from the first sample; `[from, end]` up to the end",
-                        .otherwise = "none"}),
-      elsewhere<Scene>("evaluation",
-                       "[from, to]",
-                       {.meaning = "what is run and scored",
-                        .otherwise = "from the end of the learning window on"}),
-      elsewhere<Scene>("rest",
-                       "[from, to]",
-                       {.meaning = "the true inputs are zero there: each sensor's mean is "
-                                   "subtracted, and its noise measured"}),
-      align_row(),
-      detrend_row(),
-      high_pass_hz_row(),
-      band_hz_row(),
-      elsewhere<Scene>("fault_free_s",
-                       "s",
-                       {.meaning = "so long no sensor fails, from the start of the evaluation",
-                        .otherwise = "up to the first fault that the scene knows"}),
-      elsewhere<Scene>(
+      window_row<&Scene::learning>(
+          "learning",
+          {.meaning = "in seconds from the first sample; `[from, end]` up to the end",
+           .otherwise = "none"}),
+      window_row<&Scene::evaluation>("evaluation",
+                                     {.meaning = "what is run and scored",
+                                      .otherwise = "from the end of the learning window on"}),
+      window_row<&Scene::rest>("rest",
+                               {.meaning = "the true inputs are zero there: each sensor's mean is "
+                                           "subtracted, and its noise measured"}),
+      field<&Scene::warm_up_s>(
           "warm_up_s",
-          "s",
-          {.meaning = "so long from the start of the evaluation algorithms run, but are not "
+          {.unit = "s",
+           .range = kPositive,
+           .meaning = "so long from the start of the evaluation algorithms run, but are not "
                       "scored",
            .otherwise = "0"}),
+      field<&Scene::preparation, &ScenePreparation::detrend>(
+          "detrend",
+          {.words = kDetrendWords,
+           .meaning = "what is subtracted from each sensor and the reference: its "
+                      "mean, or its line of least "
+                      "squares, over the whole recording",
+           .otherwise = "none"}),
+      custom<Scene, read_high_pass, high_pass_written>(
+          "high_pass_hz",
+          "Hz",
+          {.meaning = "all sensors and the reference go through one high-pass (below)",
+           .otherwise = "none"}),
+      custom<Scene, read_band, band_written>(
+          "band_hz",
+          "[low, high]",
+          {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
+           .otherwise = "none"}),
+      align_row(),
+      field<&Scene::fault_free_s>(
+          "fault_free_s",
+          {.unit = "s",
+           .range = kPositive,
+           .meaning = "so long no sensor fails, from the start of the evaluation",
+           .otherwise = "up to the first fault that the scene knows"}),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
       elsewhere<Scene>(
           "simulated",
@@ -115,6 +164,20 @@ const Fields<Scene>& scene_fields() {
                        {.meaning = "names, or maps `{name: NAME, OPTION: NUMBER…}`",
                         .otherwise = "all whose needs the scene meets"}),
   };
+  return rows;
+}
+
+const Fields<Scene>& scene_time_fields() {
+  static const Fields<Scene> rows = selected(scene_fields(),
+                                             {"learning",
+                                              "evaluation",
+                                              "rest",
+                                              "warm_up_s",
+                                              "detrend",
+                                              "high_pass_hz",
+                                              "band_hz",
+                                              "fault_free_s"},
+                                             Written::when_set);
   return rows;
 }
 
@@ -173,16 +236,18 @@ const Fields<SceneReference>& reference_fields() {
           "recording",
           "path, or a map",
           {.meaning = "a log of its own, as the scene's `recording`", .otherwise = "the scene's"}),
-      elsewhere<SceneReference>(
+      custom<SceneReference, read_lag, lag_written>(
           "lag_s",
           "s, or estimate",
           {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
-      elsewhere<SceneReference>("delay", "s, or estimate", {.meaning = "another word for lag_s"}),
-      elsewhere<SceneReference>("offset",
-                                "number, or estimate",
-                                {.meaning = "the reference reads so much more than the sensors, in "
-                                            "its own unit; it is subtracted from it (below)",
-                                 .otherwise = "0"}),
+      custom<SceneReference, read_lag, written_elsewhere<SceneReference>>(
+          "delay", "s, or estimate", {.meaning = "another word for lag_s"}),
+      custom<SceneReference, read_offset, offset_written>(
+          "offset",
+          "number, or estimate",
+          {.meaning = "the reference reads so much more than the sensors, in "
+                      "its own unit; it is subtracted from it (below)",
+           .otherwise = "0"}),
   };
   return rows;
 }

@@ -13,6 +13,9 @@ namespace libchar {
 /// A whole scene: most of its keys are blocks with rows of their own.
 const Fields<Scene>& scene_fields();
 
+/// Those of them about time and about what all sensors go through alike.
+const Fields<Scene>& scene_time_fields();
+
 /// A sensor; `count` makes several devices of one model.
 const Fields<SceneSensor>& sensor_fields();
 

@@ -15,20 +15,6 @@
 namespace libchar {
 namespace {
 
-// A number, or the word for finding it out.
-void read_or_estimate(const MapReader& at,
-                      const char* key,
-                      const std::string& expected,
-                      double& value,
-                      bool& estimate) {
-  if (!at.has(key)) return;
-  const Document& node = at.require(key);
-  estimate = node.kind == Document::Kind::text && node.text == "estimate";
-  if (node.kind == Document::Kind::text && !estimate)
-    at.refuse(key, fmt::format("expected {}, or estimate", expected));
-  if (!estimate) value = at.number(key);
-}
-
 void read_options(const MapReader& at,
                   const SceneFolder& folder,
                   SceneReference& reference,
@@ -36,17 +22,11 @@ void read_options(const MapReader& at,
   for (const std::string& key : keys_of(reference_fields()))
     if (scene.simulate && key != "channels" && at.has(key))
       at.refuse(key, "a simulation knows its truth: name truth signals only");
+  if (at.has("lag_s") && at.has("delay"))
+    refuse_scene("E0735", at, "delay", "lag_s says the same", "give one of them");
   read_fields(reference_fields(), at, reference);
   if (at.has("recording"))
     reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
-  if (at.has("lag_s") && at.has("delay"))
-    refuse_scene("E0735", at, "delay", "lag_s says the same", "give one of them");
-  read_or_estimate(at,
-                   at.has("delay") ? "delay" : "lag_s",
-                   "a number of seconds",
-                   reference.lag_s,
-                   reference.estimate_lag);
-  read_or_estimate(at, "offset", "a number", reference.offset, reference.estimate_offset);
 }
 
 void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scene) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -15,29 +14,11 @@
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
 #include "libchar/scene/detail/scene_simulation.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 #include "libchar/scene/preparation_check.hpp"
 
 namespace libchar {
 namespace {
-
-// [from, to]; `end` stands for the end of the recording.
-std::optional<TimeWindow> window_of(const MapReader& top, const char* key) {
-  if (!top.has(key)) return std::nullopt;
-  const auto& ends = top.list(key);
-  TimeWindow window;
-  const auto number = [&](const Document& node) {
-    if (node.kind != Document::Kind::number)
-      refuse_scene_value("E0740", top, node, key, "expected a number");
-    return node.number;
-  };
-  if (ends.size() != 2)
-    refuse_scene("E0740", top, key, "expected [from, to] in seconds, or [from, end]");
-  window.from_s = number(ends[0]);
-  if (ends[1].text != "end") window.to_s = number(ends[1]);
-  if (window.from_s < 0 || !(window.from_s < window.to_s))
-    refuse_scene("E0740", top, key, "expected 0 <= from < to");
-  return window;
-}
 
 void check_align_terms(const MapReader& at, const SceneAlign& align) {
   for (const std::string& term : align.terms)
@@ -74,20 +55,15 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   return align;
 }
 
-// [low, high], or a high-pass alone.
-void read_preparation(const MapReader& top, Scene& scene) {
-  ScenePreparation& out = scene.preparation;
-  if (top.has("detrend"))
-    out.detrend = top.word("detrend", {std::begin(kDetrends), std::end(kDetrends)});
+void check_preparation(const MapReader& top, const Scene& scene) {
+  const ScenePreparation& p = scene.preparation;
   if (top.has("band_hz") && top.has("high_pass_hz"))
     refuse_scene(
         "E0735", top, "high_pass_hz", "band_hz has a high-pass already", "give one of them");
-  if (top.has("high_pass_hz")) out.from_hz = top.number("high_pass_hz", kPositive);
-  if (top.has("band_hz")) std::tie(out.from_hz, out.to_hz) = top.interval("band_hz");
-  const char* key = out.to_hz != 0          ? "band_hz"
-                    : out.filters()         ? "high_pass_hz"
-                    : out.detrend != "none" ? "detrend"
-                                            : "reference";
+  const char* key = p.to_hz != 0          ? "band_hz"
+                    : p.filters()         ? "high_pass_hz"
+                    : p.detrend != "none" ? "detrend"
+                                          : "reference";
   if (const std::string why = why_not_prepared(scene); !why.empty())
     refuse_scene("E0750", top, key, why);
 }
@@ -211,14 +187,10 @@ void read_scene_times(const MapReader& top,
                       const SceneFolder& folder,
                       const SensorIndex& index,
                       Scene& scene) {
-  scene.learning = window_of(top, "learning");
-  scene.evaluation = window_of(top, "evaluation");
-  scene.rest = window_of(top, "rest");
-  scene.fault_free_s = top.maybe_number("fault_free_s", kPositive);
-  scene.warm_up_s = top.maybe_number("warm_up_s", kPositive);
+  read_fields(scene_time_fields(), top, scene);
   scene.faults = faults_of(top, scene, index);
   check_cross(top, index, scene);
-  read_preparation(top, scene);
+  check_preparation(top, scene);
   if (top.has("align")) scene.align = align_of(top, scene);
   if (top.has("simulated")) scene.simulated = simulated_of(top, folder, scene, index);
 }
