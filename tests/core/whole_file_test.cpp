@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <thread>
@@ -202,17 +203,19 @@ TEST_CASE("a pipe is not opened to see whether it could be, and cannot be gone b
   char got[8] = {};
   CHECK(::read(reader, got, sizeof got) == 4);
   CHECK(std::string(got) == "1234");
-  std::thread drain([&] {
-    ::fcntl(reader, F_SETFL, 0);
-    char bytes[65536];
-    while (::read(reader, bytes, sizeof bytes) > 0) {
-    }
-  });
+  std::atomic<bool> written = false;
+  std::thread drain(
+      [&] {  // nothing to read does not mean that nothing will come: the writer may not have begun
+        char bytes[65536];
+        while (!written)
+          if (::read(reader, bytes, sizeof bytes) <= 0) std::this_thread::yield();
+      });
   {
     WholeFile large(pipe);
     large.write(std::string(1'000'000, 'x'));
     CHECK(kind_of([&] { large.rewrite(0, "1234"); }) == ErrorKind::output);
   }
+  written = true;
   drain.join();
   ::close(reader);
   CHECK(entries(folder) == 1);
