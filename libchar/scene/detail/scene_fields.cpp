@@ -96,8 +96,8 @@ const Fields<Scene>& scene_fields() {
   static const Fields<Scene> rows = {
       constant<Scene>("format", std::string("scene"), {.meaning = "scene"}),
       constant<Scene>("version", std::uint64_t{1}, {.meaning = "1"}),
-      field<&Scene::name>("name", {.meaning = "a title for reports", .otherwise = "none"}),
       tool_row<Scene>(),
+      field<&Scene::name>("name", {.meaning = "a title for reports", .otherwise = "none"}),
       elsewhere<Scene>("recording",
                        "path, or a map",
                        {.meaning = "a log, or a map that says how to read it (below)"}),
