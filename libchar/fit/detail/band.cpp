@@ -357,8 +357,11 @@ Band find_band(const std::vector<PowerBin>& bins,
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
-  const bool barely = std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.misfit;
-  if (barely && (!best || best->top_hz < rate_hz / 2 * kDeepCut)) {
+  // Filters and motion are told from chance by far less than a millionth.
+  const double chance = std::min(unshaped->band.goodness.p, unshaped->band.top.p);
+  const double left = best ? best->top_hz / (rate_hz / 2) : 0;
+  if ((chance >= options.misfit && left < kDeepCut) ||
+      (chance >= options.clear_misfit && left < kDeepest)) {
     Band band = unshaped->band;
     band.passes = true;
     return band;

@@ -32,6 +32,8 @@ struct BandOptions {
   double probability_unshaped =
       0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
   double misfit = 1e-3;  ///< from here on the whole spectrum is cut at most by two octaves
+  double clear_misfit =
+      1e-6;  ///< and from here on by three: its misfit is said, and widens the intervals
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
 };
