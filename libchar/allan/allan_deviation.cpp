@@ -18,7 +18,6 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -32,6 +31,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/thread_limit.hpp"
 
 namespace libchar {
 namespace {
@@ -252,7 +252,7 @@ AllanCurve allan_deviation(std::span<const double> record,
   const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);
   if (rate_samples(used.size()) < f.span(1)) too_short(f, curve.samples);
   const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
-  const int cores = tbb::info::default_concurrency();
+  const int cores = processors_given();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.execute([&] {
     if (curve.missing > 0 && options.data == DataKind::rate && of_window_means(f))

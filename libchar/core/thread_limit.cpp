@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -47,11 +48,16 @@ bool address_space_is_limited() {
 
 }  // namespace
 
+// The C++ library's own count is that of the machine.
+int processors_given() {
+  return std::max(1, tbb::info::default_concurrency());
+}
+
 void keep_to_threads_given() {
   const bool limited = address_space_is_limited();
   // A heap a thread takes 64 MB of addresses each, and where there are none left every allocation tries again.
   if (limited) ::mallopt(M_ARENA_MAX, 1);
-  const std::size_t wanted = std::max(1U, std::thread::hardware_concurrency()) - 1;
+  const auto wanted = static_cast<std::size_t>(processors_given() - 1);
   const std::size_t given = threads_given(wanted);
   if (given == wanted) {
     // At once, while there is room for their stacks.

@@ -1,7 +1,10 @@
 #pragma once
-// No more threads than the system gives.
+// How many threads the system gives, and no more than that.
 
 namespace libchar {
+
+/// Processors that this process may run on: those of the machine, or as many as `taskset` or a batch system leaves it.
+int processors_given();
 
 /// Tries how many threads can be made beside this one, as many as there are processors. Where there are fewer, everything in this process
 /// that works in parallel keeps to them from now on: the pool of threads underneath (oneTBB) would otherwise throw in the middle of

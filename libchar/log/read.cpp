@@ -12,10 +12,10 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <thread>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/thread_limit.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -288,7 +288,7 @@ bool read_once(const std::string& path) {
 }
 
 int threads_beside_reading(const LogInfo& log, int threads) {
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int cores = processors_given();
   const int all = threads > 0 ? std::min(threads, cores) : cores;
   return std::max(1, log.read_ahead ? all - 1 : all);
 }

@@ -14,6 +14,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/thread_limit.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
@@ -222,7 +223,8 @@ std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted
   if (s.threads == 1 || s.chains.size() == 1) {
     for (std::size_t i = 0; i < s.chains.size(); ++i) s.run_sensor(i, rows);
   } else {
-    tbb::task_arena arena(s.threads > 0 ? s.threads : tbb::task_arena::automatic);
+    tbb::task_arena arena(s.threads > 0 ? std::min(s.threads, processors_given())
+                                        : processors_given());
     arena.execute([&] {
       tbb::parallel_for(
           std::size_t{0}, s.chains.size(), [&](std::size_t i) { s.run_sensor(i, rows); });

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -18,6 +17,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/thread_limit.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/detail/welch_workspace.hpp"
@@ -169,7 +169,7 @@ void take(const Group& group, Average& average) {
 
 // Never more than the machine has: it would not be faster, and TBB would say so on stderr.
 std::uint64_t threads_of(const WelchOptions& options) {
-  const int most = tbb::info::default_concurrency();
+  const int most = processors_given();
   return static_cast<std::uint64_t>(options.threads > 0 ? std::min(options.threads, most) : most);
 }
 

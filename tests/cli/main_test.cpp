@@ -26,6 +26,26 @@ TEST_CASE("help and version go to stdout with exit code 0") {
              Contains("--time-unit") && Contains("auto|s|ms|us|ns") && Contains("default: auto"));
 }
 
+TEST_CASE("one processor: nothing but the result, and the same") {
+  const test::TemporaryFolder folder;
+  const std::string table = test::fixture("imu_at_rest.csv").string();
+  const std::string log = (folder / "log.npy").string();
+  REQUIRE(test::run({"convert", table, "-o", log}).code == 0);
+  for (const std::string verb : {"inspect", "allan", "psd", "fit"})
+    for (const std::string& file : {log, table}) {
+      INFO(verb << " " << file);
+      const auto all = test::run({verb, file});
+      const auto one =
+          test::run_words({"/bin/sh",
+                           "-c",
+                           "taskset -c $(taskset -cp $$ | sed 's/.*: //; s/[,-].*//') " +
+                               test::program() + " " + verb + " " + file});
+      CHECK(one.code == all.code);
+      CHECK(one.err == all.err);
+      CHECK(one.out == all.out);
+    }
+}
+
 TEST_CASE("closed streams: no message gets into a file that is written") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "log.csv") << "t,x\n0,1\n1,\n2,3\n2,4\n3,5\n4,6\n";

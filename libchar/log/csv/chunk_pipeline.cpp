@@ -1,12 +1,12 @@
 #include "libchar/log/csv/chunk_pipeline.hpp"
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "libchar/core/sha256_blocks.hpp"
+#include "libchar/core/thread_limit.hpp"
 
 namespace libchar::csv {
 
@@ -47,9 +47,7 @@ void ChunkPipeline::drive(int threads) {
     if (chunks_.interleaves_hash()) tbb::task_arena(1).execute([this] { run(true); });
     // TBB warns on stderr of more threads than there are cores.
     if (!stop_)
-      tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute([this] {
-        run(false);
-      });
+      tbb::task_arena(std::min(threads, processors_given())).execute([this] { run(false); });
   } catch (...) {  // no memory for a task
     failure_ = std::current_exception();
     done_.push(nullptr);

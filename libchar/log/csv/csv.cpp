@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/thread_limit.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
 #include "libchar/log/csv/dialect.hpp"
@@ -42,8 +42,8 @@ class CsvSource final : public RowSource {
     next_line_ = dialect_.first_data_line;
     info_.bytes = chunks_.size();
     info_.first_line = next_line_;
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const int threads = std::clamp(options.threads > 0 ? options.threads : cores, 1, 32);
+    const int threads =
+        std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
     const bool small =
         chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     if (threads > 1 && !small) read_ahead(threads);
