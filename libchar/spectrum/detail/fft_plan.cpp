@@ -18,7 +18,7 @@ namespace libchar::fft_plan {
 namespace {
 
 /// All lengths together: a plan's own tables take about as much as its values.
-constexpr std::size_t kMostKept = std::size_t{1} << 19U;
+constexpr std::size_t kMostKept = std::size_t{1} << 21U;
 
 struct KeptPlan {
   Kind kind{};
