@@ -90,6 +90,51 @@ Row<Scene> align_row() {
        .otherwise = "the sensors are fused as recorded"});
 }
 
+Row<Scene> warm_up_row() {
+  return field<&Scene::warm_up_s>(
+      "warm_up_s",
+      {.unit = "s",
+       .range = kPositive,
+       .meaning = "so long from the start of the evaluation algorithms run, but are not "
+                  "scored",
+       .otherwise = "0"});
+}
+
+Row<Scene> detrend_row() {
+  return field<&Scene::preparation, &ScenePreparation::detrend>(
+      "detrend",
+      {.words = kDetrendWords,
+       .meaning = "what is subtracted from each sensor and the reference: its "
+                  "mean, or its line of least "
+                  "squares, over the whole recording",
+       .otherwise = "none"});
+}
+
+Row<Scene> high_pass_row() {
+  return custom<Scene, read_high_pass, high_pass_written>(
+      "high_pass_hz",
+      "Hz",
+      {.meaning = "all sensors and the reference go through one high-pass (below)",
+       .otherwise = "none"});
+}
+
+Row<Scene> band_row() {
+  return custom<Scene, read_band, band_written>(
+      "band_hz",
+      "[low, high]",
+      {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
+       .otherwise = "none"});
+}
+
+Row<Scene> fault_free_row() {
+  return field<&Scene::fault_free_s>(
+      "fault_free_s",
+      {.unit = "s",
+       .range = kPositive,
+       .meaning = "so long no sensor fails, from the start of the evaluation",
+       .otherwise = "up to the first fault that the scene knows"});
+}
+
 }  // namespace
 
 const Fields<Scene>& scene_fields() {
@@ -121,37 +166,12 @@ const Fields<Scene>& scene_fields() {
       window_row<&Scene::rest>("rest",
                                {.meaning = "the true inputs are zero there: each sensor's mean is "
                                            "subtracted, and its noise measured"}),
-      field<&Scene::warm_up_s>(
-          "warm_up_s",
-          {.unit = "s",
-           .range = kPositive,
-           .meaning = "so long from the start of the evaluation algorithms run, but are not "
-                      "scored",
-           .otherwise = "0"}),
-      field<&Scene::preparation, &ScenePreparation::detrend>(
-          "detrend",
-          {.words = kDetrendWords,
-           .meaning = "what is subtracted from each sensor and the reference: its "
-                      "mean, or its line of least "
-                      "squares, over the whole recording",
-           .otherwise = "none"}),
-      custom<Scene, read_high_pass, high_pass_written>(
-          "high_pass_hz",
-          "Hz",
-          {.meaning = "all sensors and the reference go through one high-pass (below)",
-           .otherwise = "none"}),
-      custom<Scene, read_band, band_written>(
-          "band_hz",
-          "[low, high]",
-          {.meaning = "instead: a high-pass at the first corner and a low-pass at the second",
-           .otherwise = "none"}),
+      warm_up_row(),
+      detrend_row(),
+      high_pass_row(),
+      band_row(),
       align_row(),
-      field<&Scene::fault_free_s>(
-          "fault_free_s",
-          {.unit = "s",
-           .range = kPositive,
-           .meaning = "so long no sensor fails, from the start of the evaluation",
-           .otherwise = "up to the first fault that the scene knows"}),
+      fault_free_row(),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
       elsewhere<Scene>(
           "simulated",
