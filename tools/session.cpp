@@ -14,7 +14,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
+#include "libchar/fit/curve_table.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "reading_options.hpp"
 
 namespace sensorchar {
 namespace {
@@ -86,6 +88,18 @@ bool is_of_threads(const std::exception& error) {
          std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
+/// Where the file that cannot be read as a log is a table of a curve: the verb that reads it.
+libchar::Problem with_curve_hint(const Session& session, libchar::Problem problem) {
+  if (problem.code != "E0311" && problem.code != "E0711") return problem;
+  for (const std::string& word : session.command) {
+    if (problem.where != word && !problem.where.starts_with(word + ":")) continue;
+    if (const std::string curve = libchar::curve_in_header(word); !curve.empty())
+      problem.hint = fmt::format(
+          "this is a table of a curve: sensorchar fit {} --curve {}", shell_word(word), curve);
+  }
+  return problem;
+}
+
 int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     work_is_done();
@@ -113,7 +127,8 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
-    return fail(libchar::one_line(with_flags(error.problem())), exit_code(error.problem().kind));
+    return fail(libchar::one_line(with_flags(with_curve_hint(session, error.problem()))),
+                exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return stopped(cancelled.signal);
   } catch (const StdoutClosed&) {

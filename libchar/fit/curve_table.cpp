@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/text_table.hpp"
@@ -196,6 +197,28 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
                  "",
                  is_allan ? "`curve` psd?" : "`curve` allan?"});
   return CurveTable{std::move(curves), table->bytes, table->sha256};
+}
+
+std::string curve_in_header(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  std::optional<TextTable> table;
+  try {
+    table = read_text_table(path, kMaxBytes);
+  } catch (const Error&) {
+    return "";
+  }
+  if (!table) return "";
+  const std::vector<TextCell>& header = table->header.cells;
+  if (find(header, {"curve"}) && find(header, {"x"}) && find(header, {"value"}))
+    return "allan or psd";
+  if (find(header, {"tau_s", "tau", "averaging_time"})) {
+    const Columns c = columns_of(header, true);
+    return c.root || c.power ? "allan" : "";
+  }
+  if (!find(header, {"frequency_hz", "frequency", "freq"})) return "";
+  const Columns c = columns_of(header, false);
+  return c.root || c.power ? "psd" : "";
 }
 
 }  // namespace libchar

@@ -46,6 +46,19 @@ TEST_CASE("fit CURVE --curve allan") {
   CHECK(channel["bias_instability"]["value"].is_null());
 }
 
+TEST_CASE("a table of a curve that is read as a log is named as one") {
+  const test::TemporaryFolder folder;
+  const std::string table = (folder / "a curve.csv").string();
+  std::ofstream(table) << "channel,tau_s,adev\nx,1,2\nx,2,1.5\n";
+  for (const char* verb : {"inspect", "fit", "allan", "psd"}) {
+    const auto ran = test::run({verb, table});
+    CHECK(ran.code == 3);
+    CHECK_THAT(ran.err, Catch::Contains("sensorchar fit '" + table + "' --curve allan"));
+  }
+  std::ofstream(table) << "tau_s,adev\n1,2\n2,1.5\n4,1\n";
+  CHECK_THAT(test::run({"fit", table}).err, Catch::Contains("--curve allan"));
+}
+
 TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.csv").string();

@@ -28,6 +28,29 @@ std::string fault_of(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("a header that only a table of curves has") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "t.csv").string();
+  const auto of = [&](const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+    return curve_in_header(path);
+  };
+  CHECK(of("tau_s,adev\n1,2\n") == "allan");
+  CHECK(of("channel;Tau [s];avar\na;1;2\n") == "allan");
+  CHECK(of("frequency_hz,psd\n1,2\n") == "psd");
+  CHECK(of("curve,channel,x,value\noadev,a,1,2\n") == "allan or psd");
+  for (const char* log : {"x,value\n1,2\n",
+                          "t,frequency\n1,2\n",
+                          "frequency,temperature\n1,2\n",
+                          "tau,x\n1,2\n",
+                          "1,2\n3,4\n",
+                          "",
+                          "\x01\x02"})
+    CHECK(of(log).empty());
+  CHECK(curve_in_header((folder / "absent.csv").string()).empty());
+  CHECK(curve_in_header(folder.path().string()).empty());
+}
+
 TEST_CASE("a published table with a channel column gives one curve a channel") {
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
   const auto table =
