@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <new>
@@ -90,7 +91,11 @@ bool is_of_threads(const std::exception& error) {
 
 /// Where the file that cannot be read as a log is a table of a curve: the verb that reads it.
 libchar::Problem with_curve_hint(const Session& session, libchar::Problem problem) {
-  if (problem.code != "E0311" && problem.code != "E0711") return problem;
+  const bool of_content = problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric;
+  const bool known = std::any_of(session.command.begin(), session.command.end(), [](const auto& w) {
+    return w.starts_with("--curve");
+  });
+  if (!of_content || known) return problem;
   for (const std::string& word : session.command) {
     if (problem.where != word && !problem.where.starts_with(word + ":")) continue;
     if (const std::string curve = libchar::curve_in_header(word); !curve.empty())
