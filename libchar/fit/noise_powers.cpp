@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 
 #include "libchar/core/chi_square.hpp"
@@ -20,12 +21,13 @@ std::vector<double> mixture_powers(const Mixture& theta,
                                    double rate_hz,
                                    const std::function<double(double)>& shape) {
   const double hz_per_k = rate_hz / (2 * static_cast<double>(n * per_point));
-  return at_every_k(n, [&](double k) {
+  std::vector<std::vector<double>> all = at_every_k(n, 1, [&](double k, std::span<double> out) {
     const std::array<double, kTerms> unit = mean_unit_powers(k, n, per_point, 1 / rate_hz);
     double power = 0;
     for (std::size_t i = 0; i < kTerms; ++i) power += theta[i] * unit[i];
-    return shape ? power * shape(k * hz_per_k) : power;
+    out[0] = shape ? power * shape(k * hz_per_k) : power;
   });
+  return std::move(all[0]);
 }
 
 namespace {
@@ -46,31 +48,66 @@ double mean_of(std::span<const double> values, std::size_t from, std::size_t to)
   return sum / static_cast<double>(to - from);
 }
 
-/// Bins of a series for white noise, flicker and walk, slow ones first.
-std::vector<PowerBin> bins_of(const EventSeries& series) {
-  const std::uint64_t n = series.value.size();
-  const double rate_hz = static_cast<double>(series.per_point) / series.step_s;
-  Dct dct(n);
-  const std::span<const double> c = dct.transform(series.value).subspan(1);
-  std::array<std::vector<double>, kTerms> unit;
-  for (const Term term : {Term::white, Term::flicker, Term::walk}) {
-    Mixture one{};
-    one[static_cast<std::size_t>(term)] = 1;
-    unit[static_cast<std::size_t>(term)] = mixture_powers(one, n, series.per_point, rate_hz);
+constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk};
+
+/// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same whatever is taken out
+/// of the series.
+struct SeriesUnits {
+  std::uint64_t points = 0, per_point = 0;
+  double step_s = 0;
+  std::array<std::vector<double>, kSeriesTerms.size()> power;  ///< k = 1..n-1 at [k-1]
+  std::vector<std::size_t> edge;
+  std::vector<PowerBin> bins;  ///< without energies
+};
+
+double rate_of(const EventSeries& series) {
+  return static_cast<double>(series.per_point) / series.step_s;
+}
+
+SeriesUnits units_of(const EventSeries& series) {
+  SeriesUnits units;
+  units.points = series.value.size();
+  units.per_point = series.per_point;
+  units.step_s = series.step_s;
+  std::vector<std::vector<double>> power =
+      at_every_k(units.points, kSeriesTerms.size(), [&](double k, std::span<double> out) {
+        const auto unit = mean_unit_powers(k, units.points, series.per_point, 1 / rate_of(series));
+        for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
+          out[i] = unit[static_cast<std::size_t>(kSeriesTerms[i])];
+      });
+  std::move(power.begin(), power.end(), units.power.begin());
+  units.edge = bin_edges(units.points - 1);
+  for (std::size_t b = 0; b + 1 < units.edge.size(); ++b) {
+    PowerBin bin;
+    bin.dof = static_cast<double>(units.edge[b + 1] - units.edge[b]);
+    for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
+      bin.unit[static_cast<std::size_t>(kSeriesTerms[i])] =
+          mean_of(units.power[i], units.edge[b], units.edge[b + 1]);
+    units.bins.push_back(bin);
   }
+  return units;
+}
+
+/// Bins of a series for white noise, flicker and walk, slow ones first.
+std::vector<PowerBin> bins_of(const EventSeries& series, const SeriesUnits& units) {
+  Dct dct(units.points);
+  const std::span<const double> c = dct.transform(series.value).subspan(1);
   std::vector<double> square(c.size());
   for (std::size_t k = 0; k < c.size(); ++k) square[k] = c[k] * c[k];
-  std::vector<PowerBin> bins;
-  const std::vector<std::size_t> edge = bin_edges(c.size());
-  for (std::size_t b = 0; b + 1 < edge.size(); ++b) {
-    PowerBin bin;
-    bin.energy = mean_of(square, edge[b], edge[b + 1]);
-    bin.dof = static_cast<double>(edge[b + 1] - edge[b]);
-    for (std::size_t i = 0; i < kTerms; ++i)
-      if (!unit[i].empty()) bin.unit[i] = mean_of(unit[i], edge[b], edge[b + 1]);
-    bins.push_back(bin);
-  }
+  std::vector<PowerBin> bins = units.bins;
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    bins[b].energy = mean_of(square, units.edge[b], units.edge[b + 1]);
   return bins;
+}
+
+std::vector<double> powers_of(const Mixture& theta, const SeriesUnits& units) {
+  std::vector<double> power(units.points - 1);
+  const auto& [white, flicker, walk] = units.power;
+  for (std::size_t k = 0; k < power.size(); ++k)
+    power[k] = theta[static_cast<std::size_t>(Term::white)] * white[k] +
+               theta[static_cast<std::size_t>(Term::flicker)] * flicker[k] +
+               theta[static_cast<std::size_t>(Term::walk)] * walk[k];
+  return power;
 }
 
 /// Does the mixture describe the bins?
@@ -90,19 +127,20 @@ bool describes(const std::vector<PowerBin>& bins, const Mixture& theta) {
 
 // From the slow end up: a filter's slope at the top has ten thousand coefficients and would bend the slow noise to its own use.
 NoisePowers fitted_powers() {
-  return [](const EventSeries& series) {
+  const auto kept = std::make_shared<SeriesUnits>();
+  return [kept](const EventSeries& series) {
     constexpr std::size_t kFewestBins = 32, kHalfOctave = 4;
-    std::vector<PowerBin> bins = bins_of(series);
+    if (kept->points != series.value.size() || kept->per_point != series.per_point ||
+        kept->step_s != series.step_s)
+      *kept = units_of(series);
+    std::vector<PowerBin> bins = bins_of(series, *kept);
     const TermSet terms = {true, true, true, false, false};
     ScoringResult fit = score(bin_problem(bins), terms);
     while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.at.theta)) {
       bins.resize(bins.size() - kHalfOctave);
       fit = score(bin_problem(bins), terms);
     }
-    return mixture_powers(fit.at.theta,
-                          series.value.size(),
-                          series.per_point,
-                          static_cast<double>(series.per_point) / series.step_s);
+    return powers_of(fit.at.theta, *kept);
   };
 }
 

@@ -69,11 +69,16 @@ std::vector<double> step_information(std::span<const double> weight,
 void subtract_shared(const Regression& beside,
                      const std::vector<std::vector<double>>& cross,
                      std::vector<double>& information) {
-  const auto count = static_cast<Eigen::Index>(cross.size());
-  Eigen::VectorXd at(count);
+  std::vector<double> shared(information.size(), 0.0);
+  for (std::size_t i = 0; i < cross.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double times = (i == j ? 1 : 2) * beside.covariance(static_cast<Eigen::Index>(i),
+                                                                static_cast<Eigen::Index>(j));
+      for (std::size_t t = 0; t < shared.size(); ++t)
+        shared[t] += times * cross[i][t] * cross[j][t];
+    }
   for (std::size_t t = 0; t < information.size(); ++t) {
-    for (Eigen::Index i = 0; i < count; ++i) at(i) = cross[static_cast<std::size_t>(i)][t];
-    const double left = information[t] - at.dot(beside.covariance * at);
+    const double left = information[t] - shared[t];
     information[t] = left > 0.01 * information[t] ? left : 0;
   }
 }
