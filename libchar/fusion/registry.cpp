@@ -1,10 +1,13 @@
 #include "libchar/fusion/registry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/spelling.hpp"
+#include "libchar/fusion/detail/watched_runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar_algorithms.hpp"  // every header of algorithms/, found by CMake
 
@@ -17,25 +20,63 @@
 namespace libchar::fusion {
 namespace {
 
+/// Estimates with weights that go on without a missing sample, and look for no faults themselves.
+template <Algorithm A>
+constexpr bool kWatchable =
+    A::description.needs.accepts_missing&& HasWeights<A> && !HasFaults<A> &&
+    !A::description.needs.reference_throughout && !A::description.needs.tilt;
+
+template <std::size_t n, std::size_t m>
+constexpr std::array<Option, n + m> joined(const std::array<Option, n>& a,
+                                           const std::array<Option, m>& b) {
+  std::array<Option, n + m> out{};
+  std::copy(a.begin(), a.end(), out.begin());
+  std::copy(b.begin(), b.end(), out.begin() + n);
+  return out;
+}
+
+template <Algorithm A>
+constexpr auto own_options() {
+  if constexpr (HasOptions<A>)
+    return A::options;
+  else
+    return std::array<Option, 0>{};
+}
+
+template <Algorithm A>
+constexpr auto all_options() {
+  if constexpr (kWatchable<A>)
+    return joined(own_options<A>(), kWatchOptions);
+  else
+    return own_options<A>();
+}
+
+template <Algorithm A>
+constexpr auto kOptions = all_options<A>();
+
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
   if (std::string sentence = why_not(A::description, array); !sentence.empty())
     throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
-  return std::make_unique<RunnerOf<A>>(array, settings);
+  auto runner = std::make_unique<RunnerOf<A>>(array, settings);
+  if constexpr (kWatchable<A>)
+    if (settings["fault_detection"] == 1)
+      return std::make_unique<WatchedRunner>(array, settings, std::move(runner));
+  return runner;
 }
 
 template <Algorithm A>
 double cost_ns(const Array& array, const Settings& settings) {
-  if constexpr (HasCost<A>) return A::cost_ns(array, settings);
-  return 10.0 * static_cast<double>(array.channels * array.inputs());
+  double cost = 10.0 * static_cast<double>(array.channels * array.inputs());
+  if constexpr (HasCost<A>) cost = A::cost_ns(array, settings);
+  if constexpr (kWatchable<A>)
+    if (settings["fault_detection"] == 1) cost += 40.0 * static_cast<double>(array.channels);
+  return cost;
 }
 
 template <Algorithm A>
 constexpr Entry entry() {
-  if constexpr (HasOptions<A>)
-    return {&A::description, A::options, &make<A>, &cost_ns<A>};
-  else
-    return {&A::description, {}, &make<A>, &cost_ns<A>};
+  return {&A::description, kOptions<A>, own_options<A>().size(), &make<A>, &cost_ns<A>};
 }
 
 // The order of reports: baselines, blind methods, methods that learn from a reference, bounds.

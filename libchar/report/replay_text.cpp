@@ -73,20 +73,37 @@ std::string replay_text(const ReplayView& view) {
   return text;
 }
 
+namespace {
+
+std::string option_text(const fusion::Option& option) {
+  return fmt::format("{:<28}   {} = {}{}  {}\n",
+                     "",
+                     option.name,
+                     significant(option.standard, 6),
+                     option.unit.empty() ? "" : " " + std::string(option.unit),
+                     option.meaning);
+}
+
+}  // namespace
+
 std::string algorithms_text() {
   std::string text;
+  std::vector<std::string_view> watched;
+  std::span<const fusion::Option> watching;
   for (const fusion::Entry& entry : fusion::algorithms()) {
+    if (entry.own_options < entry.options.size()) {
+      watched.push_back(entry.description->name);
+      watching = entry.options.subspan(entry.own_options);
+    }
     text += fmt::format("{:<28} {}\n", entry.description->name, entry.description->title);
     for (const std::string& need : needs_in_words(*entry.description))
       text += fmt::format("{:<28}   needs {}\n", "", need);
-    for (const fusion::Option& option : entry.options)
-      text += fmt::format("{:<28}   {} = {}{}  {}\n",
-                          "",
-                          option.name,
-                          significant(option.standard, 6),
-                          option.unit.empty() ? "" : " " + std::string(option.unit),
-                          option.meaning);
+    for (const fusion::Option& option : entry.options.first(entry.own_options))
+      text += option_text(option);
   }
+  if (watched.empty()) return text;
+  text += fmt::format("\nBeside them {} have\n", fmt::join(watched, ", "));
+  for (const fusion::Option& option : watching) text += option_text(option);
   return text;
 }
 

@@ -56,6 +56,8 @@ class FaultDetector {
   void step(const double* y);
   bool out(std::size_t i) const { return out_[i] != Out::no; }
   int count_out() const { return count_out_; }
+  /// Its variance over what it was, where it has become noisy; else 0.
+  double noisy(std::size_t i) const { return noisy_[i]; }
   /// The last step has let a sensor in, taken it out or re-weighted it.
   bool set_changed() const { return set_changed_; }
   std::span<const VarianceChange> changes() const { return changes_; }
