@@ -102,7 +102,7 @@ std::string algorithms_text() {
       text += option_text(option);
   }
   if (watched.empty()) return text;
-  text += fmt::format("\nBeside them {} have\n", fmt::join(watched, ", "));
+  text += fmt::format("\n  beside their own options {} have\n", fmt::join(watched, ", "));
   for (const fusion::Option& option : watching) text += option_text(option);
   return text;
 }
