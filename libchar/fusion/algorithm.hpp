@@ -22,6 +22,9 @@
 //   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
 //   void remarks(Warnings&) const;        what the reader of the result must know
+//   static bool looks_ahead(const Settings&);   and   void look(const Sample& y);
+//       true: it is shown all instants of the run before the first step, then finish_learning, then the
+//       steps of the same instants
 //   static double cost_ns(const Array&, const Settings&);
 //       of a step, nanoseconds of a core of 3 GHz, by one figure of precision: what scores would
 //       cost is counted with it, never measured. Without it 10 a channel and input.
@@ -159,6 +162,12 @@ concept HasFaults = requires(const A a) {
 template <class A>
 concept HasRemarks = requires(const A a, Warnings& warnings) {
   a.remarks(warnings);
+};
+
+template <class A>
+concept LooksAhead = requires(A a, const Sample& y, const Settings& settings) {
+  { A::looks_ahead(settings) } -> std::same_as<bool>;
+  a.look(y);
 };
 
 template <class A>

@@ -75,8 +75,19 @@ double cost_ns(const Array& array, const Settings& settings) {
 }
 
 template <Algorithm A>
+bool looks_ahead([[maybe_unused]] const Settings& settings) {
+  if constexpr (LooksAhead<A>) return A::looks_ahead(settings);
+  return false;
+}
+
+template <Algorithm A>
 constexpr Entry entry() {
-  return {&A::description, kOptions<A>, own_options<A>().size(), &make<A>, &cost_ns<A>};
+  return {&A::description,
+          kOptions<A>,
+          own_options<A>().size(),
+          &make<A>,
+          &cost_ns<A>,
+          &looks_ahead<A>};
 }
 
 // The order of reports: baselines, blind methods, methods that learn from a reference, bounds.

@@ -18,6 +18,8 @@ struct Entry {
   std::unique_ptr<Runner> (*make)(const Array&, const Settings&);
   /// Of a step, as declared: nanoseconds of a core of 3 GHz.
   double (*cost_ns)(const Array&, const Settings&);
+  /// It wants to `look` at the whole run before its first step.
+  bool (*looks_ahead)(const Settings&);
 };
 
 std::span<const Entry> algorithms();

@@ -24,6 +24,8 @@ class Runner {
   /// Consecutive instants of the learning window with the true inputs (r rows). Instants whose
   /// truth is NaN carry nothing to learn, but their time has passed: leave none out.
   virtual void learn(const Block& samples, const Block& truth) = 0;
+  /// Consecutive instants of the run itself, for those that look ahead, before `finish_learning`.
+  virtual void look(const Block& samples) = 0;
   virtual void finish_learning() = 0;
   /// Hands out or takes in what was learnt; false: there is no way to. What learns nothing hands out
   /// nothing. Throws Error(input) when what is taken in does not fit.
@@ -80,6 +82,12 @@ class RunnerOf final : public Runner {
           algorithm_.skip(y);
       }
     }
+  }
+
+  void look([[maybe_unused]] const Block& samples) override {
+    if constexpr (LooksAhead<A>)
+      for (Eigen::Index k = 0; k < samples.cols(); ++k)
+        algorithm_.look(Sample(samples.data() + k * samples.outerStride(), samples.rows()));
   }
 
   void finish_learning() override {

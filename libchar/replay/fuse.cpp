@@ -16,6 +16,7 @@
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/detail/instants.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
+#include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/step_noise.hpp"
 
 namespace libchar {
@@ -128,9 +129,11 @@ class Fusing {
   void describe_scene();
   void prepare_instants();
   void make_runner();
+  void look_ahead();
   double fault_free_s() const;
   void check_rate();
   LogInfo columns() const;
+  std::size_t block() const { return options_.block > 0 ? options_.block : kFusedBlock; }
   void take(const Eigen::MatrixXd& samples, FusedSink& sink);
   const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
   void note_faults(std::int64_t end);
@@ -387,6 +390,23 @@ void Fusing::make_runner() {
   result_.watches_faults = runner_->faults() != nullptr;
 }
 
+// A smoother sees the whole log before its first estimate.
+void Fusing::look_ahead() {
+  fusion::Settings settings(entry_->options);
+  for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
+  if (!entry_->looks_ahead(settings)) return;
+  PassProgress passing(progress_, "looking ahead");
+  instants_->pass(
+      0,
+      instants_->info().count,
+      block(),
+      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
+        runner_->look(given(samples));
+      },
+      passing);
+  runner_->finish_learning();
+}
+
 // What is known of the log that was learnt from is not known of another one.
 double Fusing::fault_free_s() const {
   if (options_.fault_free_s) return *options_.fault_free_s;
@@ -543,16 +563,13 @@ FuseResult Fusing::run(FusedSink& sink) {
   result_.inputs = learnt_.inputs;
   out_.resize(2 * learnt_.inputs.size() + learnt_.sensors.size());
   begin_check();
+  look_ahead();
   sink.begin(columns());
-  struct Named final : Progress {
-    explicit Named(Progress& to) : next(to) {}
-    void update(double fraction, std::string_view) override { next.update(fraction, "fusing"); }
-    Progress& next;
-  } named(progress_);
+  PassProgress named(progress_, "fusing");
   instants_->pass(
       0,
       info.count,
-      options_.block > 0 ? options_.block : kFusedBlock,
+      block(),
       [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
         take(samples, sink);
       },

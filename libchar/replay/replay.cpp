@@ -1,5 +1,5 @@
 // The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
-// learns in the learning window, one in which the bounds learn on the evaluation, one that runs
+// learns in the learning window, one in which the bounds learn on the evaluation and smoothers look at it, one that runs
 // everything on it block by block, algorithm after algorithm, so that all see the same machine.
 
 #include "libchar/replay/replay.hpp"
@@ -21,6 +21,7 @@
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/partial_scores.hpp"
+#include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 #include "libchar/replay/detail/run_tracks.hpp"
@@ -33,14 +34,6 @@ namespace {
 
 constexpr std::size_t kLearningBlock = 4096;
 constexpr double kWindowShare = 0.02;
-
-// Says which pass it is; the source knows how far it is.
-struct PassProgress final : Progress {
-  PassProgress(Progress& to, std::string name) : next(to), what(std::move(name)) {}
-  void update(double fraction, std::string_view) override { next.update(fraction, what); }
-  Progress& next;
-  std::string what;
-};
 
 struct SensorMeter {
   ErrorMeter error;
@@ -78,9 +71,11 @@ class Replay {
     if (scene_.align) align();
     prepare();
     if (plan_.learning_pass) learn_before_run();
-    if (plan_.run_learning_pass) learn_on_run();
+    if (plan_.run_learning_pass || plan_.looking_pass) learn_on_run();
     for (AlgorithmRun& run : runs_) run.finish_learning();
     for (AlgorithmRun& run : optimum_) run.finish_learning();
+    for (const auto& blind : blind_)
+      if (blind) blind->finish_looking();
     note_learnt();
     run_all();
     ReplayResult result = collect();
@@ -196,7 +191,8 @@ class Replay {
   }
 
   void learn_on_run() {
-    PassProgress passing(progress_, "learning the bounds");
+    PassProgress passing(progress_,
+                         plan_.run_learning_pass ? "learning the bounds" : "looking ahead");
     ++passes_;
     instants_.pass(
         plan_.run_from,
@@ -205,6 +201,11 @@ class Replay {
         [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
           for (AlgorithmRun& run : runs_)
             if (run.planned().learns_run()) run.learn(samples, truth);
+          for (AlgorithmRun& run : runs_)
+            if (run.planned().looks_ahead()) run.look(samples);
+          for (const auto& blind : blind_)
+            if (blind && blind->looks_ahead()) blind->look(first - plan_.run_from, samples);
+          if (!plan_.run_learning_pass) return;
           const Eigen::MatrixXd& healthy = without_faults(first, samples);
           for (AlgorithmRun& run : optimum_) run.learn(healthy, truth);
         },

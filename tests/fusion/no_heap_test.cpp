@@ -31,6 +31,7 @@ long trips_of(const Entry& entry, const Settings& settings, const test::FusionSc
   auto runner = entry.make(scene.array, settings);
   try {
     runner->learn(scene.y, scene.truth);
+    if (entry.looks_ahead(settings)) runner->look(scene.y);
     runner->finish_learning();
   } catch (const Error&) {
     return -1;

@@ -14,90 +14,19 @@
 // noise behind two poles at input_corner_hz, x'' + 2 w x' + w^2 x = noise, of that deviation about zero;
 // sampled it is an AR(2) process. Then nothing is projected out: the ordinary filter of [x, x'/w, b].
 //
+// With smoothed=1 the estimates are those of all samples of the run, before and after (bias_smoother.hpp).
+//
 // White noise weighs by 1/Q^2 within an instant, drift by its own share over minutes: sensors with
 // little white noise and much drift, and others the other way round, come to what no fixed weights give.
 
 #include <array>
 #include <memory>
-#include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/bias_states.hpp"
+#include "libchar/fusion/detail/bias_filter.hpp"
+#include "libchar/fusion/detail/bias_smoother.hpp"
 
 namespace libchar::fusion {
-
-/// Gains for one set of channels, from one prediction covariance.
-struct BiasGain {
-  std::vector<char> present;       ///< of each channel
-  Eigen::MatrixXd weights;         ///< W, r x n; zero for absent channels
-  Eigen::MatrixXd gain;            ///< of the states, s x n
-  Eigen::VectorXd input_variance;  ///< r
-  bool determined = false;         ///< these channels determine the inputs
-};
-
-/// What is assumed of the inputs; nothing: deviation 0.
-struct InputModel {
-  double deviation = 0;  ///< U, about zero
-  double corner_hz = 1;  ///< of both poles
-};
-
-/// The filter without options and names; everything is allocated when it is made.
-class BiasFilter {
- public:
-  BiasFilter(const Array& array,
-             double slowest_s,
-             Eigen::Index most_states,
-             const InputModel& input = {});
-  Estimate step(const Sample& y);
-  /// n x r, of the samples of the last instant.
-  Eigen::MatrixXd weights() const;
-  /// Steady state of the prediction covariance of the states, and of the inputs' variances.
-  const Eigen::MatrixXd& steady_covariance() const { return steady_; }
-  Eigen::VectorXd steady_variance() const { return input_variance_of_steady_; }
-  const BiasStates& states() const { return states_; }
-
- private:
-  struct Renewal {
-    double instant;
-    Eigen::MatrixXd cross;  // P C', s x n
-    Eigen::VectorXd input;  // variances of the inputs before the samples, where they are states
-  };
-  void add_inputs(const InputModel& input, double rate_hz);
-  void note(double instant, const Eigen::MatrixXd& p);
-  void schedule();
-  void renew(const Renewal& renewal);
-  void factor(BiasGain& out);
-  void decompose();
-  void forward();
-  void backward();
-  bool invert_information();
-  const BiasGain& gain_for(const Sample& y);
-
-  Eigen::Index state_of_input(Eigen::Index j) const { return states_.size() + 2 * j; }
-  void propagate();
-
-  Eigen::MatrixXd h_;
-  bool common_;    // one input, seen alike by all
-  bool modelled_;  // inputs are states too
-  BiasStates states_;
-  Eigen::MatrixXd seen_;  // C, n x s, inputs that are states behind the biases
-  Eigen::MatrixXd transition_, drive_, start_;  // of all states
-  Eigen::VectorXd white_;
-  Eigen::MatrixXd steady_;
-  Eigen::VectorXd input_variance_of_steady_;
-  std::vector<Renewal> renewals_;
-  std::size_t next_ = 0;
-  const Renewal* renewal_ = nullptr;
-  // Gains of the sets of channels seen last; the first is that of all channels.
-  std::vector<BiasGain> gains_;
-  std::size_t oldest_ = 1;
-  const BiasGain* now_;
-  // Room for `factor` and `step`.
-  Eigen::MatrixXd lower_, whitened_, square_, inverse_;
-  Eigen::VectorXd residual_, column_, bias_, fitted_;
-  std::vector<Eigen::Index> used_;
-  double instant_ = 0;
-};
 
 struct VirtualSensor {
   static constexpr Description description{
@@ -125,14 +54,33 @@ struct VirtualSensor {
              1,
              1e-9,
              1e9,
-             "of that model: double pole of the input's spectrum"}};
+             "of that model: double pole of the input's spectrum"},
+      Option{"smoothed",
+             "",
+             0,
+             0,
+             1,
+             "1: each estimate from the whole run, what comes after it as well (a smoother, for "
+             "logs); "
+             "0: from what came before (a filter)",
+             true},
+      Option{"most_mb", "MB", 1000, 1, 1e9, "of the run that the smoother keeps; more is refused"}};
   VirtualSensor(const Array& array, const Settings& settings);
-  Estimate step(const Sample& y) { return filter_->step(y); }
-  Eigen::MatrixXd weights() const { return filter_->weights(); }
+  static double cost_ns(const Array& array, const Settings& settings) {
+    return (looks_ahead(settings) ? 40.0 : 10.0) *
+           static_cast<double>(array.channels * array.inputs());
+  }
+  static bool looks_ahead(const Settings& settings) { return settings["smoothed"] == 1; }
+  void look(const Sample& y) { smoother_->look(y); }
+  void finish_learning();
+  Estimate step(const Sample& y) { return smoother_ ? smoother_->step() : filter_->step(y); }
+  Eigen::MatrixXd weights() const { return filter().weights(); }
   void remarks(Warnings& warnings) const;
 
  private:
-  std::unique_ptr<BiasFilter> filter_;  // holds pointers into itself
+  const BiasFilter& filter() const { return smoother_ ? smoother_->filter() : *filter_; }
+  std::unique_ptr<BiasFilter> filter_;      // holds pointers into itself
+  std::unique_ptr<BiasSmoother> smoother_;  // has the filter where there is one
 };
 
 }  // namespace libchar::fusion

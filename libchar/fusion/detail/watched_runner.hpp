@@ -43,6 +43,7 @@ class WatchedRunner final : public Runner {
 
   const Description& description() const override { return watched_->description(); }
   void learn(const Block& samples, const Block& truth) override { watched_->learn(samples, truth); }
+  void look(const Block& samples) override;
   void finish_learning() override { watched_->finish_learning(); }
   bool exchange(LearntExchange& with) override { return watched_->exchange(with); }
   void run(const Block& samples, BlockOut x, BlockOut variance) override;
@@ -52,10 +53,14 @@ class WatchedRunner final : public Runner {
   void remarks(Warnings& warnings) const override;
 
  private:
-  void leave_out(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> used);
+  /// What is left of a block of samples, at most `kWatchedAtOnce` instants.
+  void leave_out(FaultDetector& detector, const Block& samples);
 
+  Array array_;
+  FaultDetectorOptions options_;
   std::unique_ptr<Runner> watched_;
   std::optional<FaultDetector> detector_;  // none: too few sensors to tell which of them fails
+  std::optional<FaultDetector> ahead_;     // of the run while it is looked at
   FaultLog none_;
   Eigen::MatrixXd used_;
 };

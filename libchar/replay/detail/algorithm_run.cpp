@@ -110,9 +110,24 @@ void AlgorithmRun::learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& 
   });
 }
 
+void AlgorithmRun::look(const Eigen::MatrixXd& samples) {
+  if (!alive()) return;
+  looked_ += static_cast<std::uint64_t>(samples.cols());
+  const double before = learning_s_;
+  guarded([&] {
+    if (some_left_out())
+      runner_->look(samples(*frame_->live, Eigen::all).eval());
+    else
+      runner_->look(samples);
+  });
+  ahead_s_ += learning_s_ - before;
+}
+
 void AlgorithmRun::finish_learning() {
   if (!alive()) return;
+  const double before = learning_s_;
   guarded([&] { runner_->finish_learning(); });
+  if (looked_ > 0) ahead_s_ += learning_s_ - before;
 }
 
 LearntAlgorithm AlgorithmRun::hand_out() const {
@@ -184,7 +199,8 @@ void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
 
 double AlgorithmRun::median_ns() const {
   std::vector<double> blocks = ns_;
-  return median_in_place(blocks, Middle::upper);
+  const double median = median_in_place(blocks, Middle::upper);
+  return looked_ > 0 ? median + 1e9 * ahead_s_ / static_cast<double>(looked_) : median;
 }
 
 void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip) {
@@ -282,7 +298,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
   }
   out.availability = scored_ > 0 ? available_ / scored_ : 0;
   out.ns_per_sample = median_ns();
-  out.learning_s = learning_s_;
+  out.learning_s = learning_s_ - ahead_s_;
   if (frame_->heap != nullptr)
     out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));
   out.weights = weights();

@@ -42,6 +42,8 @@ class AlgorithmRun {
   bool alive() const { return runner_ != nullptr; }
 
   void learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth);
+  /// The run itself, for those that look ahead.
+  void look(const Eigen::MatrixXd& samples);
   void finish_learning();
   /// What it learnt, for the file that applies it.
   LearntAlgorithm hand_out() const;
@@ -58,7 +60,8 @@ class AlgorithmRun {
   bool timed_enough() const {
     return !alive() || ns_.size() >= kLeastTimed || timed_s_ >= kEnoughTimed_s;
   }
-  double median_ns() const;  ///< of an instant; NaN before the first block
+  /// Of an instant, what was done beforehand on the run itself counted in; NaN before the first block.
+  double median_ns() const;
   /// Everything that is known without the others: scores, tracks, faults, cost.
   AlgorithmResult result(const ScoreOptions& options, double window_s) const;
   /// Weights of one input at the end of each block.
@@ -93,6 +96,8 @@ class AlgorithmRun {
   std::vector<double> ns_;
   std::size_t blocks_ = 0, stride_ = 1;  // one block of so many is noted
   double timed_s_ = 0;
+  double ahead_s_ = 0;  // of looking at the run, for all its instants
+  std::uint64_t looked_ = 0;
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
   double learning_s_ = 0, available_ = 0, scored_ = 0;

@@ -44,7 +44,7 @@ BlindRun::Part BlindRun::part(const std::vector<Eigen::Index>& channels) const {
     return out;
   try {
     out.runner = planned_->entry->make(array, planned_->settings);
-    out.runner->finish_learning();
+    if (!looks_ahead()) out.runner->finish_learning();
   } catch (const Error&) {
     out.runner.reset();  // an option that does not fit fewer channels: no score of this part
   }
@@ -68,6 +68,37 @@ void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
     add(stretch.from, stretch.to, run_);
     add(stretch.scored_from, stretch.to, scored_);
   }
+}
+
+bool BlindRun::looks_ahead() const {
+  return planned_->looks_ahead();
+}
+
+void BlindRun::look(std::int64_t first, const Eigen::MatrixXd& samples) {
+  find_columns(first, samples.cols());
+  for_each_part([&](Part& part) {
+    for (const Columns& columns : run_) {
+      part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::all);
+      part.runner->look(part_);
+    }
+  });
+}
+
+void BlindRun::finish_looking() {
+  if (looks_ahead()) for_each_part([](Part& part) { part.runner->finish_learning(); });
+}
+
+template <class Work>
+void BlindRun::for_each_part(const Work& work) {
+  for (std::vector<Part>* parts : {&others_, &halves_})
+    for (Part& part : *parts) {
+      if (!part.runner) continue;
+      try {
+        work(part);
+      } catch (const Error&) {
+        part.runner.reset();
+      }
+    }
 }
 
 bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd& x) {

@@ -21,6 +21,10 @@ class BlindRun {
   BlindRun(const PlannedAlgorithm& planned,
            const fusion::Array& array,
            const std::vector<Eigen::Index>& live);
+  /// Where the method looks at the run before it estimates: a block of it, then the end.
+  void look(std::int64_t first, const Eigen::MatrixXd& samples);
+  void finish_looking();
+  bool looks_ahead() const;
   /// The next block, from instant `first` of the run on; its first `skip` instants are not scored.
   void run(std::int64_t first, const Eigen::MatrixXd& samples, Eigen::Index skip);
   BlindScore result(double rate_hz, const ScoreOptions& options) const;
@@ -38,6 +42,8 @@ class BlindRun {
   };
   Part part(const std::vector<Eigen::Index>& channels) const;
   void find_columns(std::int64_t first, Eigen::Index count);
+  template <class Work>
+  void for_each_part(const Work& work);
   bool step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd& x);
   void score_others(const Eigen::MatrixXd& samples, Eigen::Index skip);
   void score_halves(const Eigen::MatrixXd& samples, Eigen::Index skip);

@@ -1,6 +1,7 @@
 #include "libchar/replay/detail/blind_share.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "libchar/fusion/why_not.hpp"
 #include "libchar/replay/detail/plan.hpp"
@@ -12,6 +13,7 @@ namespace {
 constexpr std::int64_t kBlindStretches = 16;
 /// Of a stretch, at least, is run and not scored.
 constexpr double kLeadIn = 0.25;
+constexpr double kMostKept = 1e9;  // bytes
 
 /// Nanoseconds an instant of leave-one-out and both halves.
 double cost_of_all(const fusion::Entry& entry,
@@ -41,13 +43,20 @@ BlindShare blind_share(const fusion::Entry& entry,
   BlindShare out;
   const double an_instant_s = 1e-9 * cost_of_all(entry, settings, array);
   out.cost_s = an_instant_s * static_cast<double>(run);
-  if (!(out.cost_s > budget_s)) return out;
+  // What looks ahead keeps the run of every part at the same time.
+  const auto n = static_cast<double>(array.channels);
+  const double most =
+      entry.looks_ahead(settings)
+          ? kMostKept / (8 * n * static_cast<double>(std::min(array.channels, kMostLeftOut) + 1))
+          : std::numeric_limits<double>::infinity();
+  const double affordable = std::min(budget_s / an_instant_s, most);
+  if (!(static_cast<double>(run) > affordable)) return out;
   out.whole = false;
   out.share = 0;
   const auto cell = static_cast<std::int64_t>(
       ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
   const std::int64_t cells = (run - warm_up) / cell;
-  const auto length = static_cast<std::int64_t>(budget_s / an_instant_s / kBlindStretches);
+  const auto length = static_cast<std::int64_t>(affordable / kBlindStretches);
   const auto scored = static_cast<std::int64_t>((1 - kLeadIn) * static_cast<double>(length)) / cell;
   if (scored == 0) return out;
   // Whole cells: where a meter has samples, another has them at the same instants.

@@ -367,6 +367,7 @@ ReplayPlan make_plan(const Scene& scene,
                        (options.no_skip && plan.learn_to > plan.learn_from);
   plan.run_learning_pass =
       !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
+  plan.looking_pass = any([](const auto& a) { return a.looks_ahead(); });
   plan.without_reference = (!instants.info().has_reference || options.no_skip) && !scene.tilt;
   if (plan.without_reference) keep_budget(options, live, plan);
   if (!any([](const auto&) { return true; }))

@@ -23,6 +23,7 @@ struct PlannedAlgorithm {
   bool runs() const { return why.empty(); }
   bool learns_before() const { return entry->description->needs.reference; }
   bool learns_run() const { return entry->description->needs.reference_throughout; }
+  bool looks_ahead() const { return entry->looks_ahead(settings); }
 };
 
 struct ReplayPlan {
@@ -35,6 +36,7 @@ struct ReplayPlan {
   std::size_t block = 0;
   bool learning_pass = false;      ///< some algorithm learns in the learning window
   bool run_learning_pass = false;  ///< some bound learns on the run itself
+  bool looking_pass = false;       ///< some algorithm looks at the run before it estimates
   bool without_reference = false;  ///< leave-one-out and split arrays
   std::vector<PlannedAlgorithm> algorithms;
   std::vector<PlannedAlgorithm> optimum;  ///< bounds that tell the optimum of the scene

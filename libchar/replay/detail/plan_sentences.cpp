@@ -139,6 +139,9 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
         "no sensor fails in the first {} of it",
         seconds(static_cast<double>(plan.array.fault_free_samples) / instants.info().rate_hz)));
   if (const std::string text = optimum(plan); !text.empty()) out.push_back(text);
+  if (plan.looking_pass)
+    out.push_back("looks at the whole evaluation before it estimates: " +
+                  names_of(plan.algorithms, [](const auto& a) { return a.looks_ahead(); }));
   out.push_back("runs " + names_of(plan.algorithms, [](const auto&) { return true; }));
   for (const PlannedAlgorithm& a : plan.algorithms)
     if (a.asked && a.runs() && !a.blind.whole && !scene.reference)
