@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 
+#include "libchar/core/error.hpp"
 #include "libchar/replay/detail/resampled.hpp"
 #include "libchar/replay/detail/rest.hpp"
 #include "tests/replay/scene_text.hpp"
@@ -49,6 +51,31 @@ std::string numbered(std::size_t rows, double rate_hz) {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "instants: a short text is parsed once, a longer one and other logs again for each pass") {
+  const test::SceneBench bench;
+  const auto without_its_file = [&](std::size_t rows) {
+    bench.put("log.csv", numbered(rows, 10));
+    const Scene scene = bench.read(
+        kHead + "recording: log.csv\nsensors: [{name: a, scale: -0.5}, b]\nreference: x\n");
+    const Instants instants(scene, no_progress());
+    const auto count = instants.info().count;
+    const Columns before = all_of(instants, 0, count, 1000);
+    std::filesystem::remove(bench.path("log.csv"));
+    CHECK(instants.source().info().kept == (rows <= 1'398'101));  // 2^22 numbers in three columns
+    if (!instants.source().info().kept) {
+      CHECK_THROWS_AS(all_of(instants, 0, count, 1000), Error);
+      return;
+    }
+    const Columns after = all_of(instants, 0, count, 77);
+    CHECK(after.samples == before.samples);
+    CHECK(after.truth == before.truth);
+    CHECK(all_of(instants, 100, 200, 64).samples == before.samples.middleCols(100, 100));
+  };
+  without_its_file(20'000);
+  without_its_file(1'398'102);
+}
 
 TEST_CASE("instants: columns of the recording in blocks of the size that was asked for") {
   const test::SceneBench bench;

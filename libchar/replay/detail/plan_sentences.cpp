@@ -31,12 +31,13 @@ std::string reading(const Scene& scene, const Instants& instants) {
                        source.samples,
                        significant(source.rate_hz, 6),
                        scene.simulate->seed);
-  return fmt::format("reads {} channel{} of {}: {} samples at {} Hz, again for each pass",
+  return fmt::format("reads {} channel{} of {}: {} samples at {} Hz, {}",
                      source.units.size() + source.reference_units.size(),
                      source.units.size() + source.reference_units.size() == 1 ? "" : "s",
                      source.logs[0].file,
                      source.samples,
-                     significant(source.rate_hz, 6));
+                     significant(source.rate_hz, 6),
+                     source.kept ? "once, and keeps them" : "again for each pass");
 }
 
 std::string reference(const Scene& scene, const Instants& instants) {

@@ -13,7 +13,9 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kSimulatedRows = 4096;
+constexpr std::size_t kSimulatedRows = 4096, kKeptRows = 4096;
+/// Of samples of a text that is parsed once; of longer ones a pass costs a parse and no memory.
+constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
 [[noreturn]] void refuse(const Scene& scene,
                          const char* code,
@@ -31,15 +33,33 @@ void note_presence(Presence& presence, std::uint64_t first, std::span<const doub
   }
 }
 
-// The first reading, for length and rate, sees which channels have samples.
-struct Attendance final : BlockSink {
-  void begin(const LogInfo& log) override { channels.resize(log.channels.size()); }
+// The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.
+struct FirstReading final : BlockSink {
+  void begin(const LogInfo& log) override {
+    channels.resize(log.channels.size());
+    keeps = log.format == "csv";
+  }
   void block(const SampleBlock& samples) override {
     channels.resize(std::max(channels.size(), samples.channels.size()));
     for (std::size_t c = 0; c < samples.channels.size(); ++c)
       note_presence(channels[c], samples.first, {samples.channels[c], samples.rows});
+    keep(samples);
+  }
+  void keep(const SampleBlock& samples) {
+    keeps = keeps && (samples.first + samples.rows) * samples.channels.size() <= kMostParsedOnce;
+    if (!keeps) {
+      kept = {};
+      return;
+    }
+    kept.resize(samples.channels.size());
+    for (std::size_t c = 0; c < kept.size(); ++c) {
+      kept[c].resize(samples.first, kMissing);
+      kept[c].insert(kept[c].end(), samples.channels[c], samples.channels[c] + samples.rows);
+    }
   }
   std::vector<Presence> channels;
+  bool keeps = false;
+  std::vector<std::vector<double>> kept;  // all or none
 };
 
 struct Forward final : BlockSink {
@@ -144,6 +164,7 @@ void SceneSource::read_even(Progress& progress) {
                                      scene_->tilt ? scene_->sensors.size() : wanted_.size(),
                                      progress);
   even_ = std::move(even.samples);
+  info_.kept = true;
   info_.rate_hz = *scene_->resample_hz;
   info_.samples = even.log.samples;
   for (std::size_t k = 0; k < own_; ++k)
@@ -165,10 +186,10 @@ void SceneSource::scan(Progress& progress) {
     for (const std::string& name : wanted_)
       if (once.insert(name).second) reading_.channels.push_back(name);
   }
-  Attendance attendance;
+  FirstReading first;
   LogInfo log;
   try {
-    log = read_log(scene_->recording, reading_, attendance, progress);
+    log = read_log(scene_->recording, reading_, first, progress);
   } catch (const Error& error) {
     // What a scene asks of a file is the scene's mistake, not one of the command line.
     if (error.problem().kind != ErrorKind::usage) throw;
@@ -193,8 +214,8 @@ void SceneSource::scan(Progress& progress) {
     columns_.push_back(column);
     if (k >= own_) continue;
     if (k < scene_->sensors.size())
-      info_.presence.push_back(column < attendance.channels.size() ? attendance.channels[column]
-                                                                   : Presence{});
+      info_.presence.push_back(column < first.channels.size() ? first.channels[column]
+                                                              : Presence{});
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
   }
@@ -207,6 +228,8 @@ void SceneSource::scan(Progress& progress) {
   info_.rate_hz = log.time.rate_hz;
   info_.samples = log.samples;
   info_.logs.push_back(std::move(log));
+  if (first.keeps) kept_ = std::move(first.kept);
+  info_.kept = !kept_.empty();
 }
 
 void SceneSource::stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
@@ -214,6 +237,8 @@ void SceneSource::stream(std::uint64_t until, const SourceBlock& block, Progress
     stream_simulation(until, block, progress);
   else if (!even_.empty())
     stream_even(until, block);
+  else if (!kept_.empty())
+    stream_kept(until, block);
   else
     stream_recording(until, block, progress);
 }
@@ -241,6 +266,21 @@ void SceneSource::stream_even(std::uint64_t until, const SourceBlock& block) con
     out.push_back(k < scene_->sensors.size() ? path(k, column) : column);
   }
   block(0, out);
+}
+
+void SceneSource::stream_kept(std::uint64_t until, const SourceBlock& block) const {
+  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  std::vector<std::span<const double>> out(columns_.size());
+  const std::uint64_t end = std::min(until, info_.samples);
+  for (std::uint64_t done = 0; done < end;) {
+    const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(kKeptRows, end - done));
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::span<const double> column(kept_[columns_[k]].data() + done, rows);
+      out[k] = k < scene_->sensors.size() ? path(k, column) : column;
+    }
+    block(done, out);
+    done += rows;
+  }
 }
 
 void SceneSource::stream_recording(std::uint64_t until,

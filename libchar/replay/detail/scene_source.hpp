@@ -1,7 +1,7 @@
 #pragma once
 // The samples of a scene on their own grid of time, wherever they come from: a recording that is
-// read again for each pass, or a simulation that is made again. Memory does not grow with the
-// length.
+// read again for each pass (a short text is parsed once and kept), or a simulation that is made again.
+// Memory does not grow with the length.
 
 #include <cstdint>
 #include <functional>
@@ -28,6 +28,7 @@ struct SourceInfo {
   std::size_t further_axes = 0;              ///< that each sensor names beside its own
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
+  bool kept = false;                         ///< in memory, not read again for each pass
 };
 
 /// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
@@ -55,6 +56,7 @@ class SceneSource {
   void scan(Progress& progress);
   void read_even(Progress& progress);
   void stream_even(std::uint64_t until, const SourceBlock& block) const;
+  void stream_kept(std::uint64_t until, const SourceBlock& block) const;
   void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
   void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
 
@@ -65,6 +67,7 @@ class SceneSource {
   std::size_t own_ = 0;                    // of `wanted_`: without the further axes
   std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
   std::vector<std::vector<double>> even_;  // a resampled recording, for each of `wanted_`
+  std::vector<std::vector<double>> kept_;  // a short text, by column of the source
   SourceInfo info_;
   std::vector<SensorFault> known_faults_;
 };
