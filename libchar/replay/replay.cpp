@@ -16,6 +16,7 @@
 #include "libchar/replay/detail/alignment_stage.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/copied_sensors.hpp"
+#include "libchar/replay/detail/detection_sweep.hpp"
 #include "libchar/replay/detail/find_lag.hpp"
 #include "libchar/replay/detail/find_offset.hpp"
 #include "libchar/replay/detail/judgement.hpp"
@@ -246,6 +247,7 @@ class Replay {
     if (workspace_.estimates != nullptr) begin_estimates();
     const fusion::Array live = subset(plan_.array, plan_.live);
     if (!scene_.tilt) steps_.emplace(live.h(), plan_.run_to - plan_.run_from);
+    if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     instants_.pass(
         plan_.run_from,
@@ -264,6 +266,7 @@ class Replay {
             if (blind) blind->run(done, samples, skip);
           judge_sensors(samples, healthy, truth, skip);
           tracker_.push(done, samples, truth, runs_);
+          if (detection_) detection_->push(samples);
           if (steps_ && plan_.live.empty()) steps_->push(samples);
           if (steps_ && !plan_.live.empty()) steps_->push(samples(plan_.live, Eigen::all));
           if (workspace_.estimates != nullptr) give_estimates(truth);
@@ -381,6 +384,7 @@ class Replay {
   std::optional<AlignmentResult> aligned_;
   LearntFusion learnt_;
   std::optional<StepNoiseMeter> steps_;
+  std::optional<DetectionSweep> detection_;
   RunFrame frame_, optimum_frame_;
   fusion::Array array_on_run_;
   std::vector<AlgorithmRun> runs_, optimum_;
@@ -554,6 +558,7 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
   add_tracks(out);
+  if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, run_end_s(out));
   if (steps_) note_step_noise(steps_->result(), learnt_);
   out.learnt = learnt_;
   if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;

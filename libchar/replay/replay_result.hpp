@@ -26,6 +26,14 @@ struct ReplayWork {
   std::uint64_t blind_steps = 0;  ///< the same for leave-one-out and split arrays
 };
 
+/// What the fault detector does of a run whose faults are known when one false alarm of the array is
+/// accepted in so many seconds.
+struct DetectionAt {
+  double false_alarm_s = 0;
+  std::vector<FaultAnswer> answers;
+  std::size_t alarms_without_fault = 0;
+};
+
 struct ReplayResult {
   Scene scene;
   std::vector<LogInfo> logs;  ///< the recording, the reference's own log; empty for a simulation
@@ -47,7 +55,9 @@ struct ReplayResult {
   std::vector<SensorResult> sensors;
   std::vector<InputResult> inputs;
   std::optional<AlignmentResult> alignment;
-  std::vector<SensorFault> faults;          ///< that the scene knows, injected or simulated
+  std::vector<SensorFault> faults;  ///< that the scene knows, injected or simulated
+  /// by `false_alarm_s`; empty: no fault is known, or no algorithm that runs has the detector
+  std::vector<DetectionAt> detection;
   std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
   std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`
   /// the sensor with the smallest error, and the 95 % interval of the best method's RMSE over its; one input and a reference
@@ -61,5 +71,10 @@ struct ReplayResult {
   ReplayWork work;
   double seconds = 0;  ///< measured
 };
+
+/// Of the run, seconds from the recording's first sample.
+inline double run_end_s(const ReplayResult& result) {
+  return result.start_s + static_cast<double>(result.instants) / result.rate_hz;
+}
 
 }  // namespace libchar

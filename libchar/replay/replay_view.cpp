@@ -25,21 +25,6 @@ std::vector<const FaultAnswer*> answers_of(const AlgorithmResult& a, std::size_t
   return out;
 }
 
-bool explains(const SensorFault& known, const FoundFault& found) {
-  return known.sensor == found.sensor && found.from_s < known.to_s &&
-         found.to_s.value_or(std::numeric_limits<double>::infinity()) > known.from_s;
-}
-
-// How much was raised where no fault is known: a false alarm, as far as the scene knows.
-std::size_t alarms_without_fault(const ReplayResult& r, const AlgorithmResult& a) {
-  return static_cast<std::size_t>(
-      std::count_if(a.faults.begin(), a.faults.end(), [&](const FoundFault& found) {
-        return std::none_of(r.faults.begin(), r.faults.end(), [&](const SensorFault& known) {
-          return explains(known, found);
-        });
-      }));
-}
-
 // A noise fault gives a sensor less weight; it stays in use.
 bool takes_out(const FoundFault& found) {
   return found.kind != fusion::name(fusion::FaultRule::noise);
@@ -70,7 +55,7 @@ AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, st
   out.weight_track = merged_bins(a.weight_track, divisor);
   out.variance_track = merged_bins(a.variance_track, divisor);
   out.answers = answers_of(a, r.faults.size());
-  out.alarms_without_fault = alarms_without_fault(r, a);
+  out.alarms_without_fault = alarms_without_fault(r.faults, a.faults);
   out.out_share = out_share(r, a);
   out.core_share = 1e-9 * a.ns_per_sample * r.rate_hz;
   return out;
@@ -184,6 +169,11 @@ ReplayFigures figures_of(const ReplayResult& r) {
   out.weights = any([](const auto& a) { return a.weights && a.weights->cols() == 1; });
   out.variances = any([](const auto& a) { return a.variances.has_value(); });
   out.faults = !r.faults.empty() || any([](const auto& a) { return !a.faults.empty(); });
+  out.detection = std::any_of(r.detection.begin(), r.detection.end(), [](const DetectionAt& at) {
+    return std::any_of(at.answers.begin(), at.answers.end(), [](const auto& one) {
+      return one.found_s.has_value();
+    });
+  });
   out.sensors = sensors_can_be_drawn(r.sensors);
   out.ranking = any([](const auto& a) { return a.rmse > 0; });
   out.availability = any([](const auto& a) { return a.availability < kNearlyAlways; });

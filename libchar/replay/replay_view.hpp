@@ -70,9 +70,10 @@ struct ReplayFigures {
   bool error_over_time = false;    ///< cost: ns a sample
   bool error_over_memory = false;  ///< cost: peak bytes
   bool weights = false, variances = false, faults = false, sensors = false;
-  bool ranking = false;       ///< a method has a score
-  bool run = false;           ///< an estimate over time
-  bool deviations = false;    ///< of the sensors from their median
+  bool detection = false;   ///< delays until known faults are found, over the rate of false alarms
+  bool ranking = false;     ///< a method has a score
+  bool run = false;         ///< an estimate over time
+  bool deviations = false;  ///< of the sensors from their median
   bool availability = false;  ///< of a method below 0.999: worth a column
   /// run time can decide between methods: one of them takes more than `kCoreThatMatters` of a core
   bool time_matters = false;

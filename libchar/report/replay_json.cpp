@@ -232,10 +232,9 @@ Json faults_json(const ReplayResult& result, const AlgorithmResult& algorithm) {
   return out;
 }
 
-Json answers_json(const AlgorithmResult& algorithm) {
-  if (!algorithm.watches_faults) return nullptr;
+Json answers_json(const std::vector<FaultAnswer>& answers) {
   Json out = Json::array();
-  for (const FaultAnswer& answer : algorithm.answers)
+  for (const FaultAnswer& answer : answers)
     out.push_back({{"fault", answer.fault},
                    {"found_after_s", json_number(answer.found_s)},
                    {"returned_after_s", json_number(answer.returned_s)}});
@@ -266,7 +265,7 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
       {"faults", faults_json(result, a)},
       {"faults_not_kept", a.faults_not_kept},
       {"watches_faults", a.watches_faults},
-      {"answers", answers_json(a)},
+      {"answers", a.watches_faults ? answers_json(a.answers) : Json(nullptr)},
       {"out_share", a.watches_faults ? numbers(view.out_share) : Json(nullptr)},
       {"weight_distance", json_number(a.weight_distance)},
       {"variance_error", json_number(a.variance_error)},
@@ -330,6 +329,15 @@ Json known_faults_json(const ReplayResult& result) {
                    {"value", json_number(fault.value)},
                    {"from_s", json_number(fault.from_s)},
                    {"to_s", json_number(fault.to_s)}});
+  return out;
+}
+
+Json detection_json(const ReplayResult& result) {
+  Json out = Json::array();
+  for (const DetectionAt& at : result.detection)
+    out.push_back({{"false_alarm_s", json_number(at.false_alarm_s)},
+                   {"answers", answers_json(at.answers)},
+                   {"alarms_without_fault", at.alarms_without_fault}});
   return out;
 }
 
@@ -419,6 +427,7 @@ Json replay_json(const ReplayView& view) {
   out["preparation"] = preparation_json(result.scene.preparation);
   if (result.alignment) out["alignment"] = alignment_json(result);
   out["faults"] = known_faults_json(result);
+  out["detection"] = detection_json(result);
   out["best"] =
       result.best ? Json(json_text(result.algorithms[*result.best].label)) : Json(nullptr);
   out["best_sensor"] = result.best_sensor

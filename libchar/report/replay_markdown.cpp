@@ -150,6 +150,28 @@ std::string faults_section(const ReplayView& view) {
   return out;
 }
 
+// What one false alarm more often buys.
+std::string detection_section(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  if (!view.figures.detection) return "";
+  std::string out = "\n| one false alarm in |", line = "\n|---|";
+  for (const FaultAnswer& answer : r.detection[0].answers) {
+    const SensorFault& fault = r.faults[answer.fault];
+    out += fmt::format(" {} {} from {} s: found after |",
+                       markdown_text(r.sensors[fault.sensor].name),
+                       name_of(fault.kind),
+                       significant(fault.from_s, 6));
+    line += "---|";
+  }
+  out += " alarms where no fault is known |" + line + "---|\n";
+  for (const DetectionAt& at : r.detection) {
+    out += fmt::format("| {} |", duration_text(at.false_alarm_s));
+    for (const FaultAnswer& answer : at.answers) out += fmt::format(" {} |", delay(answer.found_s));
+    out += fmt::format(" {} |\n", at.alarms_without_fault);
+  }
+  return out;
+}
+
 std::string remarks_section(const ReplayView& view) {
   std::string out;
   const auto add = [&](const std::string& of, const std::string& message, std::uint64_t count) {
@@ -207,7 +229,8 @@ std::string replay_markdown(const ReplayView& view) {
       "\n\\* the best method, and those whose difference from it is not resolved; bounds look at "
       "the reference of the run itself.\n";
   return out + skipped_section(view) + several_inputs(view) + alignment_markdown(view) +
-         sensors_section(view) + faults_section(view) + remarks_section(view);
+         sensors_section(view) + faults_section(view) + detection_section(view) +
+         remarks_section(view);
 }
 
 std::string replay_markdown(const ReplayResult& result) {

@@ -347,6 +347,19 @@
     return { type: "bar", data: { labels: rows, datasets: sets }, plugins: [whitePaper, dragging, faultNotes].concat(silent), options: all };
   }
 
+  // Of each known fault; where it was found in its first sample, half of one stands for no delay.
+  function detectionChart(index, axis, u) {
+    const names = report.sensors.map((s) => s.name), least = 0.5 / report.rate_hz;
+    const sets = report.detection[0].answers.map((answer, k) => {
+      const fault = report.faults[answer.fault], look = sensorStyle(names.indexOf(fault.sensor)), label = fault.sensor + ": " + valued(fault) + " from " + numberText(fault.from_s / TIME, 5) + " " + timeUnit;
+      const data = report.detection.map((at) => ({ x: at.false_alarm_s, found: at.answers[k].found_after_s, alarms: at.alarms_without_fault })).filter((p) => p.found !== null).map((p) => Object.assign(p, { y: Math.max(p.found, least) }));
+      return { label, data, borderColor: look.colour, backgroundColor: look.colour, borderDash: [[], [6, 4], [2, 3]][k % 3], pointStyle: MARKS[k % MARKS.length], pointRadius: 4, pointHoverRadius: 6, borderWidth: 1.7, fill: false, order: 2, tip: (p) => [label, p.found === 0 ? "found at once" : "found after " + seconds(p.found), "one false alarm in " + seconds(p.x), p.alarms + " raised where no fault is known"] };
+    }).filter((set) => set.data.length);
+    const points = sets.flatMap((set) => set.data), [yMin, yMax] = padded(points.map((p) => p.y), 2);
+    const asked = report.detection.map((at) => at.false_alarm_s), [xMin, xMax] = padded(asked, 1.4);
+    return chart(sets, logAxis("one false alarm of the array in, s", xMin, xMax), valueAxis(withUnit(axis, u), yMin, yMax));
+  }
+
   // ---- Allan deviation of the errors ----
   function allanChart(input, axis, u) {
     const sets = [];
@@ -625,7 +638,7 @@
     "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => numberText(x, 3) + " ns a sample"),
     "cost-memory": (i, axis, u) => costChart("peak_bytes", "memory", "peak memory, bytes", withUnit(axis, u), onMemory),
     signal: signalChart, error: errorChart, deviations: deviationsChart, ranking: rankingChart,
-    window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, "error-allan": allanChart, sensors: sensorsChart,
+    window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, detection: detectionChart, "error-allan": allanChart, sensors: sensorsChart,
   };
   const HEIGHTS = { sensors: 220, "cost-time": 340, "cost-memory": 340, signal: 230, error: 200, deviations: 230 };
   const onPaperHeight = (kind, figure) => HEIGHTS[kind] || (kind === "ranking" || kind === "faults" ? parseInt(figure.querySelector(".canvas").style.height, 10) : 300);

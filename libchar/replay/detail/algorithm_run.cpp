@@ -257,27 +257,12 @@ std::optional<Eigen::VectorXd> AlgorithmRun::variances() const {
   return all;
 }
 
-std::vector<FoundFault> AlgorithmRun::found_faults() const {
-  std::vector<FoundFault> out;
+std::vector<FoundFault> AlgorithmRun::faults() const {
   const fusion::FaultLog* log = runner_->faults();
-  if (log == nullptr) return out;
-  std::vector<std::ptrdiff_t> open(static_cast<std::size_t>(frame_->array->channels), -1);
-  for (const fusion::FaultEvent& event : log->events()) {
-    const double time_s = frame_->start_s + static_cast<double>(event.sample) / frame_->rate_hz;
-    const std::size_t sensor =
-        some_left_out()
-            ? static_cast<std::size_t>((*frame_->live)[static_cast<std::size_t>(event.channel)])
-            : static_cast<std::size_t>(event.channel);
-    auto& place = open[sensor];
-    if (event.faulty && place < 0) {
-      place = static_cast<std::ptrdiff_t>(out.size());
-      out.push_back({sensor, std::string(fusion::name(event.rule)), time_s, {}});
-    } else if (!event.faulty && place >= 0) {
-      out[static_cast<std::size_t>(place)].to_s = time_s;
-      place = -1;
-    }
-  }
-  return out;
+  if (log == nullptr) return {};
+  std::vector<std::size_t> sensors;
+  if (some_left_out()) sensors.assign(frame_->live->begin(), frame_->live->end());
+  return found_faults(*log, sensors, frame_->start_s, frame_->rate_hz);
 }
 
 AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_s) const {
@@ -305,7 +290,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
   out.variances = variances();
   out.weight_track = thinned(track_times_, weight_samples_, kTrackBins);
   out.variance_track = thinned(track_times_, variance_samples_, kTrackBins);
-  out.faults = found_faults();
+  out.faults = faults();
   if (const fusion::FaultLog* log = runner_->faults()) {
     out.watches_faults = true;
     out.faults_not_kept = log->dropped();

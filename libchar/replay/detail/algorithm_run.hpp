@@ -83,7 +83,7 @@ class AlgorithmRun {
   void timed_run(const Eigen::MatrixXd& samples);
   void note_tracks(double time_s);
   void thin_notes();
-  std::vector<FoundFault> found_faults() const;
+  std::vector<FoundFault> faults() const;
 
   const PlannedAlgorithm* planned_;
   const RunFrame* frame_;

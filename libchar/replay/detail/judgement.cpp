@@ -96,22 +96,8 @@ void judge_tracking(AlgorithmResult& algorithm,
 
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result) {
   if (!algorithm.ran || !algorithm.watches_faults) return;
-  const double end_s = result.start_s + static_cast<double>(result.instants) / result.rate_hz;
-  for (std::size_t f = 0; f < result.faults.size(); ++f) {
-    const SensorFault& fault = result.faults[f];
-    if (fault.from_s >= end_s || fault.to_s <= result.start_s) continue;
-    FaultAnswer answer{f, {}, {}};
-    for (const FoundFault& found : algorithm.faults) {
-      if (found.sensor != fault.sensor || found.from_s >= fault.to_s) continue;
-      const double until = found.to_s.value_or(std::numeric_limits<double>::infinity());
-      if (until <= fault.from_s) continue;
-      if (!answer.found_s) answer.found_s = std::max(0.0, found.from_s - fault.from_s);
-      // The last time it was out while the fault lasted.
-      answer.returned_s.reset();
-      if (found.to_s && *found.to_s >= fault.to_s) answer.returned_s = *found.to_s - fault.to_s;
-    }
-    algorithm.answers.push_back(answer);
-  }
+  algorithm.answers =
+      answers_to(result.faults, algorithm.faults, result.start_s, run_end_s(result));
 }
 
 namespace {

@@ -215,6 +215,21 @@ std::string ranking_figure(const ReplayView& view) {
          "</div>\n";
 }
 
+std::string detection_figure(const ReplayView& view) {
+  if (!view.figures.detection) return "";
+  return "<div class=\"plots\">\n" +
+         plot_figure("detection",
+                     0,
+                     {"Delay against false alarms",
+                      "delay",
+                      "s",
+                      "How long each known fault lasts until the detector finds it, when the array "
+                      "may raise one false alarm in the time on the axis (false_alarm_s). No "
+                      "point: not found while it lasted."},
+                     view.title) +
+         "</div>\n";
+}
+
 std::string faults_figure(const ReplayView& view) {
   if (!view.figures.faults) return "";
   return std::string(kChoicePlace) + "<div class=\"over-time faults\">\n" +
@@ -227,7 +242,7 @@ std::string faults_figure(const ReplayView& view) {
                       "were found. Narrow bars: the sensor was out, and which finding put it "
                       "there; hollow ones: re-weighted for its noise, still in use."},
                      view.title) +
-         "</div>\n";
+         "</div>\n" + detection_figure(view);
 }
 
 std::string time_section(const ReplayView& view) {
