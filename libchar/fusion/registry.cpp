@@ -106,6 +106,7 @@ constexpr std::array kAlgorithms{
     entry<BlindCalibrationPublished>(),
     entry<BlindGls>(),
     entry<VirtualSensor>(),
+    entry<BestAxes>(),
     entry<LeastSquares>(),
     entry<LeastSquaresPublished>(),
     entry<ShrunkLeastSquares>(),

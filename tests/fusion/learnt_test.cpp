@@ -104,7 +104,7 @@ TEST_CASE("learnt: taken in by another one, every algorithm estimates the same b
       for (std::size_t i = 0; i < learnt.size(); ++i) CHECK(again[i].values == learnt[i].values);
     }
   }
-  CHECK(learning == 8);
+  CHECK(learning == 9);
 }
 
 TEST_CASE("learnt: what learns nothing hands out nothing, and takes nothing") {

@@ -46,7 +46,7 @@ TEST_CASE("detection: delays over the rate of false alarms, at the usual one tho
 }
 
 TEST_CASE(
-    "detection: any algorithm that has the detector, with its own recovery; else nothing is "
+    "detection: any algorithm that has the detector, with its own recovery, else nothing is "
     "computed") {
   const ReplayResult watched =
       watched_run(kTwoFaults, "[{name: mean, fault_detection: 1, recovery_window: 400}]");
