@@ -49,6 +49,7 @@ FaultDetector::FaultDetector(const Array& array, const FaultDetectorOptions& opt
       known_(base_.n, 0),
       at_end_(base_.n, 0),
       noisy_(base_.n, 0),
+      judged_at_(base_.n, -1),
       recovery_(base_.n),
       new_mean_(base_.n, 0),
       new_square_(base_.n, 0),
@@ -359,6 +360,7 @@ void FaultDetector::make_noisy(std::size_t i, double ratio) {
   noisy_[i] = std::max(noisy_[i], 1.0) * ratio;
   recovery_[i].start(options_.recovery);
   change_variance(i, ratio);
+  judged_at_[i] = now_;
   log_.note(FaultEvent{now_, static_cast<int>(i), true, FaultRule::noise});
 }
 
@@ -378,6 +380,7 @@ void FaultDetector::take_out(std::size_t i, FaultRule rule) {
   }
   out_[i] = rule == FaultRule::stuck ? Out::stuck : Out::judged;
   rule_[i] = rule;
+  if (rule == FaultRule::bias || rule == FaultRule::gain) judged_at_[i] = now_;
   recovery_[i].start(options_.recovery, fault_free_ == 0);
   ++count_out_;
   log_.note(FaultEvent{now_, static_cast<int>(i), true, rule});

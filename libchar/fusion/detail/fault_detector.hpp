@@ -106,6 +106,7 @@ class FaultDetector {
   void act(const Isolation& found, int window);
   void doubt(const Isolation& found);
   void misfit(int sensor);
+  bool most_judged_together() const;
   void stand_down();
   double variance(std::size_t i) const {
     return general_ ? general_->variance(i) : scalar_.variance(i);
@@ -133,6 +134,7 @@ class FaultDetector {
   std::vector<char> known_;      // seen long enough to be weighed
   std::vector<char> at_end_;     // stands at the end of its range
   std::vector<double> noisy_;    // its variance over what it was; 0: not noisy
+  std::vector<std::int64_t> judged_at_;  // last instant: out for a bias or a gain, or noisy; -1: never
   std::vector<RecoveryWindow> recovery_;
   std::vector<double> new_mean_, new_square_, new_count_;  // of newcomers
   std::vector<double> deviation_;                          // of each sensor's noise

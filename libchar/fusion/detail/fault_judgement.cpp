@@ -136,6 +136,7 @@ void FaultDetector::judge_noise(int window) {
   if (most < threshold_ / 3 && window < kWindow && looks_ < 16) return;
   if (squares_[noisiest] < 1.1) return;
   noise_fault(noisiest, window);
+  if (most_judged_together()) stand_down();
 }
 
 /// The sum has gathered for longer than the window reaches: it is believed.
@@ -211,7 +212,18 @@ void FaultDetector::act(const Isolation& found, int window) {
   // More than half cannot be judged by the rest; nor a quarter where it is not stated that the record
   // begins without faults.
   const int n = static_cast<int>(base_.n);
-  if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4))) stand_down();
+  if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4)) || most_judged_together())
+    stand_down();
+}
+
+/// More than half of the sensors within one window, for whatever reason: no faults of theirs.
+bool FaultDetector::most_judged_together() const {
+  int count = 0;
+  for (std::size_t i = 0; i < base_.n; ++i)
+    if (judged_at_[i] >= 0 && now_ - judged_at_[i] < kWindow &&
+        (out_[i] == Out::judged || noisy_[i] > 0))
+      ++count;
+  return 2 * count > static_cast<int>(base_.n);
 }
 
 /// Two sets contradict each other, and either may be the healthy one.
