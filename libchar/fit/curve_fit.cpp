@@ -6,6 +6,8 @@
 //   neither                 equal relative errors, estimated from the scatter about the fit;
 //                           neighbouring residuals that go the same way count as fewer points,
 //                           n (1-r)/(1+r).
+// Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
+// the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
 // Where stated uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
 // out, point by point, until the terms describe the rest: a sensor's filter shows there, and nearly all of the weight is there. Where
 // no half of the points is described, nothing is borne out: status misfit, and the scatter takes the place of the uncertainties, in
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
@@ -41,7 +44,8 @@ namespace {
 constexpr double kBarelyKnown = 0.30;  ///< relative sd above which a value is undetermined
 constexpr double kDescribed =
     0.02;  ///< probability of the residuals from which on they are those of the stated scatter
-constexpr double kMisfitCurve = 1e-3;  ///< below which they are not
+constexpr double kMisfitCurve = 1e-3;     ///< below which they are not
+constexpr std::size_t kMostPoints = 512;  ///< that are fitted one by one
 constexpr double kDigitised =
     1e-6;  ///< relative scatter below which differences of fit mean nothing
 
@@ -382,6 +386,14 @@ void report_residuals(const DigitisedCurve& curve, const CurveJudgement& found, 
 
 namespace {
 
+Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+double points_of(const DigitisedCurve& curve) {
+  return std::accumulate(curve.group.begin(), curve.group.end(), 0.0);
+}
+
 NoiseFit fit_points(const DigitisedCurve& curve,
                     const TermSet& offered,
                     const FitOptions& options,
@@ -403,9 +415,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
   CurveSolution rough = solve_curve_thoroughly(problem, offered);
   if (!curve.relative_sd.empty()) {
     judge.scatter = Scatter::stated;
-    problem.whitening = Eigen::MatrixXd::Zero(problem.size(), problem.size());
-    for (Eigen::Index j = 0; j < problem.size(); ++j)
-      problem.whitening(j, j) = 1 / (2 * curve.relative_sd[static_cast<std::size_t>(j)]);
+    problem.weight = (2 * array_of(curve.relative_sd)).inverse();
   } else if (curve.duration_s && curve.is_allan) {
     judge.scatter = Scatter::from_duration;
     for (int round = 0; round < 3; ++round) {
@@ -413,6 +423,10 @@ NoiseFit fit_points(const DigitisedCurve& curve,
       rough = solve_curve_thoroughly(problem, offered);
     }
   } else {
+    if (!curve.group.empty()) {
+      problem.weight = array_of(curve.group).sqrt();
+      rough = solve_curve_thoroughly(problem, offered);
+    }
     judge.independent = effective_points(curve_residuals(problem, rough.theta), count_of(offered));
     judge.floor = judge.points * kDigitised * kDigitised;
   }
@@ -422,8 +436,11 @@ NoiseFit fit_points(const DigitisedCurve& curve,
   fit.duration_s = curve.duration_s.value_or(0);
   fit.samples = curve.x.size();
   fit.method = fmt::format(
-      "non-negative least squares on the logarithm of {} points, {}",
+      "non-negative least squares on the logarithm of {} {}, {}",
       curve.x.size(),
+      curve.group.empty()
+          ? "points"
+          : fmt::format("groups of neighbours among {:.0f} points", points_of(curve)),
       curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
   const CurveJudgement found = judged(problem, decision, judge);
   report_terms(found, offered, options.threshold, fit);
@@ -446,6 +463,7 @@ DigitisedCurve slow_part(const DigitisedCurve& curve, std::size_t left_out) {
   cut(part.x);
   cut(part.y);
   cut(part.relative_sd);
+  cut(part.group);
   return part;
 }
 
@@ -509,6 +527,28 @@ std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) 
   return count;
 }
 
+/// Neighbours together, the slow end (few of the points, much of the information) as it is.
+DigitisedCurve grouped(const DigitisedCurve& curve) {
+  DigitisedCurve out = curve;
+  for (auto* values : {&out.x, &out.y, &out.relative_sd}) values->clear();
+  const double width =
+      std::log(curve.x.back() / curve.x.front()) / static_cast<double>(kMostPoints - 1);
+  for (std::size_t from = 0, to = 0; from < curve.x.size(); from = to) {
+    double weight = 0, x = 0, y = 0;
+    for (; to < curve.x.size() && std::log(curve.x[to] / curve.x[from]) < width; ++to) {
+      const double sd = curve.relative_sd.empty() ? 1 : curve.relative_sd[to], w = 1 / (sd * sd);
+      weight += w;
+      x += w * std::log(curve.x[to] / curve.x[from]);
+      y += w * std::log(curve.y[to] / curve.y[from]);
+    }
+    out.x.push_back(curve.x[from] * std::exp(x / weight));
+    out.y.push_back(curve.y[from] * std::exp(y / weight));
+    if (!curve.relative_sd.empty()) out.relative_sd.push_back(1 / std::sqrt(weight));
+    out.group.push_back(static_cast<double>(to - from));
+  }
+  return out;
+}
+
 /// Half of the points at least, and more than there are terms.
 std::size_t fewest_points(std::size_t points, const TermSet& offered) {
   return std::max((points + 1) / 2, count_of(offered) + 3);
@@ -518,6 +558,8 @@ std::size_t fewest_points(std::size_t points, const TermSet& offered) {
 
 NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   check(curve);
+  if (curve.x.size() > kMostPoints && curve.group.empty())
+    return fit_curve(grouped(curve), options);
   const TermSet offered = offered_to(curve, options);
   NoiseFit whole = fit_points(curve, offered, options, 1);
   // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length alone does not

@@ -20,7 +20,9 @@ struct DigitisedCurve {
   std::vector<double> relative_sd;   ///< of the deviation, if the curve has it; empty = unknown
   std::optional<double> duration_s;  ///< of the record behind the curve, gives honest weights
   std::optional<double> rate_hz;
+  std::vector<double> group;  ///< how many points each of them stands for; empty = itself
 };
+/// At most 512 groups of neighbours are fitted.
 NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options = {});
 
 }  // namespace libchar

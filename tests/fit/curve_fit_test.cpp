@@ -169,6 +169,58 @@ TEST_CASE("a curve that no half of its points lets the terms describe is a misfi
   CHECK(fit[Term::white].relative_sd > 0.03);  // of the scatter, not of the stated 1 %
 }
 
+TEST_CASE(
+    "a curve of very many points is fitted in groups of neighbours, as well as point by point") {
+  const Mixture theta = {25e-6, 1e-6, 1e-8, 0, 0};
+  test::Gaussian gauss(6);
+  DigitisedCurve curve;
+  const std::size_t points = 20'000;
+  for (std::size_t k = 0; k < points; ++k) {
+    const double tau =
+        0.01 * std::pow(1e6, static_cast<double>(k) / static_cast<double>(points - 1));
+    double variance = 0;
+    for (std::size_t i = 0; i < kTerms; ++i)
+      variance += theta[i] * allan_asymptote(static_cast<Term>(i), tau);
+    curve.x.push_back(tau);
+    curve.y.push_back(std::sqrt(variance) * (1 + 0.01 * gauss()));
+  }
+  const auto check = [&](const NoiseFit& fit) {
+    CHECK(fit.residuals.size() <= 512);
+    CHECK(fit.method.find("among 20000 points") != std::string::npos);
+    for (const Term term : {Term::white, Term::flicker, Term::walk}) {
+      const Coefficient& c = fit[term];
+      REQUIRE(c.value);
+      const double truth = std::sqrt(theta[static_cast<std::size_t>(term)]);
+      // One per cent of 20 000 points, by about a third of them for each term.
+      CHECK(*c.value == Approx(truth).epsilon(1e-3));
+      CHECK(c.ci95.high - c.ci95.low < 2e-3 * truth);
+      CHECK(c.ci95.high - c.ci95.low > 1e-4 * truth);
+    }
+  };
+  check(fit_curve(curve));
+  curve.relative_sd.assign(points, 0.01);
+  const NoiseFit stated = fit_curve(curve);
+  check(stated);
+  CHECK(stated.goodness.p > 1e-3);
+  // Evenly spaced, as a spectrum is: the slow end stays as it is.
+  DigitisedCurve spectrum;
+  spectrum.is_allan = false;
+  spectrum.sides = Sides::two;
+  spectrum.root = false;
+  for (std::size_t k = 1; k <= points; ++k) {
+    const double f = 1e-3 * static_cast<double>(k);
+    double density = 0;
+    for (std::size_t i = 0; i < kTerms; ++i)
+      density += theta[i] * spectrum_asymptote(static_cast<Term>(i), f, 1);
+    spectrum.x.push_back(f);
+    spectrum.y.push_back(density);
+  }
+  const NoiseFit even = fit_curve(spectrum);
+  CHECK(even.residuals.front().frequency_hz == 1e-3);
+  CHECK(even[Term::walk].value.value() == Approx(1e-4).epsilon(1e-3));
+  CHECK(even[Term::white].value.value() == Approx(5e-3).epsilon(1e-5));
+}
+
 TEST_CASE("bad curves are refused in a sentence") {
   DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 0}, std::nullopt);
   DigitisedCurve broken = curve;

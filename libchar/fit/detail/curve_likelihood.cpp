@@ -21,6 +21,7 @@ Eigen::ArrayXd model_of(const CurveProblem& problem, const Mixture& theta) {
 }
 
 Eigen::MatrixXd whitened(const CurveProblem& problem, const Eigen::MatrixXd& columns) {
+  if (problem.weight.size() > 0) return problem.weight.matrix().asDiagonal() * columns;
   return problem.whitening.size() == 0 ? columns : Eigen::MatrixXd(problem.whitening * columns);
 }
 

@@ -13,6 +13,7 @@ struct CurveProblem {
   Eigen::Array<double, Eigen::Dynamic, static_cast<int>(kTerms)> unit;
   /// L^-1 with cov(ln value) = s L L'; empty = identity (equal relative errors)
   Eigen::MatrixXd whitening;
+  Eigen::ArrayXd weight;  ///< its diagonal, where it has nothing else
   Eigen::Index size() const { return value.size(); }
 };
 
