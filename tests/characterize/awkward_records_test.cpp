@@ -8,6 +8,7 @@
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_curve.hpp"
 #include "libchar/characterize/verdict.hpp"
+#include "tests/characterize/refusal.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"
@@ -128,4 +129,13 @@ TEST_CASE("a step that was taken out is in the verdict") {
   REQUIRE(step.channels[0].fit->events.size() == 1);
   CHECK(step.channels[0].fit->events[0].size == Approx(0.02).epsilon(0.05));
   CHECK(verdict_of(step).find("Read what is said of x") != std::string::npos);
+}
+
+TEST_CASE("more channels than fit into memory in the end are refused before they are analysed") {
+  Recording recording;
+  recording.info.channels.resize(5001);
+  recording.info.time.rate_hz = 100;
+  recording.samples.assign(5001, {1, 2, 3});
+  const std::string said = test::refusal(recording, {});
+  CHECK(said == "E0707 5001 channels are more than are characterized at a time, 5000");
 }

@@ -18,6 +18,21 @@ constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
 
 constexpr std::size_t kFittedAtOnce = 2;
 
+/// Curves, fit and their part of the reports take up to .6 MB a channel, which all stand in memory in the end.
+constexpr std::size_t kMostFitted = 5000;
+
+void refuse_too_many(const LogInfo& log) {
+  if (log.channels.size() > kMostFitted)
+    throw Error({ErrorKind::input,
+                 "E0707",
+                 log.file,
+                 fmt::format("{} channels are more than are characterized at a time, {}",
+                             log.channels.size(),
+                             kMostFitted),
+                 "",
+                 "choose some of them with `channels`"});
+}
+
 std::uint64_t budget_of(const CharacterizeOptions& options) {
   const bool whole_record_needed =
       options.wanted.spectrum && options.spectrum.segment == 0 && !(options.segment_s > 0);
@@ -36,6 +51,7 @@ ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWor
 
 void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t channels = so_far.channels.size();
+  if (options_.wanted.quality && options_.wanted.fit) refuse_too_many(so_far);
   if (options_.wanted.spectrum && options_.spectrum.segment == 0 && options_.segment_s > 0)
     options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
   if (!options_.temperature.empty()) find_temperature(so_far);

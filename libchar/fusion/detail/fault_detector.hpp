@@ -134,7 +134,8 @@ class FaultDetector {
   std::vector<char> known_;      // seen long enough to be weighed
   std::vector<char> at_end_;     // stands at the end of its range
   std::vector<double> noisy_;    // its variance over what it was; 0: not noisy
-  std::vector<std::int64_t> judged_at_;  // last instant: out for a bias or a gain, or noisy; -1: never
+  std::vector<std::int64_t>
+      judged_at_;  // last instant: out for a bias or a gain, or noisy; -1: never
   std::vector<RecoveryWindow> recovery_;
   std::vector<double> new_mean_, new_square_, new_count_;  // of newcomers
   std::vector<double> deviation_;                          // of each sensor's noise

@@ -18,7 +18,7 @@ namespace libchar::csv {
 inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;   // 1 MiB
 inline constexpr std::size_t kMaxField = std::size_t{1} << 17U;  // 128 KiB
 inline constexpr std::size_t kMaxName = 1024;
-inline constexpr std::size_t kMaxColumns = 100000;
+inline constexpr std::size_t kMaxColumns = 100001;  // 100 000 channels and the stamps
 inline constexpr std::size_t kHeadBytes =
     2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
 

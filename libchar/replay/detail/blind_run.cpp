@@ -20,7 +20,7 @@ BlindRun::BlindRun(const PlannedAlgorithm& planned,
   std::vector<Eigen::Index> all = live;
   for (Eigen::Index i = 0; live.empty() && i < array.channels; ++i) all.push_back(i);
   const auto n = static_cast<Eigen::Index>(all.size());
-  const Eigen::Index left_out = std::min(n, kMostLeftOut);
+  const Eigen::Index left_out = left_out_of(n);
   for (Eigen::Index k = 0; k < left_out; ++k) {
     const Eigen::Index out = all[static_cast<std::size_t>(k * n / left_out)];
     std::vector<Eigen::Index> channels;

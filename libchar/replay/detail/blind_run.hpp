@@ -1,7 +1,7 @@
 #pragma once
 // Scores of an algorithm where there is no reference.
 //   leave-one-out   e_i = h_i x(without sensor i) - y_i        (the sensor's own noise is in it;
-//                   of more than 32 sensors 32 are left out in turn, evenly chosen)
+//                   of more than 32 sensors 32 are left out in turn, evenly chosen, fewer of more than 128)
 //   split array     e   = (x(even sensors) - x(odd sensors)) / 2: with equal halves of independent
 //                   errors its RMS is that of the whole array's estimate
 // Beyond its budget (blind_share.hpp) it runs on stretches of the run, one after the other, and there are no errors in between.

@@ -28,8 +28,7 @@ double cost_of_all(const fusion::Entry& entry,
                ? entry.cost_ns(part, settings)
                : 0.0;
   };
-  return static_cast<double>(std::min(n, kMostLeftOut)) * cost(n - 1) + cost((n + 1) / 2) +
-         cost(n / 2);
+  return static_cast<double>(left_out_of(n)) * cost(n - 1) + cost((n + 1) / 2) + cost(n / 2);
 }
 
 }  // namespace
@@ -47,7 +46,7 @@ BlindShare blind_share(const fusion::Entry& entry,
   const auto n = static_cast<double>(array.channels);
   const double most =
       entry.looks_ahead(settings)
-          ? kMostKept / (8 * n * static_cast<double>(std::min(array.channels, kMostLeftOut) + 1))
+          ? kMostKept / (8 * n * static_cast<double>(left_out_of(array.channels) + 1))
           : std::numeric_limits<double>::infinity();
   const double affordable = std::min(budget_s / an_instant_s, most);
   if (!(static_cast<double>(run) > affordable)) return out;

@@ -4,6 +4,7 @@
 // than a cell of the error meters it is left out. The cost is counted (fusion::Entry::cost_ns), not measured: what is computed
 // depends on no clock.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,8 +27,11 @@ struct BlindShare {
 };
 
 /// An algorithm that is run on other channels for scores: without each of them, on every second and on the others.
-/// Of more than kMostLeftOut channels so many are left out in turn.
-inline constexpr Eigen::Index kMostLeftOut = 32;
+/// How many of n channels are left out in turn: all up to 32; of more than 128, where each part may hold a number for each pair of
+/// channels, 4096 / n, and no fewer than four.
+inline Eigen::Index left_out_of(Eigen::Index n) {
+  return std::min(n, std::clamp<Eigen::Index>(4096 / std::max<Eigen::Index>(n, 1), 4, 32));
+}
 
 /// run: instants of it; the first `warm_up` are not scored. budget_s: of one core, infinite: no limit.
 BlindShare blind_share(const fusion::Entry& entry,
