@@ -1,5 +1,6 @@
 // Where results go: existing files, devices, pipes and folders without rights, for every verb that writes.
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -206,7 +207,21 @@ TEST_CASE("closed streams: every verb that writes gives the same bytes, no messa
   std::ofstream(log, std::ios::app) << "20,5\n20,6\n20.01,\n";  // for warnings and notes
   std::ofstream(folder / "m.sensor.yaml") << kModel;
   const std::string at = folder.path().string(), program = test::program();
+  std::string array = "t[s],a[V],b[V],c[V]\n";
+  for (int k = 0; k < 400; ++k)
+    array +=
+        fmt::format("{}.{:02},{},{},{}\n", k / 100, k % 100, k % 7, k % 7 + k % 3, k % 7 + k % 5);
+  std::ofstream(folder / "array.csv") << array;
+  test::run_words({program,
+                   "replay",
+                   (folder / "array.csv").string(),
+                   "--sensors",
+                   "a,b,c",
+                   "-o",
+                   (folder / "learnt").string()});
   for (const auto& [words, file] : std::vector<std::pair<std::string, std::string>>{
+           {"replay array.csv --sensors a,b,c -o run --no-timing", "run/fusion.yaml"},
+           {"fuse array.csv --with learnt --algorithm mean -o out.csv", "out.csv"},
            {"allan log.csv -o out.csv", "out.csv"},
            {"psd log.csv -o out.csv", "out.csv"},
            {"fit log.csv -o out.txt", "out.txt"},
