@@ -1,7 +1,12 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/json.hpp"
@@ -107,5 +112,49 @@ TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
     const auto ran = test::run(words);
     CHECK(ran.code == 2);
     CHECK(ran.out.empty());
+  }
+}
+
+TEST_CASE("fit and characterize: no line of a library reaches stderr, whatever the signal") {
+  const test::TemporaryFolder folder;
+  test::Gaussian gauss(1);
+  const auto noise = [&] { return 1e-3 * gauss(); };
+  double walk = 0;
+  const std::map<std::string, std::function<double(int)>> signals{
+      {"index", [](int k) { return k; }},
+      {"ramp", [&](int k) { return 0.01 * k + noise(); }},
+      {"sine", [](int k) { return std::sin(0.01 * k); }},
+      {"noisy_sine", [&](int k) { return std::sin(0.3 * k) + noise(); }},
+      {"square", [](int k) { return k / 50 % 2; }},
+      {"sawtooth", [](int k) { return k % 128; }},
+      {"step", [](int k) { return k < 700 ? 0 : 1e6; }},
+      {"exponential", [](int k) { return std::exp(-0.01 * k); }},
+      {"growing", [](int k) { return std::exp(0.1 * k); }},
+      {"parabola", [](int k) { return 1.0 * k * k; }},
+      {"impulse", [](int k) { return k == 600 ? 1e12 : 0; }},
+      {"two_values", [](int k) { return k * 7919 % 3 == 0; }},
+      {"tiny", [&](int) { return 1e-290 * gauss(); }},
+      {"huge", [&](int) { return 1e140 * gauss(); }},
+      {"alternating", [](int k) { return k % 2; }},
+      {"walk", [&](int) { return walk += noise(); }},
+      {"constant", [](int) { return 9.81; }}};
+  for (const auto& [name, signal] : signals) {
+    const std::string log = (folder / (name + ".csv")).string();
+    std::ofstream file(log);
+    file << "t[s]," << name << "\n";
+    for (int k = 0; k < 1500; ++k) file << fmt::format("{:.2f},{:.17g}\n", 0.01 * k, signal(k));
+    file.close();
+    for (const auto& words : {std::vector<std::string>{"fit", log},
+                              std::vector<std::string>{"characterize", log, "-o", log + ".out"}}) {
+      std::vector<std::string> all{test::program()};
+      all.insert(all.end(), words.begin(), words.end());
+      const auto done = test::run_words(all);
+      INFO(name << ": " << done.err);
+      CHECK(done.code <= 4);
+      // Every line is the program's own: FILE: …, or a channel and its sentence.
+      std::istringstream lines(done.err);
+      for (std::string line; std::getline(lines, line);)
+        CHECK((line.starts_with(log) || line.starts_with(name + ":") || line.empty()));
+    }
   }
 }
