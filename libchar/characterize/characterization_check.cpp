@@ -74,7 +74,7 @@ std::vector<std::string> failures(const CharacterizationComparison& comparison,
     const auto near = nearest(check.label, labels);
     refuse_check(check.text,
                  "neither report has this channel",
-                 near ? fmt::format("did you mean {}?", *near) : "labels are names of channels");
+                 did_you_mean(near, "labels are names of channels"));
   }
   if (checked == 0)
     throw Error({ErrorKind::check,

@@ -47,7 +47,7 @@ GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words) 
   const auto near = nearest(metric, words.metrics);
   refuse_check(text,
                fmt::format("expected {} in front of the plus sign", either(words.metrics)),
-               near ? fmt::format("did you mean {}?", *near) : words.example);
+               did_you_mean(near, words.example));
 }
 
 }  // namespace libchar

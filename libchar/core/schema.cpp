@@ -89,8 +89,7 @@ MapReader::MapReader(const Document& node,
          place(file_, entry.line, entry.column),
          path_.empty() ? "unknown key" : "unknown key in " + path_,
          entry.key,
-         near ? fmt::format("did you mean {}?", *near)
-              : fmt::format("the keys here are {}", fmt::join(keys, ", ")));
+         did_you_mean(near, fmt::format("the keys here are {}", fmt::join(keys, ", "))));
   }
 }
 
@@ -214,7 +213,7 @@ std::string MapReader::word(std::string_view key, const std::vector<std::string>
        where(require(key)),
        fmt::format("{}: expected one of {}", path_of(key), fmt::join(words, ", ")),
        found,
-       near ? fmt::format("did you mean {}?", *near) : "");
+       did_you_mean(near));
 }
 
 std::string MapReader::word_or(std::string_view key,

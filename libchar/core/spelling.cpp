@@ -1,6 +1,11 @@
 #include "libchar/core/spelling.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
+
+#include "libchar/core/text.hpp"
 
 namespace libchar {
 
@@ -32,6 +37,18 @@ std::optional<std::string> nearest(std::string_view word,
     }
   }
   return best;
+}
+
+std::string did_you_mean(const std::optional<std::string>& near, std::string otherwise) {
+  return near ? fmt::format("did you mean {}?", printable(*near, 40)) : std::move(otherwise);
+}
+
+std::string first_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
+    out += (i > 0 ? ", " : "") + printable(names[i], 40);
+  return names.size() > kMost ? fmt::format("{} and {} more", out, names.size() - kMost) : out;
 }
 
 }  // namespace libchar

@@ -174,7 +174,7 @@ const ExportTarget& find_export_target(std::string_view name) {
                "`target`",
                fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
                std::string(name),
-               near ? fmt::format("did you mean {}?", *near) : "`export_targets` lists them"});
+               did_you_mean(near, "`export_targets` lists them")});
 }
 
 Export export_models(const ExportTarget& target,

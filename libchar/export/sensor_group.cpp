@@ -73,8 +73,7 @@ void check_overrides(const std::vector<SensorModel>& models, const AxisOverrides
                  "`axis`",
                  "no model of this channel was given",
                  channel,
-                 near ? fmt::format("did you mean {}?", *near)
-                      : fmt::format("channels are {}", fmt::join(channels, ", "))});
+                 did_you_mean(near, fmt::format("channels are {}", fmt::join(channels, ", ")))});
   }
 }
 

@@ -104,7 +104,7 @@ class Reader {
                    fmt::format("{}:{}:1", file_, row.line),
                    fmt::format("{} fields, {} expected", row.cells.size(), width_),
                    "",
-                   ""});
+                   "each row has a value for each name of the header"});
     const auto text = [&](const std::optional<std::size_t>& column) {
       return column ? row.cells[*column].text : "";
     };

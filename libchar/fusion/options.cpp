@@ -23,14 +23,14 @@ std::string range_of(const Option& option) {
 [[noreturn]] void unknown(std::span<const Option> table, std::string_view name) {
   std::vector<std::string> names;
   for (const Option& option : table) names.emplace_back(option.name);
-  std::string hint = "this algorithm has no options";
-  if (const auto near = nearest(name, names)) {
-    hint = "did you mean " + *near + "?";
-  } else if (!names.empty()) {
-    hint = "its options are " + names[0];
-    for (std::size_t i = 1; i < names.size(); ++i) hint += ", " + names[i];
-  }
-  throw Error({ErrorKind::usage, "E0850", "", "no such option", std::string(name), hint});
+  throw Error({ErrorKind::usage,
+               "E0850",
+               "",
+               "no such option",
+               std::string(name),
+               did_you_mean(nearest(name, names),
+                            names.empty() ? "this algorithm has no options"
+                                          : "its options are " + first_names(names))});
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ const Entry& algorithm(std::string_view name) {
                "",
                "no fusion algorithm has this name",
                std::string(name),
-               near ? "did you mean " + *near + "?" : "`algorithms` names them"});
+               did_you_mean(near, "`algorithms` names them")});
 }
 
 }  // namespace libchar::fusion

@@ -71,19 +71,6 @@ Row<LimitBlock> term_row() {
                hint});
 }
 
-std::string names_of(const std::vector<NamedChannel>& channels) {
-  std::vector<std::string> names;
-  names.reserve(channels.size());
-  for (const NamedChannel& c : channels) names.push_back(c.name);
-  constexpr std::size_t kShown = 8;
-  std::string out = fmt::format(
-      "{}",
-      fmt::join(names.begin(),
-                names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kShown)),
-                ", "));
-  return names.size() > kShown ? out + fmt::format(" and {} more", names.size() - kShown) : out;
-}
-
 std::vector<std::size_t> named_channels(const NoiseLimits& limits,
                                         const LimitBlock& block,
                                         const std::vector<NamedChannel>& channels) {
@@ -98,12 +85,11 @@ std::vector<std::size_t> named_channels(const NoiseLimits& limits,
       names.reserve(channels.size());
       for (const NamedChannel& c : channels) names.push_back(c.name);
       const auto near = nearest(block.channels[i], names);
-      refuse_at(
-          limits,
-          list.kind == Document::Kind::list ? list.list[i] : list,
-          "the recording has no such channel",
-          block.channels[i],
-          near ? fmt::format("did you mean {}?", *near) : "its channels are " + names_of(channels));
+      refuse_at(limits,
+                list.kind == Document::Kind::list ? list.list[i] : list,
+                "the recording has no such channel",
+                block.channels[i],
+                did_you_mean(near, "its channels are " + first_names(names)));
     }
     out.push_back(static_cast<std::size_t>(at - channels.begin()));
   }

@@ -95,7 +95,7 @@ std::vector<std::string> failures(const Comparison& comparison, const Comparison
     const auto near = nearest(check.label, labels);
     refuse_check(check.text,
                  "neither report has this algorithm",
-                 near ? fmt::format("did you mean {}?", *near) : "labels are those of the table");
+                 did_you_mean(near, "labels are those of the table"));
   }
   if (checked == 0)
     throw Error({ErrorKind::check,

@@ -33,14 +33,6 @@ constexpr std::size_t kFusedBlock = 4096;
   throw Error({kind, code, where, what, got, hint});
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
-  std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
-    out += (i > 0 ? ", " : "") + printable(names[i], 40);
-  return names.size() > kMost ? fmt::format("{} and {} more", out, names.size() - kMost) : out;
-}
-
 // The channels of a log without its samples.
 std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Progress& progress) {
   struct Enough {};
@@ -75,7 +67,7 @@ const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const Fuse
                 learnt.file,
                 "the replay recommended no algorithm",
                 "",
-                "choose one with `algorithm`: " + listed(learnt.labels()));
+                "choose one with `algorithm`: " + first_names(learnt.labels()));
   const LearntAlgorithm* found = learnt.find(label);
   if (found == nullptr) {
     const auto near = nearest(label, learnt.labels());
@@ -84,7 +76,7 @@ const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const Fuse
                 learnt.file,
                 "the replay ran no algorithm of this name",
                 label,
-                near ? "did you mean " + *near + "?" : "it ran " + listed(learnt.labels()));
+                did_you_mean(near, "it ran " + first_names(learnt.labels())));
   }
   if (!found->refused.empty())
     refuse_fuse(ErrorKind::usage, "E0933", learnt.file, found->refused, label);
@@ -191,7 +183,7 @@ void Fusing::check_map() const {
                 "`map`",
                 fmt::format("{} has no sensor of this name", learnt_.file),
                 sensor,
-                near ? "did you mean " + *near + "?" : "it has " + listed(names));
+                did_you_mean(near, "it has " + first_names(names)));
   }
 }
 
@@ -255,7 +247,7 @@ void Fusing::find_channels() {
                   "`map`",
                   fmt::format("{} has no channel of this name", log_),
                   channel,
-                  near ? "did you mean " + *near + "?" : "it has " + listed(names));
+                  did_you_mean(near, "it has " + first_names(names)));
     }
   }
   if (present_.empty())
@@ -263,8 +255,8 @@ void Fusing::find_channels() {
                 "E0937",
                 log_,
                 "the log has none of the channels that the sensors had where this was learnt",
-                listed(names),
-                "name them with `map`: SENSOR=CHANNEL; the sensors are " + listed([&] {
+                first_names(names),
+                "name them with `map`: SENSOR=CHANNEL; the sensors are " + first_names([&] {
                   std::vector<std::string> out;
                   for (const LearntSensor& s : learnt_.sensors) out.push_back(s.name);
                   return out;

@@ -46,8 +46,7 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
     const auto near = nearest(name, names);
     refuse("there is no such sensor",
            name,
-           near ? fmt::format("did you mean {}?", *near)
-                : fmt::format("the sensors are {}", fmt::join(names, ", ")));
+           did_you_mean(near, fmt::format("the sensors are {}", fmt::join(names, ", "))));
   }
   fault.sensor = static_cast<std::size_t>(found - names.begin());
   const std::size_t equals = what.find('=');

@@ -189,10 +189,11 @@ std::size_t index_of_name(const MapReader& at,
       at,
       key,
       fmt::format("{} is not {}", printable(name, 40), what),
-      near ? fmt::format("did you mean {}?", printable(*near, 40))
-      : names.size() > 9
-          ? ""
-          : fmt::format("there are {}", printable(fmt::format("{}", fmt::join(names, ", ")))));
+      did_you_mean(
+          near,
+          names.size() > 9
+              ? ""
+              : fmt::format("there are {}", printable(fmt::format("{}", fmt::join(names, ", "))))));
 }
 
 Scene parse_scene(std::string_view text, const std::string& path, const SceneReadOptions& options) {

@@ -263,8 +263,7 @@ std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec,
                "",
                "unknown kind of signal",
                kind,
-               near ? fmt::format("did you mean {}?", *near)
-                    : fmt::format("one of {}", fmt::join(signal_kinds(), ", "))});
+               did_you_mean(near, fmt::format("one of {}", fmt::join(signal_kinds(), ", ")))});
 }
 
 }  // namespace libchar

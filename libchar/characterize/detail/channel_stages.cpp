@@ -97,7 +97,7 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
                  so_far.file,
                  "there is no channel of this name to be the `temperature`",
                  wanted,
-                 near ? fmt::format("did you mean {}?", *near) : ""});
+                 did_you_mean(near, "it has " + first_names(names))});
   }
   temperature_index_ = static_cast<std::size_t>(found - names.begin());
   const std::string& unit = channels[temperature_index_].unit;

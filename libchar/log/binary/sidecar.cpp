@@ -140,7 +140,7 @@ void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
              key,
              "E0544",
              fmt::format("expected one of {}", fmt::join(names, ", ")),
-             near ? fmt::format("did you mean {}?", *near) : "");
+             did_you_mean(near));
 }
 
 void write_type(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {

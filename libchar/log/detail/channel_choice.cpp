@@ -77,16 +77,12 @@ std::optional<std::size_t> position_in(std::string_view word, std::size_t count)
 std::string channel_hint(const std::string& wanted,
                          const std::vector<std::string>& names,
                          const ReadOptions& options) {
-  const std::size_t shown = std::min<std::size_t>(names.size(), 12);
-  const std::string all = fmt::format(
-      "{}{}",
-      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-      shown < names.size() ? ", …" : "");
+  const std::string all = first_names(names);
   if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
     return "`channels` chooses by the names in the log, " + all +
            ", and `names` then name what was chosen";
   const auto near = is_pattern(wanted) ? std::nullopt : nearest(wanted, names);
-  return near ? fmt::format("did you mean {}?", *near) : "it has " + all;
+  return did_you_mean(near, "it has " + all);
 }
 
 void refuse_channel(const std::string& wanted,

@@ -28,7 +28,7 @@ std::size_t column_of(const LogInfo& log, const std::string& channel, const std:
                scene,
                fmt::format("the reference {} has no channel of this name", log.file),
                channel,
-               near ? "did you mean " + *near + "?" : "inspect lists the channels"});
+               did_you_mean(near, "inspect lists the channels")});
 }
 
 }  // namespace

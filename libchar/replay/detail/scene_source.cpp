@@ -209,7 +209,7 @@ void SceneSource::scan(Progress& progress) {
              "E0900",
              fmt::format("the recording {} has no channel of this name", scene_->recording),
              wanted_[k],
-             near ? "did you mean " + *near + "?" : "inspect lists the channels");
+             did_you_mean(near, "inspect lists the channels"));
     }
     columns_.push_back(column);
     if (k >= own_) continue;
