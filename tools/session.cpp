@@ -14,6 +14,7 @@
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/curve_table.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -168,6 +169,7 @@ void end_in_a_sentence() {
   constexpr std::string_view kDefect =
       "sensorchar: internal error: terminated; please report this with the command line\n";
   // What cannot be unwound is not always an exception that can still be asked.
+  libchar::discard_unfinished();
   if (memory_was_refused()) ::_exit(refuse_for_memory());
   [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, kDefect.data(), kDefect.size());
   ::_exit(1);

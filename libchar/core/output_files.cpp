@@ -94,16 +94,17 @@ void give_names(const std::vector<WholeFile*>& files,
                                   std::filesystem::path(file->path()).filename().string());
   for (WholeFile* file : files)
     if (file->temporary().empty()) file->commit();  // a device
+  const JournalFile written = journal_file(folder, journal);
   const GivingNames naming;
-  write_journal(folder, journal);
-  // Until the first has its name all can still be taken back: the temporary files are theirs.
+  // As long as no journal names them all can still be taken back: the temporary files are theirs.
   const auto hand_over = [&] {
     for (WholeFile* file : files) file->hand_over();
   };
   try {
+    written.write();
     run_journal(folder, journal);
   } catch (...) {
-    if (has_journal(folder)) hand_over();
+    if (written.there()) hand_over();
     throw;
   }
   hand_over();

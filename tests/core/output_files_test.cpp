@@ -108,10 +108,11 @@ TEST_CASE(
   // As left by a kill after the first of two names: a.yaml is new, report.json and the removal of b.yaml are to come.
   put_text(folder / "a.yaml", "new a");
   put_text(folder / "report.json.libchar-tmp-1-0", R"({"files": ["report.json", "a.yaml"]})");
-  write_journal(
+  journal_file(
       folder.path(),
       {{{"a.yaml.libchar-tmp-1-0", "a.yaml"}, {"report.json.libchar-tmp-1-0", "report.json"}},
-       {"b.yaml"}});
+       {"b.yaml"}})
+      .write();
   CHECK(code_of_outputs([&] { refuse_interrupted(folder.path()); }) == "E0516");
   finish_journal(folder.path());
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
@@ -185,7 +186,7 @@ TEST_CASE("files of two folders and devices are committed together as far as the
 
 TEST_CASE("one of a pair that an interrupted run has left is not read, its neighbours are") {
   const test::TemporaryFolder folder;
-  write_journal(folder.path(), {{{"log.bin.libchar-tmp-1-0", "log.bin"}}, {"old.yaml"}});
+  journal_file(folder.path(), {{{"log.bin.libchar-tmp-1-0", "log.bin"}}, {"old.yaml"}}).write();
   CHECK(code_of_outputs([&] { refuse_interrupted(folder / "log.bin"); }) == "E0516");
   CHECK(code_of_outputs([&] { refuse_interrupted(folder / "old.yaml"); }) == "E0516");
   CHECK_NOTHROW(refuse_interrupted(folder / "other.bin"));

@@ -78,11 +78,20 @@ OutputJournal read_journal(const fs::path& folder) {
 
 }  // namespace
 
-void write_journal(const fs::path& folder, const OutputJournal& journal) {
+void JournalFile::write() const {
+  write_whole_file(path, text, true);
+}
+
+bool JournalFile::there() const noexcept {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
+}
+
+JournalFile journal_file(const fs::path& folder, const OutputJournal& journal) {
   Json document = {{"rename", Json::array()}, {"remove", Json(journal.remove)}};
   for (const auto& [from, to] : journal.rename)
     document["rename"].push_back(Json::array({from, to}));
-  write_whole_file(journal_of(folder).string(), document.dump() + "\n", true);
+  return {journal_of(folder).string(), document.dump() + "\n"};
 }
 
 void run_journal(const fs::path& folder, const OutputJournal& journal) {

@@ -15,8 +15,14 @@ struct OutputJournal {
   std::vector<std::string> remove;  ///< names of an earlier run's files that the set does not have
 };
 
-/// On disk when it returns. Throws Error(output).
-void write_journal(const std::filesystem::path& folder, const OutputJournal& journal);
+/// The file that it is: made before anything is written, so that memory for it is refused while nothing has been done.
+struct JournalFile {
+  std::string path, text;
+  /// On disk when it returns. Throws Error(output).
+  void write() const;
+  bool there() const noexcept;
+};
+JournalFile journal_file(const std::filesystem::path& folder, const OutputJournal& journal);
 
 /// Does what was written down and removes the journal. What is done already is passed over, so that it can be done again after a kill.
 /// Throws Error(output) where a name cannot be given: then the journal stays, unless nothing has been done yet.

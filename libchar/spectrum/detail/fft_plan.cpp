@@ -8,14 +8,29 @@
 
 #include "libchar/core/error.hpp"
 
+namespace {
+
+bool planner_is_broken = false;  // under the planner's mutex: who plans holds it
+
+}  // namespace
+
 // FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
-// FFTW asserts anything in a release build. What the planner held is lost: the process has no memory anyway.
+// FFTW asserts anything in a release build. What the planner held is lost, and half of it may be changed.
 extern "C" void fftw_assertion_failed(const char*, int, const char*) {
+  planner_is_broken = true;
   throw std::bad_alloc();
 }
 
 namespace libchar::fft_plan {
 namespace {
+
+std::recursive_mutex& planner_mutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+/// A transform of more bytes may be what takes the memory.
+constexpr std::size_t kLong = std::size_t{64} << 20U;
 
 /// All lengths together: a plan's own tables take about as much as its values.
 constexpr std::size_t kMostKept = std::size_t{1} << 21U;
@@ -46,6 +61,7 @@ void* allocated(std::size_t values, std::size_t bytes_each) {
   void* memory = values <= std::numeric_limits<std::ptrdiff_t>::max() / bytes_each
                      ? fftw_malloc(values * bytes_each)
                      : nullptr;
+  if (memory == nullptr && values < kLong / bytes_each) throw std::bad_alloc();
   if (memory == nullptr)
     throw Error({ErrorKind::numeric,
                  "E0403",
@@ -57,14 +73,16 @@ void* allocated(std::size_t values, std::size_t bytes_each) {
 }
 
 std::recursive_mutex& planner() {
-  static std::recursive_mutex mutex;
-  return mutex;
+  const std::lock_guard lock(planner_mutex());
+  if (planner_is_broken) throw std::bad_alloc();
+  return planner_mutex();
 }
 
 Plan owned(fftw_plan plan) {
+  if (plan == nullptr) throw std::bad_alloc();
   return {plan, [](fftw_plan gone) {
-            const std::lock_guard lock(planner());
-            fftw_destroy_plan(gone);
+            const std::lock_guard lock(planner_mutex());
+            if (!planner_is_broken) fftw_destroy_plan(gone);
           }};
 }
 
