@@ -72,6 +72,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("ten a decade: a long record has the same points, from the first mean of eight on") {
+  const auto x = walk_and_noise(40000, 5);
+  const AllanCurve octaves = allan_deviation(x, 0.01);
+  AllanCurve whole = octaves, lengthy = octaves;
+  add_ten_a_decade(x, {}, 1U << 20U, whole);
+  add_ten_a_decade(x, {}, 1000, lengthy);
+  std::size_t added = 0;
+  for (const AllanPoint& p : lengthy.points) {
+    const AllanPoint* same = point_at(whole, p.m);
+    REQUIRE(same != nullptr);
+    CHECK(p.deviation == Approx(same->deviation).epsilon(1e-12));
+    added += point_at(octaves, p.m) == nullptr ? 1 : 0;
+  }
+  CHECK(added > 15);
+  CHECK(lengthy.points.size() < whole.points.size());
+}
+
 TEST_CASE("ten a decade: limits hold, and missing samples are exact or nothing") {
   auto x = walk_and_noise(20000, 3);
   AllanOptions options;

@@ -56,6 +56,19 @@ bool says(const NoiseFit& fit, const std::string& words) {
 }  // namespace
 
 TEST_CASE(
+    "Gauss-Markov: the Allan variance of times far below tau is that of a walk, on both sides of "
+    "the series") {
+  for (const double m : {1.0, 7.0, 1000.0})
+    for (const double across : {1e-12, 0.99e-5, 1.01e-5, 1e-4}) {
+      // sigma^2 = 1: K^2 = 2 / tau; the next term of the series is between 1/2 and 3/4 of T/tau.
+      const double tau = 3, dt = across * tau / m, x = dt / tau;
+      CHECK(gauss_markov_allan_variance(tau, m, dt) ==
+            Approx(x * (2 * m * m + 1) / (3 * m) * (1 - 0.625 * across))
+                .epsilon(0.2 * across + 1e-12));
+    }
+}
+
+TEST_CASE(
     "transform means of a Gauss-Markov process agree with the double sum over its covariance") {
   const std::size_t n = 48;
   for (const double step : {3.0, 0.2, 0.01, 1e-5})
