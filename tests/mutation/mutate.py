@@ -82,14 +82,15 @@ def equivalents():
 # --- how it is built ------------------------------------------------------------------------------------------------------------------
 
 def build_objects(folders, scratch):
-    """Every source of these folders compiled alone; (commands, archive of the objects)."""
+    """Every source of the floors of these folders compiled alone; (commands, archive of the objects)."""
     made = run(["cmake", "-S", str(ROOT), "-B", str(LIBRARY), "-G", "Ninja", "--log-level=WARNING", "-DCMAKE_BUILD_TYPE=Mutation",
                 "-DCMAKE_CXX_FLAGS_MUTATION=-O1 -D_GLIBCXX_ASSERTIONS -w", "-DLIBCHAR_UNITY=OFF", "-DLIBCHAR_TESTS=OFF",
                 "-DLIBCHAR_TOOLS=OFF", "-DLIBCHAR_BENCH=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"])
     if made.returncode:
         sys.exit(made.stderr[-2000:])
     commands, objects = compile_commands()
-    wanted = [built for path, built in objects.items() if os.path.dirname(path) in folders]
+    floors = {folder.split("/")[1] for folder in folders}
+    wanted = [built for path, built in objects.items() if path.split("/")[1] in floors]
     made = run(["ninja", "-C", str(LIBRARY), *wanted])
     if made.returncode:
         sys.exit(made.stdout[-2000:])
@@ -122,8 +123,10 @@ def link_command(build, floor, archive, folders, scratch):
     for name in ("libchar.a", "libcharcurves.a"):
         if not (scratch / name).exists():
             shutil.copy(build / "libchar" / name, scratch / name)
-            # What is compiled alone must not come a second time, from the one object of its folder.
-            twice = [f"unity_{folder.split('/')[1]}_{folder.split('/')[-1]}_cxx.cxx.o" for folder in folders]
+            # What is compiled alone must not come a second time, from the one object of its folder or floor.
+            floors = "|".join({folder.split("/")[1] for folder in folders})
+            members = run(["ar", "t", str(scratch / name)]).stdout.split()
+            twice = [member for member in members if re.fullmatch(rf"unity_(?:{floors})(?:_\w+)?_cxx\.cxx\.o", member)]
             run(["ar", "d", str(scratch / name), *twice, *twice])  # two objects have that name
     ours = [str(archive), str(scratch / "libchar.a"), str(scratch / "libcharcurves.a")]
     first = next(i for i, word in enumerate(words) if word.startswith("libchar/"))
