@@ -107,3 +107,20 @@ TEST_CASE("verdict: one per cent is no difference") {
   CHECK(named(result, "minque").as_good_as_best);
   CHECK_THAT(replay_verdict(result, false), Contains("Within one per cent of it"));
 }
+
+TEST_CASE("verdict: a record of a few instants tells no method from another") {
+  const test::SceneBench bench;
+  for (const int rows : {2, 3, 7}) {
+    std::string text = "t[s],a[V],b[V],c[V]\n";
+    for (int k = 0; k < rows; ++k)
+      text += std::to_string(k) + "," + std::to_string(k % 2) + "," + std::to_string(k % 3) +
+              ",0." + std::to_string(7 * k % 5) + "\n";
+    bench.put("few.csv", text);
+    const ReplayResult result =
+        replay(bench.read("format: scene\nversion: 1\nrecording: few.csv\nsensors: [a, b, c]\n"));
+    REQUIRE(result.best);
+    for (const AlgorithmResult& a : result.algorithms)
+      if (a.ran && std::isfinite(a.rmse)) CHECK(a.as_good_as_best);
+    CHECK(replay_verdict(result).find("long enough to tell") == std::string::npos);
+  }
+}

@@ -64,11 +64,12 @@ struct Minque {
           "samples)"},
       Option{"recovery_window",
              "samples",
-             200,
-             16,
+             0,
+             0,
              1e9,
-             "own samples that must agree with the others before a channel comes in again "
-             "(detection 1)",
+             "own samples that must agree with the others before a channel comes in again (0: 200, "
+             "or those of 2 s "
+             "where they are fewer) (detection 1)",
              true},
       Option{"fault_gamma",
              "",

@@ -30,10 +30,23 @@ double threshold_of(const Array& array, const FaultDetectorOptions& options) {
   return std::log(std::max(kBankRate * static_cast<double>(array.channels) * samples, 100.0));
 }
 
+FaultDetectorOptions with_recovery(FaultDetectorOptions options, double rate_hz) {
+  constexpr std::int64_t kUsual = 200, kLeast = 64, kFewest = 16;
+  constexpr double kLongest_s = 2;
+  if (options.recovery > 0) {
+    options.recovery = std::max(options.recovery, kFewest);
+    return options;
+  }
+  options.recovery = kUsual;
+  if (rate_hz > 0)
+    options.recovery = std::clamp<std::int64_t>(std::llround(kLongest_s * rate_hz), kLeast, kUsual);
+  return options;
+}
+
 }  // namespace
 
 FaultDetector::FaultDetector(const Array& array, const FaultDetectorOptions& options)
-    : options_(options),
+    : options_(with_recovery(options, array.rate_hz)),
       inputs_(static_cast<int>(array.inputs())),
       rate_hz_(array.rate_hz),
       fault_free_(array.fault_free_samples),

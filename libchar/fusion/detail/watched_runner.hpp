@@ -30,10 +30,12 @@ inline constexpr std::array kWatchOptions{
            "mean time between two false alarms of the array (without a rate: per 2e7 samples)"},
     Option{"recovery_window",
            "samples",
-           200,
-           16,
+           0,
+           0,
            1e9,
-           "own samples that must agree with the others before a channel comes in again",
+           "own samples that must agree with the others before a channel comes in again (0: 200, "
+           "or those of 2 s "
+           "where they are fewer)",
            true}};
 
 class WatchedRunner final : public Runner {

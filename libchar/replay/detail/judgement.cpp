@@ -147,8 +147,9 @@ void judge_best(ReplayResult& result,
     a.ratio_to_best = rms_ratio_interval(ours, its, scoring);
     const Interval corrected = rms_ratio_interval(ours, its, scoring, level);
     const double smallest = result.algorithms[best].rmse;
-    // Equal errors, zero among them, have no ratio to speak of.
-    const bool resolved = !(corrected.low <= 1) || larger_throughout(ours, its) < level;
+    // No ratio: a record of a few instants tells nothing apart, but an error of zero is smaller than any other.
+    const bool apart = std::isnan(corrected.low) ? smallest == 0 : corrected.low > 1;
+    const bool resolved = apart || larger_throughout(ours, its) < level;
     a.as_good_as_best = a.rmse <= (1 + kPracticalTolerance) * smallest || !resolved;
   }
 }
