@@ -44,10 +44,6 @@ def prepare(folder, program):
         "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\ndensity: two-sided\nrate_hz: 100\n"
         "white_noise: {value: 0.1}\nbias_instability: {value: 0.01}\n"
     )
-    with open(folder / "curve.csv", "w") as file:
-        file.write("tau_s,deviation\n")
-        for k in range(50000):
-            file.write(f"{0.01 * (k + 1):.2f},{(0.01 * (k + 1)) ** -0.5:.9g}\n")
     text_log(folder / "small.csv", 400, 3, 2)
     learn = [program, "replay", "small.csv", "--sensors", "s0,s1", "--reference", "s2", "--learning", "0..2", "-o", "learnt", "-q"]
     subprocess.run(learn + ["--algorithms", "mean"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -60,7 +56,6 @@ JOBS = {
     "allan": ["allan", "long.f64"],
     "psd": ["psd", "long.f64"],
     "fit": ["fit", "long.f64"],
-    "fit of a curve": ["fit", "curve.csv", "--curve", "allan"],
     "characterize": ["characterize", "long.f64", "-o", "out"],
     "convert": ["convert", "long.f64", "-o", "out/long.npy"],
     "simulate": ["simulate", "gyro.sensor.yaml", "--samples", "2000000000", "-o", "out/simulated.f64"],

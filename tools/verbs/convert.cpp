@@ -4,7 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <cstdint>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -25,6 +26,13 @@ struct ConvertVerb {
   bool json = false;
 };
 
+/// By its end: a length that cannot be asked for is zero, not the largest number there is.
+std::uint64_t bytes_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  const auto end = stream ? static_cast<std::streamoff>(stream.tellg()) : 0;
+  return end > 0 ? static_cast<std::uint64_t>(end) : 0;
+}
+
 void run_convert(Session& session, const ConvertVerb& verb) {
   const libchar::Conversion result =
       libchar::convert_log(verb.log,
@@ -40,9 +48,7 @@ void run_convert(Session& session, const ConvertVerb& verb) {
   libchar::Json files = libchar::Json::array();
   std::string text;
   for (const std::string& file : result.files) {
-    std::error_code ignored;
-    const auto bytes =
-        libchar::writes_through(file) ? 0 : std::filesystem::file_size(file, ignored);
+    const auto bytes = libchar::writes_through(file) ? 0 : bytes_of(file);
     files.push_back({{"path", libchar::printable(file)}, {"bytes", bytes}});
     text += text.empty()
                 ? fmt::format("{}: {} rows, {} channel{}, {} bytes\n",
