@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,11 +27,12 @@ struct ConvertVerb {
   bool json = false;
 };
 
-/// By its end: a length that cannot be asked for is zero, not the largest number there is.
+/// Asked for, or else found at its end: never the number that stands for a refusal.
 std::uint64_t bytes_of(const std::string& file) {
+  std::error_code refused;
+  if (const auto bytes = std::filesystem::file_size(file, refused); !refused) return bytes;
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  const auto end = stream ? static_cast<std::streamoff>(stream.tellg()) : 0;
-  return end > 0 ? static_cast<std::uint64_t>(end) : 0;
+  return stream ? static_cast<std::uint64_t>(std::streamoff{stream.tellg()}) : 0;
 }
 
 void run_convert(Session& session, const ConvertVerb& verb) {
