@@ -154,11 +154,11 @@ def limits():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def run_cases(program, names, seconds, scratch):
-    """(what happened, in which case, report) of these cases, or of all that are not hidden: ok, failed, crashed or timed out."""
+def run_cases(program, names, seconds, scratch, options=("--abort",)):
+    """(what happened, in which case, report) of these cases: ok, failed, crashed or timed out."""
     (scratch / "cases.txt").write_text("".join(f'"{name}"\n' for name in names))
     with open(scratch / "out.xml", "wb") as out:
-        process = subprocess.Popen([str(program), *(["-f", str(scratch / "cases.txt"), "--abort"] if names else []), "-r", "xml", "-d", "yes"], stdout=out,
+        process = subprocess.Popen([str(program), "-f", str(scratch / "cases.txt"), *options, "-r", "xml", "-d", "yes"], stdout=out,
                                    stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, preexec_fn=limits, cwd=scratch,
                                    env={**os.environ, "TMPDIR": str(scratch)})
         try:
@@ -175,19 +175,39 @@ def run_cases(program, names, seconds, scratch):
 
 def cases_of(program, slowest, scratch):
     """Seconds, names and files of the sound program's cases, quick first; those that take longer than `slowest` are left out."""
-    _, _, text = run_cases(program, [], 3000, scratch)
-    found = []
-    for name, file, body in re.findall(r'<TestCase name="([^"]*)"[^>]*? filename="([^"]*)"(.*?)</TestCase>', text, flags=re.S):
-        result = re.search(r'<OverallResult success="(\w+)"(?: durationInSeconds="([^"]*)")?', body)
-        for code, character in (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&amp;", "&")):
-            name = name.replace(code, character)
-        if result[1] == "true":
-            found.append((float(result[2] or 0), re.sub(r'([\\,"\[])', r"\\\1", name), pathlib.Path(file).name))
-        else:
-            print(f"not used, red without a mutation: {name}", flush=True)
+    listed = run([str(program), "--list-test-names-only"]).stdout
+    waiting, found = [name for name in listed.split("\n") if name], []
+    while waiting:
+        what, last, text = run_cases(program, [quoted(name) for name in waiting], 3000, scratch, [])
+        for name, file, body in re.findall(r'<TestCase name="([^"]*)"[^>]*? filename="([^"]*)"(.*?)</TestCase>', text, flags=re.S):
+            result = re.search(r'<OverallResult success="(\w+)"(?: durationInSeconds="([^"]*)")?', body)
+            name = unescaped(name)
+            waiting.remove(name)
+            if result[1] == "true":
+                found.append((float(result[2] or 0), quoted(name), pathlib.Path(file).name))
+            else:
+                print(f"not used, red without a mutation: {name}", flush=True)
+        if what in ("ok", "failed"):
+            break
+        # A crash is not the end of the list: what comes after it is asked again.
+        if unescaped(last) in waiting:
+            print(f"not used, {what} without a mutation: {unescaped(last)}", flush=True)
+            waiting.remove(unescaped(last))
+        elif last == "at start":
+            sys.exit(f"{program}: {what} at start")
     found.sort()
     kept = [entry for entry in found if entry[0] <= slowest]
     return kept, len(found) - len(kept)
+
+
+def unescaped(name):
+    for code, character in (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&amp;", "&")):
+        name = name.replace(code, character)
+    return name
+
+
+def quoted(name):
+    return re.sub(r'([\\,"\[])', r"\\\1", name)
 
 
 class Floor:
