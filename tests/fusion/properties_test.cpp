@@ -314,8 +314,8 @@ TEST_CASE("step makes no trip to the heap") {
   LearnedScene two = scene;
   two.array.observation_matrix =
       (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
-  two.truth = Eigen::MatrixXd::Zero(2, scene.truth.cols());
-  two.truth.row(0) = scene.truth.row(0);
+  for (Eigen::MatrixXd* truth : {&two.truth, &two.learning_truth})
+    truth->conservativeResizeLike(Eigen::MatrixXd::Zero(2, truth->cols()));
   for (const LearnedScene* fed : {&scene, &two})
     for_each(*fed, [&](const Entry& entry) {
       if (entry.description->needs.reference_throughout && fed == &two) return;
