@@ -24,4 +24,7 @@ inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "N"
 /// Squared coefficients theta = (N^2, B^2, K^2, Q^2, R^2), each >= 0; every curve is linear in them.
 using Mixture = std::array<double, kTerms>;
 
+/// Some of the terms, by index.
+using TermSet = std::array<bool, kTerms>;
+
 }  // namespace libchar

@@ -15,7 +15,7 @@
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/fit/detail/allan_fit.hpp"
+#include "libchar/fit/allan_fit.hpp"
 #include "libchar/fit/detail/band.hpp"
 #include "libchar/fit/detail/band_report.hpp"
 #include "libchar/fit/detail/bridge.hpp"

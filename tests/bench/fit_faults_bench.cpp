@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "libchar/fit/detail/bounds.hpp"
+#include "libchar/fit/bounds.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/noise.hpp"
 

@@ -195,9 +195,9 @@ TEST_CASE("replay: algorithms and their options from the command line") {
   };
   CHECK_THAT(refused("minque.gama=0.9"), Contains("E0850") && Contains("gamma"));
   CHECK_THAT(refused("minque.gamma=2"), Contains("E0851"));
-  CHECK_THAT(refused("minque.gamma=x"), Contains("E0910"));
-  CHECK_THAT(refused("minque=0.9"), Contains("E0910"));
-  CHECK_THAT(refused("gamma"), Contains("E0910"));
+  CHECK_THAT(refused("minque.gamma=x"), Contains("E0963"));
+  CHECK_THAT(refused("minque=0.9"), Contains("E0963"));
+  CHECK_THAT(refused("gamma"), Contains("E0963"));
   CHECK_THAT(refused("median.gamma=1"), Contains("E0850"));
   CHECK_THAT(refused("random-weighting.window=10"),
              Contains("not among those that run") || Contains("E0850"));

@@ -6,8 +6,8 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/bounds.hpp"
 #include "libchar/fit/detail/bin_likelihood.hpp"
-#include "libchar/fit/detail/bounds.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/power_bins.hpp"

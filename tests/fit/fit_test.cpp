@@ -5,8 +5,8 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fit/bounds.hpp"
 #include "libchar/fit/detail/bin_likelihood.hpp"
-#include "libchar/fit/detail/bounds.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/fit/fit_options.hpp"

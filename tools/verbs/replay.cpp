@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "heap_meter.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
@@ -21,6 +20,7 @@
 #include "libchar/replay/estimates_writer.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/replay_view.hpp"
+#include "libchar/replay/sweep.hpp"
 #include "libchar/report/replay_html.hpp"
 #include "libchar/report/replay_json.hpp"
 #include "libchar/report/replay_markdown.hpp"
@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 struct ReplayVerb {
   ReplaySource source;
   std::string folder, estimates, scene_file;
-  std::vector<std::string> algorithms, settings;
+  std::vector<std::string> algorithms, settings, sweeps;
   bool explain = false, list = false, force = false, json = false, no_allan = false,
        no_skip = false, no_timing = false;
   std::optional<double> window_s, budget_s;
@@ -53,23 +53,16 @@ struct ReplayVerb {
 
 // "minque.gamma=0.99": an option of an algorithm that runs.
 void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms) {
-  const std::size_t equals = text.find('='), dot = text.rfind('.', equals);
-  const auto value =
-      equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
-  if (dot == std::string::npos || !value)
-    refuse_replay("--set", "expected ALGORITHM.OPTION=NUMBER", text, "--set minque.gamma=0.99");
-  const std::string name = text.substr(0, dot), option = text.substr(dot + 1, equals - dot - 1);
-  fusion::Settings(fusion::algorithm(name).options).set(option, *value);
-  bool found = false;
-  for (SceneAlgorithm& algorithm : algorithms)
-    if (algorithm.name == name) {
-      found = true;
-      std::erase_if(algorithm.options, [&](const auto& o) { return o.first == option; });
-      algorithm.options.emplace_back(option, *value);
-    }
+  const Sweep setting = parse_sweep(text, "--set", 1);
+  const bool found = std::any_of(algorithms.begin(), algorithms.end(), [&](const auto& algorithm) {
+    return algorithm.name == setting.algorithm;
+  });
   if (!found)
-    refuse_replay(
-        "--set", "this algorithm is not among those that run", name, "--algorithms names them");
+    refuse_replay("--set",
+                  "this algorithm is not among those that run",
+                  setting.algorithm,
+                  "--algorithms names them");
+  algorithms = swept({setting}, algorithms);
 }
 
 // What the command line says on top of the scene. Empty: the scene's list as it is.
@@ -79,13 +72,15 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
     fusion::algorithm(name);
     out.push_back({name, {}, 0, 0});
   }
-  if (verb.settings.empty()) return out;
+  if (verb.settings.empty() && verb.sweeps.empty()) return out;
   if (out.empty()) out = scene.algorithms;
   if (out.empty())
     for (const fusion::Entry& entry : fusion::algorithms())
       out.push_back({std::string(entry.description->name), {}, 0, 0});
   for (const std::string& setting : verb.settings) set_option(setting, out);
-  return out;
+  std::vector<Sweep> sweeps;
+  for (const std::string& text : verb.sweeps) sweeps.push_back(parse_sweep(text, "--sweep"));
+  return swept(sweeps, out);
 }
 
 // With what the command line says on top: the scene that --write-scene writes.
@@ -242,6 +237,13 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .value_name("NAME,…");
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING");
+  options
+      .add_texts("--sweep",
+                 verb->sweeps,
+                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
+                 "FROM..TO; several make a grid")
+      .one_value_each()
+      .value_name("SWEEP");
   options.add_duration("--window",
                        verb->window_s,
                        "length of the window RMS (default: a fiftieth of the evaluation)");

@@ -12,7 +12,6 @@
 
 namespace libchar {
 
-using TermSet = std::array<bool, kTerms>;
 using TermMatrix = Eigen::Matrix<double, kTerms, kTerms>;
 
 /// Most coefficients of a shape (core/noise_shape.hpp).

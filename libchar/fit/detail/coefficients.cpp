@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/fit/detail/bounds.hpp"
+#include "libchar/fit/bounds.hpp"
 #include "libchar/fit/detail/profile.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/detail/selection.hpp"

@@ -3,12 +3,12 @@
 //   sd(c)/c = 1/2 sqrt((I^-1)_aa) / theta_a
 // (Whittle), summed over log bins with three nodes each, so that N = 1e12 costs as much
 // as N = 1e3.
-#include "libchar/fit/detail/bounds.hpp"
+#include "libchar/fit/bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/bin_likelihood.hpp"
 #include "libchar/fit/detail/dct_means.hpp"
 
 namespace libchar {
@@ -71,7 +71,7 @@ std::array<std::optional<double>, kTerms> bound_of(const Mixture& theta,
 std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta,
                                                      double rate_hz,
                                                      double samples,
-                                                     const std::array<bool, kTerms>& fitted) {
+                                                     const TermSet& fitted) {
   return bound_of(theta, rate_hz, samples, fitted);
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "libchar/fit/detail/bin_likelihood.hpp"
+#include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
 
@@ -12,7 +12,7 @@ namespace libchar {
 std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta,
                                                      double rate_hz,
                                                      double samples,
-                                                     const std::array<bool, kTerms>& fitted);
+                                                     const TermSet& fitted);
 
 /// Record length at which the bound of `term` is `relative_sd`, at the same rate; nothing when 1e12
 /// s do not do.

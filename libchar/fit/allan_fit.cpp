@@ -4,7 +4,7 @@
 //   fitted curve stands still
 // (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: each
 // round that moves no less than the one before halves the step.
-#include "libchar/fit/detail/allan_fit.hpp"
+#include "libchar/fit/allan_fit.hpp"
 
 #include <fmt/format.h>
 

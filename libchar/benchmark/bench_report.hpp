@@ -1,0 +1,24 @@
+#pragma once
+// All that a run of benchmarks found.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/benchmark/characterization_bench.hpp"
+#include "libchar/benchmark/fusion_bench.hpp"
+#include "libchar/benchmark/turns.hpp"
+
+namespace libchar {
+
+struct BenchReport {
+  std::vector<std::string> command;  ///< as typed; set by the caller
+  bool quick = false;
+  std::uint64_t seed = 1;
+  Machine machine;
+  std::vector<CharacterizationBench> characterization;
+  std::optional<FusionBench> fusion;
+};
+
+}  // namespace libchar

@@ -1,0 +1,218 @@
+#include "libchar/benchmark/bench_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/readable.hpp"
+
+namespace libchar {
+namespace {
+
+std::string percent(double share) {
+  return std::isnan(share) ? "–" : significant_or_dash(100 * share, 3) + " %";
+}
+
+std::string gap_text(double gap) {
+  if (std::isnan(gap)) return "–";
+  return gap <= 0 ? "on the front" : fmt::format("{} above", percent(gap));
+}
+
+std::string bytes_cell(const std::optional<double>& bytes) {
+  return bytes ? number_text(*bytes, 3) : "–";
+}
+
+BenchSection machine_section(const BenchReport& report) {
+  const Machine& m = report.machine;
+  BenchSection out;
+  out.title = "Machine";
+  out.sentences = {
+      fmt::format("{}, {} processors, {} GiB, {}; {} of this run, {} of processor time; seed {}{}.",
+                  m.processor,
+                  m.cores,
+                  significant_or_dash(m.memory_gib, 3),
+                  m.system,
+                  duration_text(m.wall_s),
+                  duration_text(m.cpu_s),
+                  report.seed,
+                  report.quick ? "; quick: short records, few runs" : "")};
+  if (const std::string load = load_sentence(m); !load.empty()) out.sentences.push_back(load);
+  return out;
+}
+
+std::string term_cell(const EstimatorAccuracy& method, std::size_t term) {
+  return figure_text(method.terms[term].error);
+}
+
+std::string coverage_cell(const EstimatorAccuracy& method) {
+  std::string out;
+  for (const TermAccuracy& term : method.terms) {
+    if (term.coverage.count == 0) continue;
+    out += fmt::format("{}{} {:.0f}",
+                       out.empty() ? "" : ", ",
+                       kTermNames[static_cast<std::size_t>(term.term)].letter,
+                       100 * term.coverage.value);
+  }
+  return out.empty() ? "states none" : out + " %";
+}
+
+BenchChart chart_of(const CharacterizationBench& bench) {
+  BenchChart chart{"processor time, ns a sample", "RMSE over the bound, geometric mean", {}};
+  for (const EstimatorAccuracy& method : bench.methods)
+    chart.points.push_back({method.name,
+                            method.ns_per_sample.value,
+                            method.error,
+                            method.ns_per_sample.ci95,
+                            {-INFINITY, INFINITY},
+                            method.front_gap <= 0,
+                            method.is_ours});
+  return chart;
+}
+
+BenchSection section_of(const CharacterizationBench& bench) {
+  BenchSection out;
+  out.title = "Noise coefficients: " + bench.signal.name;
+  std::string truth;
+  for (const TermAccuracy& term : bench.methods.front().terms)
+    truth += fmt::format("{} = {} (bound {}), ",
+                         kTermNames[static_cast<std::size_t>(term.term)].letter,
+                         number_text(term.truth, 3),
+                         percent(term.bound / term.truth));
+  out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.",
+                               truth,
+                               bench.records,
+                               count_text(bench.signal.samples),
+                               significant_or_dash(bench.signal.rate_hz, 4))};
+  out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
+  out.heads = {"Method"};
+  for (const TermAccuracy& term : bench.methods.front().terms)
+    out.heads.push_back(
+        fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter));
+  for (const char* head : {"Coverage of 95 %", "False terms", "ns a sample", "B a sample", "Front"})
+    out.heads.emplace_back(head);
+  std::vector<const EstimatorAccuracy*> order;
+  for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
+  std::stable_sort(
+      order.begin(), order.end(), [](const auto* a, const auto* b) { return a->error < b->error; });
+  for (const EstimatorAccuracy* method : order) {
+    std::vector<std::string> row = {method->name};
+    for (std::size_t t = 0; t < method->terms.size(); ++t) row.push_back(term_cell(*method, t));
+    row.push_back(coverage_cell(*method));
+    row.push_back(method->false_terms.count == 0 ? "–" : percent(method->false_terms.value));
+    row.push_back(figure_text(method->ns_per_sample));
+    row.push_back(bytes_cell(method->bytes_per_sample));
+    row.push_back(gap_text(method->front_gap));
+    out.rows.push_back(std::move(row));
+  }
+  out.charts = {chart_of(bench)};
+  return out;
+}
+
+BenchSection legend_section(const CharacterizationBench& bench) {
+  BenchSection out;
+  out.title = "The methods";
+  out.heads = {"Method", "What it does"};
+  for (const EstimatorAccuracy& method : bench.methods)
+    out.rows.push_back({method.name, method.what});
+  out.notes = {
+      "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on "
+      "such "
+      "a record. RMSE over it: 1 is as good as can be; a coefficient that is in the records and "
+      "not "
+      "detected counts as an estimate of zero, which can be nearer than the bound says where the "
+      "bound is wide. False terms: records in which a coefficient is stated that is not in them "
+      "(–: "
+      "it is told which there are, or all are). Methods that are told count against each other "
+      "only. "
+      "A coefficient whose bound is wider than half of it is not in the mean that the front and "
+      "the chart go by. Front: no method is at least as fast and more "
+      "exact; "
+      "else by how much the best of those that are is more exact."};
+  return out;
+}
+
+std::string scene_cell(const FusionBenchCell& cell) {
+  return cell.ran ? figure_text(cell.excess, 3, 100) : "does not run";
+}
+
+std::vector<std::string> row_cells(const FusionBenchRow& row) {
+  std::vector<std::string> out = {row.label + (row.bound ? " (bound)" : "")};
+  out.push_back(row.excess.count == 0 ? "–" : figure_text(row.excess, 3, 100));
+  for (const FusionBenchCell& cell : row.cells) out.push_back(scene_cell(cell));
+  out.push_back(figure_text(row.ns_per_sample));
+  std::optional<double> bytes;
+  for (const FusionBenchCell& cell : row.cells)
+    if (cell.bytes) bytes = std::max(bytes.value_or(0), *cell.bytes);
+  out.push_back(bytes_cell(bytes));
+  out.push_back(row.bound ? "–" : gap_text(row.front_gap));
+  return out;
+}
+
+BenchSection over_all(const FusionBench& bench) {
+  BenchSection out;
+  out.title = "Fusion: over the scenes";
+  out.heads = {"Method", "Excess over all, %"};
+  for (std::size_t s = 0; s < bench.scenes.size(); ++s) {
+    const FusionBenchScene& scene = bench.scenes[s];
+    out.heads.push_back(fmt::format("scene {}", s + 1));
+    out.sentences.push_back(
+        fmt::format("Scene {}: {}; {} sensors, {} true {}, {} instants, {} runs{}; yardstick: {}.",
+                    s + 1,
+                    scene.name,
+                    scene.sensors,
+                    scene.inputs,
+                    scene.inputs == 1 ? "input" : "inputs",
+                    count_text(scene.instants),
+                    scene.runs,
+                    scene.pooled ? "" : " (another kind, not in the means over all)",
+                    scene.yardstick));
+  }
+  for (const char* head : {"ns an instant", "B at most", "Front"}) out.heads.emplace_back(head);
+  BenchChart chart{"processor time, ns an instant", "RMSE over the yardstick's", {}};
+  for (const FusionBenchRow& row : bench.rows) {
+    const bool anywhere = std::any_of(
+        row.cells.begin(), row.cells.end(), [](const FusionBenchCell& cell) { return cell.ran; });
+    if (!anywhere) continue;
+    out.rows.push_back(row_cells(row));
+    if (row.bound || row.excess.count == 0 || row.ns_per_sample.count == 0) continue;
+    chart.points.push_back({row.label,
+                            row.ns_per_sample.value,
+                            1 + row.excess.value,
+                            row.ns_per_sample.ci95,
+                            {1 + row.excess.ci95.low, 1 + row.excess.ci95.high},
+                            row.front_gap <= 0,
+                            true});
+  }
+  out.notes = {
+      "Excess: RMSE over the yardstick's, minus one; mean over the runs and its 95 % interval by "
+      "Student's t. Times: median over the runs and the order statistics that hold it with 95 %. "
+      "Over all: geometric means over the scenes of the most frequent kind."};
+  if (chart.points.size() > 1) out.charts = {chart};
+  return out;
+}
+
+}  // namespace
+
+std::string figure_text(const Figure& figure, int digits, double factor) {
+  if (figure.count == 0 || std::isnan(figure.value)) return "–";
+  std::string out = significant_or_dash(factor * figure.value, digits);
+  if (std::isfinite(figure.ci95.low) && std::isfinite(figure.ci95.high))
+    out += fmt::format(" [{}, {}]",
+                       significant_or_dash(factor * figure.ci95.low, digits),
+                       significant_or_dash(factor * figure.ci95.high, digits));
+  return out;
+}
+
+std::vector<BenchSection> bench_view(const BenchReport& report) {
+  std::vector<BenchSection> out;
+  for (const CharacterizationBench& bench : report.characterization)
+    out.push_back(section_of(bench));
+  if (!report.characterization.empty())
+    out.push_back(legend_section(report.characterization.front()));
+  if (report.fusion) out.push_back(over_all(*report.fusion));
+  out.push_back(machine_section(report));
+  return out;
+}
+
+}  // namespace libchar

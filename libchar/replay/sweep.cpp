@@ -1,0 +1,108 @@
+#include "libchar/replay/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/fusion/registry.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kRangeValues = 12;
+
+[[noreturn]] void refuse_sweep(const std::string& where, const std::string& text) {
+  throw Error({ErrorKind::usage,
+               "E0963",
+               where,
+               "expected ALGORITHM.OPTION=NUMBER, or where several are taken NUMBER,NUMBER… or "
+               "FROM..TO of whole numbers",
+               text,
+               where + " minque.gamma=0.99"});
+}
+
+bool is_whole(double value) {
+  return std::floor(value) == value && std::abs(value) < 1e9;
+}
+
+/// All of a short range; of a longer one the ends and what stands at about equal ratios (differences from zero on).
+std::vector<double> range_values(double from, double to) {
+  std::vector<double> out;
+  if (to - from < static_cast<double>(kRangeValues)) {
+    for (double v = from; v <= to; ++v) out.push_back(v);
+    return out;
+  }
+  for (std::size_t i = 0; i < kRangeValues; ++i) {
+    const double share = static_cast<double>(i) / (kRangeValues - 1);
+    const double value = from > 0 ? from * std::pow(to / from, share) : from + (to - from) * share;
+    if (out.empty() || std::round(value) > out.back()) out.push_back(std::round(value));
+  }
+  return out;
+}
+
+std::vector<double> values_in(const std::string& list,
+                              const std::string& where,
+                              const std::string& text) {
+  std::vector<double> out;
+  if (const std::size_t dots = list.find(".."); dots != std::string::npos) {
+    const auto from = parse_double(list.substr(0, dots)), to = parse_double(list.substr(dots + 2));
+    if (!from || !to || !is_whole(*from) || !is_whole(*to) || *to < *from)
+      refuse_sweep(where, text);
+    return range_values(*from, *to);
+  }
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', at), list.size());
+    const auto value = parse_double(list.substr(at, comma - at));
+    if (!value) refuse_sweep(where, text);
+    out.push_back(*value);
+    at = comma + 1;
+  }
+  return out;
+}
+
+SceneAlgorithm with_option(SceneAlgorithm algorithm, const std::string& option, double value) {
+  std::erase_if(algorithm.options, [&](const auto& o) { return o.first == option; });
+  algorithm.options.emplace_back(option, value);
+  return algorithm;
+}
+
+}  // namespace
+
+Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most) {
+  const std::size_t equals = text.find('='), dot = text.rfind('.', equals);
+  if (equals == std::string::npos || dot == std::string::npos) refuse_sweep(where, text);
+  Sweep out{text.substr(0, dot),
+            text.substr(dot + 1, equals - dot - 1),
+            values_in(text.substr(equals + 1), where, text)};
+  if (out.values.size() > most) refuse_sweep(where, text);
+  fusion::Settings settings(fusion::algorithm(out.algorithm).options);
+  for (const double value : out.values) settings.set(out.option, value);
+  return out;
+}
+
+std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps,
+                                  const std::vector<SceneAlgorithm>& algorithms) {
+  std::vector<SceneAlgorithm> out = algorithms;
+  for (const Sweep& sweep : sweeps) {
+    std::vector<SceneAlgorithm> next;
+    bool found = false;
+    for (const SceneAlgorithm& algorithm : out) {
+      if (algorithm.name != sweep.algorithm) {
+        next.push_back(algorithm);
+        continue;
+      }
+      found = true;
+      for (const double value : sweep.values)
+        next.push_back(with_option(algorithm, sweep.option, value));
+    }
+    for (std::size_t i = 0; i < sweep.values.size() && !found; ++i)
+      next.push_back(with_option({sweep.algorithm, {}, 0, 0}, sweep.option, sweep.values[i]));
+    out = std::move(next);
+  }
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,175 @@
+// bench [FILE…]: run time against error, of ways to get noise coefficients and of fusion algorithms, on models, logs and scenes.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "heap_meter.hpp"
+#include "libchar/benchmark/bench_inputs.hpp"
+#include "libchar/benchmark/bench_report.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/output_files.hpp"
+#include "libchar/core/spelling.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/report/bench_report_files.hpp"
+#include "reading_options.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct BenchVerb {
+  std::vector<std::string> files, parts, methods, algorithms, sweeps;
+  std::string folder;
+  BenchInputOptions inputs;
+  std::uint64_t seed = 1, records = 0, runs = 0, samples = 0;
+  bool quick = false, force = false, json = false;
+
+  bool wants(const std::string& part) const {
+    return parts.empty() || std::find(parts.begin(), parts.end(), part) != parts.end();
+  }
+};
+
+const std::vector<std::string> kBenchParts = {"characterization", "fusion"};
+
+void check_parts(const BenchVerb& verb) {
+  for (const std::string& part : verb.parts)
+    if (std::find(kBenchParts.begin(), kBenchParts.end(), part) == kBenchParts.end())
+      throw Error({ErrorKind::usage,
+                   "E0202",
+                   "--parts",
+                   "no such part of a benchmark",
+                   part,
+                   did_you_mean(nearest(part, kBenchParts), first_names(kBenchParts))});
+}
+
+// Of the files, or what is built in where there are none. A part that nothing was given for is left out.
+BenchInputs inputs_of(Session& session, BenchVerb& verb) {
+  BenchInputs out;
+  verb.inputs.most_samples = verb.samples != 0 ? verb.samples : verb.quick ? 1U << 15U : 200000U;
+  for (const std::string& file : verb.files)
+    add_bench_input(file, verb.inputs, out, session.terminal);
+  if (!verb.files.empty()) return out;
+  if (verb.wants("characterization")) out.signals = bench_signals(verb.quick);
+  if (verb.wants("fusion")) out.scenes = bench_scenes();
+  return out;
+}
+
+BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
+  const MachineWatch watch;
+  BenchReport report;
+  report.command = session.command;
+  report.quick = verb.quick;
+  report.seed = verb.seed;
+  CharacterizationBenchOptions options;
+  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 60;
+  options.seed = verb.seed;
+  options.methods = verb.methods;
+  if (verb.wants("characterization"))
+    for (const BenchSignal& signal : inputs.signals)
+      report.characterization.push_back(
+          bench_characterization(signal, options, session.terminal, heap_meter()));
+  if (verb.wants("fusion") && !inputs.scenes.empty()) {
+    FusionBenchOptions fusion;
+    fusion.seeds = verb.runs != 0 ? verb.runs : verb.quick ? 3 : 12;
+    fusion.seed = verb.seed;
+    fusion.algorithms = verb.algorithms;
+    for (const std::string& text : verb.sweeps)
+      fusion.sweeps.push_back(parse_sweep(text, "--sweep"));
+    report.fusion = bench_fusion(inputs.scenes, fusion, session.terminal, heap_meter());
+  }
+  report.machine = watch.finish();
+  session.terminal.clear();
+  return report;
+}
+
+void run_bench(Session& session, BenchVerb& verb) {
+  check_parts(verb);
+  const auto foreseen = [&] {
+    std::vector<std::string> out;
+    for (const char* name : {"bench.html", "bench.json", "bench.md"})
+      out.push_back((std::filesystem::path(verb.folder) / name).string());
+    return out;
+  };
+  if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
+  const BenchInputs inputs = inputs_of(session, verb);
+  const BenchReport report = measured(session, verb, inputs);
+  if (report.characterization.empty() && !report.fusion)
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "--parts",
+                 "nothing to do: models and logs are for characterization, scenes for fusion",
+                 "",
+                 "other files, or other parts"});
+  std::vector<std::string> removed;
+  if (!verb.folder.empty())
+    removed = write_outputs(bench_files(report, verb.folder), verb.folder, verb.files, verb.force);
+  if (verb.json) return print(dump_json(bench_json(report)));
+  print_text(bench_text(report));
+  if (!verb.folder.empty()) print(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
+}
+
+std::function<void()> bench_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<BenchVerb>();
+  options
+      .add_texts("FILE",
+                 verb->files,
+                 "models, logs (their fitted models) and scenes; none: built-in signals and scenes")
+      .value_name("FILE…");
+  options.add_text("-o,--output", verb->folder, "folder for bench.html, bench.json, bench.md")
+      .value_name("DIR");
+  options
+      .add_texts(
+          "--parts", verb->parts, "these only: " + fmt::format("{}", fmt::join(kBenchParts, ", ")))
+      .separated_by_commas()
+      .value_name("PART,…");
+  options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
+  options.add_count("--seed", verb->seed, "of the first simulation (default: 1)");
+  options.add_count("--records",
+                    verb->records,
+                    "simulated records of each signal (default: 60; quick: 12)",
+                    2,
+                    100000);
+  options.add_count("--samples",
+                    verb->samples,
+                    "of a record, at most (default: 200000; quick: 32768)",
+                    64,
+                    std::uint64_t{1} << 32U);
+  options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
+  options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
+      .separated_by_commas()
+      .value_name("NAME,…");
+  options
+      .add_texts(
+          "--algorithms", verb->algorithms, "fusion algorithms (default: the scene's, else all)")
+      .separated_by_commas()
+      .value_name("NAME,…");
+  options
+      .add_texts("--sweep",
+                 verb->sweeps,
+                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
+                 "FROM..TO; several make a grid")
+      .one_value_each()
+      .value_name("SWEEP");
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
+  add_reading_options(options, session, verb->inputs.reading);
+  return [&session, verb] { run_bench(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_bench() {
+  return {13,
+          "bench",
+          "Run time against error: ways to get noise coefficients, fusion algorithms",
+          bench_options};
+}
+
+}  // namespace sensorchar
