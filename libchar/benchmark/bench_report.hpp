@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "libchar/benchmark/characterization_bench.hpp"
+#include "libchar/benchmark/design_bench.hpp"
 #include "libchar/benchmark/fusion_bench.hpp"
+#include "libchar/benchmark/scaling_bench.hpp"
 #include "libchar/benchmark/turns.hpp"
 
 namespace libchar {
@@ -19,6 +21,8 @@ struct BenchReport {
   Machine machine;
   std::vector<CharacterizationBench> characterization;
   std::optional<FusionBench> fusion;
+  std::optional<ScalingBench> scaling;
+  std::optional<DesignBench> design;
 };
 
 }  // namespace libchar

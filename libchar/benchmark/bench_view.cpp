@@ -192,6 +192,97 @@ BenchSection over_all(const FusionBench& bench) {
   return out;
 }
 
+std::string bytes_text(double bytes) {
+  if (bytes < 1e4) return significant_or_dash(bytes, 3) + " B";
+  return bytes < 1e7 ? significant_or_dash(bytes / 1e3, 3) + " kB"
+                     : significant_or_dash(bytes / 1e6, 3) + " MB";
+}
+
+std::string at_text(const std::string& over, double x) {
+  return over == "samples" ? number_text(x, 3) : significant_or_dash(x, 6);
+}
+
+/// Growth over one quantity: a column a point of the smallest, a middle and the largest.
+BenchSection growth_section(const ScalingBench& bench, const std::string& over) {
+  BenchSection out;
+  out.title = "Growth of cost over " + over;
+  const bool sensors = over == "sensors";
+  out.heads = {"Work", "at the least", "at the most", "Memory at the most", "Exponent"};
+  if (sensors)
+    out.heads.push_back(fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3)));
+  for (const ScalingSeries& series : bench.series) {
+    if (series.over != over || series.points.empty()) continue;
+    const ScalingPoint &least = series.points.front(), &most = series.points.back();
+    const auto cell = [&](const ScalingPoint& p) {
+      return fmt::format("{}: {} {}", at_text(over, p.x), figure_text(p.cost), series.unit);
+    };
+    std::vector<std::string> row = {series.name,
+                                    cell(least),
+                                    cell(most),
+                                    most.bytes ? bytes_text(*most.bytes) : "–",
+                                    figure_text(series.exponent, 3)};
+    if (sensors)
+      row.push_back(!series.keeps_up_to          ? "–"
+                    : *series.keeps_up_to >= 1e6 ? "10⁶ and more"
+                                                 : number_text(std::floor(*series.keeps_up_to), 3));
+    out.rows.push_back(std::move(row));
+  }
+  if (over == "samples")
+    out.notes = {
+        "Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
+  if (sensors)
+    out.notes = {
+        "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the "
+        "time of an instant reaches the time between two); beyond the largest number tried by the "
+        "exponent. More sensors than that are not worth their error with this method on one "
+        "processor."};
+  return out;
+}
+
+BenchSection sensors_section(const DesignBench& bench) {
+  BenchSection out;
+  out.title = "Design: how many sensors";
+  out.sentences = {fmt::format("Asked for: an Allan deviation of {} at {} of averaging.",
+                               number_text(*bench.options.target, 4),
+                               duration_text(bench.options.tau_s))};
+  if (bench.one_of_each)
+    out.sentences.push_back(fmt::format(
+        "One of each together, weighted: {}{}.",
+        number_text(*bench.one_of_each, 4),
+        *bench.one_of_each <= *bench.options.target ? ", which does" : ", which does not do"));
+  out.heads = {"Model", "One has", "Needed", "They have", "Simulated"};
+  for (const SensorsNeeded& row : bench.sensors)
+    out.rows.push_back(
+        {row.model,
+         number_text(row.single, 4),
+         count_text(row.sensors),
+         number_text(row.predicted, 4),
+         row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
+  out.notes = {
+      "For independent sensors: what they share (temperature, supply, a common clock) no number of "
+      "them removes."};
+  return out;
+}
+
+BenchSection records_section(const DesignBench& bench) {
+  BenchSection out;
+  out.title = "Design: how long a record";
+  out.sentences = {fmt::format("Each coefficient to {} of itself (one standard deviation).",
+                               percent(bench.options.share))};
+  out.heads = {"Model", "Coefficient", "Record", "Samples", "Simulated, %"};
+  for (const RecordNeeded& row : bench.records)
+    out.rows.push_back(
+        {row.model,
+         std::string(kTermNames[static_cast<std::size_t>(row.term)].letter),
+         row.seconds ? duration_text(*row.seconds) : "none is long enough",
+         row.seconds ? number_text(row.samples, 3) : "–",
+         row.simulated.count == 0 ? "not checked" : figure_text(row.simulated, 3, 100)});
+  out.notes = {
+      "By the Cramér-Rao bound; simulated: the relative RMSE of the Whittle likelihood on records "
+      "of that length."};
+  return out;
+}
+
 }  // namespace
 
 std::string figure_text(const Figure& figure, int digits, double factor) {
@@ -211,6 +302,13 @@ std::vector<BenchSection> bench_view(const BenchReport& report) {
   if (!report.characterization.empty())
     out.push_back(legend_section(report.characterization.front()));
   if (report.fusion) out.push_back(over_all(*report.fusion));
+  if (report.scaling)
+    for (const char* over : {"samples", "threads", "sensors", "inputs"})
+      out.push_back(growth_section(*report.scaling, over));
+  if (report.design) {
+    if (!report.design->sensors.empty()) out.push_back(sensors_section(*report.design));
+    out.push_back(records_section(*report.design));
+  }
   out.push_back(machine_section(report));
   return out;
 }

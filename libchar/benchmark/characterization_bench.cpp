@@ -7,11 +7,11 @@
 
 #include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/benchmark/detail/pareto.hpp"
+#include "libchar/benchmark/detail/records.hpp"
 #include "libchar/benchmark/turns.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/fit/bounds.hpp"
-#include "libchar/simulate/sensor_array.hpp"
 
 namespace libchar {
 namespace {
@@ -36,32 +36,6 @@ void give(SensorModel& model, Term term, double value) {
   c.value = value;
 }
 
-/// The model without what is no noise: a record of it is what an estimator gets.
-SensorModel noise_alone(const SensorModel& model) {
-  SensorModel out = model;
-  out.scale_factor = {};
-  out.nonlinearity = {};
-  out.bias = {};
-  out.sensitivity = {};
-  out.saturation_low = out.saturation_high = std::nullopt;
-  return out;
-}
-
-std::vector<double> record_of(const BenchSignal& signal, std::uint64_t seed) {
-  ArraySimulation simulation;
-  simulation.rate_hz = signal.rate_hz;
-  simulation.samples = signal.samples;
-  simulation.seed = seed;
-  simulation.sensors.push_back({"s", noise_alone(signal.model)});
-  ArraySimulator simulator(simulation, 1);
-  std::vector<double> out;
-  out.reserve(signal.samples);
-  for (auto columns = simulator.next(65536); !columns.empty() && !columns[0].empty();
-       columns = simulator.next(65536))
-    out.insert(out.end(), columns[0].begin(), columns[0].end());
-  return out;
-}
-
 std::vector<Estimator> chosen_estimators(const std::vector<std::string>& names) {
   if (names.empty()) return estimators();
   std::vector<std::string> known;
@@ -79,15 +53,6 @@ std::vector<Estimator> chosen_estimators(const std::vector<std::string>& names) 
     out.push_back(estimators()[static_cast<std::size_t>(row - known.begin())]);
   }
   return out;
-}
-
-Mixture truth_of(const SensorModel& model) {
-  Mixture theta{};
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    const double value = simulated_value(model.noise[i]);
-    theta[i] = value * value;
-  }
-  return theta;
 }
 
 struct Tally {

@@ -106,6 +106,47 @@ Json fusion_json(const FusionBench& bench) {
   return out;
 }
 
+Json scaling_json(const ScalingBench& bench) {
+  Json out = {{"rate_hz", json_number(bench.rate_hz)}, {"series", Json::array()}};
+  for (const ScalingSeries& series : bench.series) {
+    Json points = Json::array();
+    for (const ScalingPoint& point : series.points)
+      points.push_back({{"x", json_number(point.x)},
+                        {"cost", figure_json(point.cost)},
+                        {"bytes", json_number(point.bytes)}});
+    out["series"].push_back({{"name", series.name},
+                             {"over", series.over},
+                             {"unit", series.unit},
+                             {"points", std::move(points)},
+                             {"exponent", figure_json(series.exponent)},
+                             {"keeps_up_to", json_number(series.keeps_up_to)}});
+  }
+  return out;
+}
+
+Json design_json(const DesignBench& bench) {
+  Json out = {{"target", json_number(bench.options.target)},
+              {"tau_s", json_number(bench.options.tau_s)},
+              {"share", json_number(bench.options.share)},
+              {"one_of_each", json_number(bench.one_of_each)},
+              {"sensors", Json::array()},
+              {"records", Json::array()}};
+  for (const SensorsNeeded& row : bench.sensors)
+    out["sensors"].push_back({{"model", json_text(row.model)},
+                              {"single", json_number(row.single)},
+                              {"sensors", row.sensors},
+                              {"predicted", json_number(row.predicted)},
+                              {"simulated", figure_json(row.simulated)}});
+  for (const RecordNeeded& row : bench.records)
+    out["records"].push_back(
+        {{"model", json_text(row.model)},
+         {"term", std::string(kTermNames[static_cast<std::size_t>(row.term)].key)},
+         {"seconds", json_number(row.seconds)},
+         {"samples", json_number(row.samples)},
+         {"simulated", figure_json(row.simulated)}});
+  return out;
+}
+
 std::string section_html(const BenchSection& section) {
   std::string out = "<section class=\"channel\">\n<h2>" + html_text(section.title) + "</h2>\n";
   for (const std::string& sentence : section.sentences)
@@ -139,6 +180,8 @@ Json bench_json(const BenchReport& report) {
   for (const CharacterizationBench& bench : report.characterization)
     out["characterization"].push_back(characterization_json(bench));
   out["fusion"] = report.fusion ? fusion_json(*report.fusion) : Json(nullptr);
+  out["scaling"] = report.scaling ? scaling_json(*report.scaling) : Json(nullptr);
+  out["design"] = report.design ? design_json(*report.design) : Json(nullptr);
   return out;
 }
 

@@ -29,14 +29,16 @@ struct BenchVerb {
   std::string folder;
   BenchInputOptions inputs;
   std::uint64_t seed = 1, records = 0, runs = 0, samples = 0;
+  std::optional<double> target, tau_s, share, rate_hz;
   bool quick = false, force = false, json = false;
 
+  /// Parts that were not named are done where they are asked of what was given.
   bool wants(const std::string& part) const {
     return parts.empty() || std::find(parts.begin(), parts.end(), part) != parts.end();
   }
 };
 
-const std::vector<std::string> kBenchParts = {"characterization", "fusion"};
+const std::vector<std::string> kBenchParts = {"characterization", "fusion", "scaling", "design"};
 
 void check_parts(const BenchVerb& verb) {
   for (const std::string& part : verb.parts)
@@ -56,9 +58,52 @@ BenchInputs inputs_of(Session& session, BenchVerb& verb) {
   for (const std::string& file : verb.files)
     add_bench_input(file, verb.inputs, out, session.terminal);
   if (!verb.files.empty()) return out;
-  if (verb.wants("characterization")) out.signals = bench_signals(verb.quick);
+  if (verb.wants("characterization") || verb.wants("design"))
+    out.signals = bench_signals(verb.quick);
   if (verb.wants("fusion")) out.scenes = bench_scenes();
   return out;
+}
+
+void bench_noise(Session& session,
+                 const BenchVerb& verb,
+                 const BenchInputs& inputs,
+                 BenchReport& report) {
+  CharacterizationBenchOptions options;
+  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 60;
+  options.seed = verb.seed;
+  options.methods = verb.methods;
+  for (const BenchSignal& signal : inputs.signals)
+    report.characterization.push_back(
+        bench_characterization(signal, options, session.terminal, heap_meter()));
+}
+
+FusionBench bench_scenes_of(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
+  FusionBenchOptions options;
+  options.seeds = verb.runs != 0 ? verb.runs : verb.quick ? 3 : 12;
+  options.seed = verb.seed;
+  options.algorithms = verb.algorithms;
+  for (const std::string& text : verb.sweeps)
+    options.sweeps.push_back(parse_sweep(text, "--sweep"));
+  return bench_fusion(inputs.scenes, options, session.terminal, heap_meter());
+}
+
+ScalingBench bench_growth(Session& session, const BenchVerb& verb) {
+  ScalingBenchOptions options;
+  options.quick = verb.quick;
+  options.seed = verb.seed;
+  if (verb.rate_hz) options.rate_hz = *verb.rate_hz;
+  return bench_scaling(options, session.terminal, heap_meter());
+}
+
+DesignBench bench_needs(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
+  DesignOptions options;
+  options.target = verb.target;
+  options.tau_s = verb.tau_s.value_or(1);
+  options.share = verb.share.value_or(10) / 100;
+  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 40;
+  options.seed = verb.seed;
+  if (verb.quick) options.most_samples = 4e5;
+  return bench_design(inputs.signals, options, session.terminal);
 }
 
 BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
@@ -67,23 +112,14 @@ BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs&
   report.command = session.command;
   report.quick = verb.quick;
   report.seed = verb.seed;
-  CharacterizationBenchOptions options;
-  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 60;
-  options.seed = verb.seed;
-  options.methods = verb.methods;
-  if (verb.wants("characterization"))
-    for (const BenchSignal& signal : inputs.signals)
-      report.characterization.push_back(
-          bench_characterization(signal, options, session.terminal, heap_meter()));
-  if (verb.wants("fusion") && !inputs.scenes.empty()) {
-    FusionBenchOptions fusion;
-    fusion.seeds = verb.runs != 0 ? verb.runs : verb.quick ? 3 : 12;
-    fusion.seed = verb.seed;
-    fusion.algorithms = verb.algorithms;
-    for (const std::string& text : verb.sweeps)
-      fusion.sweeps.push_back(parse_sweep(text, "--sweep"));
-    report.fusion = bench_fusion(inputs.scenes, fusion, session.terminal, heap_meter());
-  }
+  if (verb.wants("characterization")) bench_noise(session, verb, inputs, report);
+  if (verb.wants("fusion") && !inputs.scenes.empty())
+    report.fusion = bench_scenes_of(session, verb, inputs);
+  // How cost grows is asked of the program and not of a file.
+  if (verb.parts.empty() ? verb.files.empty() : verb.wants("scaling"))
+    report.scaling = bench_growth(session, verb);
+  if (verb.wants("design") && !inputs.signals.empty())
+    report.design = bench_needs(session, verb, inputs);
   report.machine = watch.finish();
   session.terminal.clear();
   return report;
@@ -100,7 +136,7 @@ void run_bench(Session& session, BenchVerb& verb) {
   if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
   const BenchInputs inputs = inputs_of(session, verb);
   const BenchReport report = measured(session, verb, inputs);
-  if (report.characterization.empty() && !report.fusion)
+  if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design)
     throw Error({ErrorKind::usage,
                  "E0205",
                  "--parts",
@@ -157,6 +193,25 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
                  "FROM..TO; several make a grid")
       .one_value_each()
       .value_name("SWEEP");
+  options
+      .add_number(
+          "--target",
+          verb->target,
+          "design: Allan deviation that the fused sensors are to reach, in the models' unit",
+          1e-100,
+          1e100)
+      .value_name("DEVIATION");
+  options.add_duration("--at", verb->tau_s, "design: averaging time of that target (default: 1 s)");
+  options
+      .add_number("--within",
+                  verb->share,
+                  "design: percent of itself that a coefficient is to be known to (default: 10)",
+                  0.01,
+                  99)
+      .value_name("PERCENT");
+  options.add_rate("--instants-rate",
+                   verb->rate_hz,
+                   "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);
