@@ -66,7 +66,8 @@ BenchChart chart_of(const CharacterizationBench& bench) {
                             method.ns_per_sample.ci95,
                             {-INFINITY, INFINITY},
                             method.front_gap <= 0,
-                            method.is_ours});
+                            method.is_ours,
+                            method.told});
   return chart;
 }
 
@@ -287,11 +288,11 @@ BenchSection records_section(const DesignBench& bench) {
 
 std::string figure_text(const Figure& figure, int digits, double factor) {
   if (figure.count == 0 || std::isnan(figure.value)) return "–";
-  std::string out = significant_or_dash(factor * figure.value, digits);
+  std::string out = number_text(factor * figure.value, digits);
   if (std::isfinite(figure.ci95.low) && std::isfinite(figure.ci95.high))
     out += fmt::format(" [{}, {}]",
-                       significant_or_dash(factor * figure.ci95.low, digits),
-                       significant_or_dash(factor * figure.ci95.high, digits));
+                       number_text(factor * figure.ci95.low, digits),
+                       number_text(factor * figure.ci95.high, digits));
   return out;
 }
 

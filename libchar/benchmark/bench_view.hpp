@@ -14,6 +14,7 @@ struct BenchPoint {
   Interval x95, y95;      ///< infinite: not known
   bool on_front = false;  ///< nobody is better in both
   bool is_ours = true;
+  bool told = false;  ///< has a front of its own: it knows what the others have to find out
 };
 
 struct BenchChart {

@@ -59,12 +59,13 @@ SvgFrame frame_of(const BenchChart& chart) {
 }
 
 /// Steps through the points of the front: what can be had for at most so much.
-std::string front_line(const BenchChart& chart, const SvgFrame& frame) {
+std::string front_line(const BenchChart& chart, const SvgFrame& frame, bool told) {
   std::vector<BenchPoint> front;
   std::copy_if(
-      chart.points.begin(), chart.points.end(), std::back_inserter(front), [](const BenchPoint& p) {
-        return p.on_front && drawable(p.x, p.y);
-      });
+      chart.points.begin(),
+      chart.points.end(),
+      std::back_inserter(front),
+      [&](const BenchPoint& p) { return p.on_front && p.told == told && drawable(p.x, p.y); });
   std::sort(front.begin(), front.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::string points;
   for (std::size_t i = 0; i < front.size(); ++i) {
@@ -103,7 +104,8 @@ std::string svg_points(const BenchChart& chart, const std::string& title) {
       }))
     return "";
   const SvgFrame frame = frame_of(chart);
-  std::string out = svg_opening(frame, title) + front_line(chart, frame);
+  std::string out =
+      svg_opening(frame, title) + front_line(chart, frame, false) + front_line(chart, frame, true);
   std::vector<Box> taken;
   for (const BenchPoint& p : chart.points)
     if (drawable(p.x, p.y)) {
@@ -117,19 +119,26 @@ std::string svg_points(const BenchChart& chart, const std::string& title) {
     const Box label = place_of(x, y, kLetter * static_cast<double>(width_of(p.name)), taken);
     taken.push_back(label);
     out += bars(p, frame, colour);
-    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>",
-                       x,
-                       y,
-                       p.on_front ? 5 : 3.5,
-                       colour);
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                       label.left,
-                       label.bottom - 3,
-                       html_text(p.name));
+    out += fmt::format(
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" "
+        "stroke-width=\"1.5\"/>",
+        x,
+        y,
+        p.on_front ? 5 : 3.5,
+        p.told ? "#ffffff" : colour,
+        colour);
+    out += fmt::format(
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" paint-order=\"stroke\" stroke=\"#ffffff\" "
+        "stroke-width=\"3\">{}</text>\n",
+        label.left,
+        label.bottom - 3,
+        html_text(p.name));
   }
   return out + svg_closing(chart.x, chart.y) +
          "<figcaption>Lower and further left is better. Dashed: the front, on which nobody is "
-         "better in both; large: on it. Lines: 95 % intervals.</figcaption>\n</figure>\n";
+         "better in both; large: on it. Lines: 95 % intervals. Blue: this program; orange: recipes "
+         "of others. Open: told which terms there are, with a front of their "
+         "own.</figcaption>\n</figure>\n";
 }
 
 }  // namespace libchar
