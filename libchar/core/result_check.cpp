@@ -83,6 +83,10 @@ ResultCheck check_document(const fs::path& path,
 
 }  // namespace
 
+Json result_document(const std::string& path) {
+  return Json::parse(file_text(path, kMostOfDocument), nullptr, false);
+}
+
 std::string_view state_word(FileState state) {
   switch (state) {
     case FileState::same:
@@ -120,7 +124,7 @@ std::vector<ResultCheck> check_results(const std::string& folder_or_document,
   }
   std::vector<ResultCheck> out;
   for (const fs::path& path : documents) {
-    const Json document = Json::parse(file_text(path.string(), kMostOfDocument), nullptr, false);
+    const Json document = result_document(path.string());
     if (document.is_object() && document.contains("files") && document.contains("tool"))
       out.push_back(check_document(path, document, inputs_in));
   }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/json.hpp"
+
 namespace libchar {
 
 enum class FileState {
@@ -29,6 +31,10 @@ struct ResultCheck {
   std::vector<CheckedFile> files;
   bool holds() const;  ///< nothing changed, nothing missing
 };
+
+/// One of them, which may be larger than a document that people write; discarded where it is no JSON. Throws Error(input) where it cannot be
+/// read.
+Json result_document(const std::string& path);
 
 /// Looks at all documents in a folder that name files of theirs, or at the one document. Paths of inputs are those of the document, below
 /// `inputs_in` where they are relative ("": as they are). Throws Error(input) where there is none, or one cannot be read, and

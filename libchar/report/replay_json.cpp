@@ -399,10 +399,11 @@ void add_run(Json& out, const ReplayResult& result) {
 
 Json replay_json_without_times(const ReplayView& view) {
   Json out = replay_json(view);
-  for (const char* key : {"measured", "command", "verdict_with_costs"}) out.erase(key);
-  for (Json& algorithm : out["algorithms"])
-    for (const char* key : {"ns_per_sample", "learning_s", "peak_bytes", "on_front"})
-      algorithm.erase(key);
+  out.erase("command");
+  for (const char* key : kMeasuredKeys) {
+    out.erase(key);
+    for (Json& algorithm : out["algorithms"]) algorithm.erase(key);
+  }
   return out;
 }
 

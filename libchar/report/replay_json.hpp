@@ -12,6 +12,10 @@ Json replay_json(const ReplayView& view);
 /// The same with a view made for it alone.
 Json replay_json(const ReplayResult& result);
 
+/// What a clock or the heap measured, and what follows from it.
+inline constexpr const char* kMeasuredKeys[] = {
+    "measured", "verdict_with_costs", "ns_per_sample", "learning_s", "peak_bytes", "on_front"};
+
 /// The same without those keys, the fronts and the verdict that follow from them, and the command:
 /// the same bytes for the same scene and options.
 Json replay_json_without_times(const ReplayView& view);

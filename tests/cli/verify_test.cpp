@@ -77,3 +77,60 @@ TEST_CASE("verify: a folder without a report, and documents of other kinds, are 
   CHECK(test::run({"verify", (folder / "y.json").string()}).code == 3);
   CHECK(test::run({"verify", (folder / "none").string()}).code == 3);
 }
+
+TEST_CASE("verify --rerun: the same numbers, and the same bytes of tables and models") {
+  const VerifyBench bench;
+  const std::string again = (bench.folder / "again").string();
+  const auto ran = test::run({"verify", bench.out, "--rerun", again});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out,
+             Contains("same      every number") && Contains("same      gyro_z.sensor.yaml"));
+  CHECK(files::exists(files::path(again) / "report.html"));
+  // What stands already is not replaced.
+  CHECK(test::run({"verify", bench.out, "--rerun", again}).code == 5);
+}
+
+TEST_CASE("verify --rerun: a number that was changed by hand is found, exit 6") {
+  const VerifyBench bench;
+  const files::path report = files::path(bench.out) / "report.json";
+  auto document = libchar::parse_json(test::slurp(report), "report");
+  document["recording"]["rate_hz"] = 51;
+  std::ofstream(report) << document.dump();
+  const auto ran = test::run({"verify", bench.out, "--rerun", (bench.folder / "again").string()});
+  CHECK(ran.code == 6);
+  CHECK_THAT(ran.out, Contains("/recording/rate_hz") && Contains("was 51"));
+  CHECK_THAT(ran.err, Contains("E0520"));
+}
+
+TEST_CASE("verify --rerun: a document is no order") {
+  const VerifyBench bench;
+  const files::path report = files::path(bench.out) / "report.json";
+  const auto original = libchar::parse_json(test::slurp(report), "report");
+  const auto refused = [&](const std::vector<std::string>& command) {
+    auto document = original;
+    document["command"] = command;
+    std::ofstream(report) << document.dump();
+    const auto ran = test::run({"verify", bench.out, "--rerun", (bench.folder / "again").string()});
+    CHECK(ran.code == 2);
+    return ran.err;
+  };
+  const std::string other = (bench.folder / "other").string();
+  CHECK_THAT(refused({"sensorchar", "convert", bench.log, "-o", other}), Contains("E0205"));
+  CHECK_THAT(refused({"sensorchar", "replay", bench.log, "--write-scene", other}),
+             Contains("E0205"));
+  CHECK_THAT(refused({}), Contains("E0205"));
+  // Where the results go is said here, not there.
+  auto document = original;
+  document["command"] = {"sensorchar",
+                         "characterize",
+                         bench.log,
+                         "-c",
+                         "gyro_z",
+                         "-o" + other,
+                         "--force",
+                         "--output",
+                         other};
+  std::ofstream(report) << document.dump();
+  CHECK(test::run({"verify", bench.out, "--rerun", (bench.folder / "third").string()}).code == 0);
+  CHECK_FALSE(files::exists(other));
+}

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +12,7 @@
 #include "libchar/core/result_check.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
+#include "rerun.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -18,7 +21,7 @@ namespace {
 using namespace libchar;
 
 struct VerifyVerb {
-  std::string results, inputs_in;
+  std::string results, inputs_in, again;
   bool json = false;
 };
 
@@ -49,8 +52,81 @@ Json check_json(const ResultCheck& check) {
   return out;
 }
 
+std::string digits_text(double relative) {
+  return std::isfinite(relative) ? fmt::format(", {:.2g} relative", relative) : "";
+}
+
+std::string rerun_text(const Rerun& run) {
+  std::string out = fmt::format("{}: run again into {}\n",
+                                printable(run.document),
+                                printable(std::filesystem::path(run.again).parent_path().string()));
+  for (const auto& [file, same] : run.files)
+    out += fmt::format("  {:9} {}\n", same ? "same" : "other", printable(file));
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = 0; i < std::min(kShown, run.differences.size()); ++i) {
+    const JsonDifference& d = run.differences[i];
+    out += fmt::format("  other     {}: {}, was {}{}\n",
+                       printable(d.at),
+                       printable(d.now),
+                       printable(d.was),
+                       digits_text(d.relative));
+  }
+  if (run.differences.size() > kShown)
+    out += fmt::format("  and {} more\n", run.differences.size() - kShown);
+  if (run.differences.empty()) out += "  same      every number of the document\n";
+  return out;
+}
+
+Json rerun_json(const Rerun& run) {
+  Json out = {{"document", json_text(run.document)},
+              {"again", json_text(run.again)},
+              {"same_program", run.same_program},
+              {"holds", run.holds()},
+              {"files", Json::array()},
+              {"differences", Json::array()}};
+  for (const auto& [file, same] : run.files)
+    out["files"].push_back({{"path", json_text(file)}, {"same", same}});
+  for (const JsonDifference& d : run.differences)
+    out["differences"].push_back({{"at", json_text(d.at)},
+                                  {"was", json_text(d.was)},
+                                  {"now", json_text(d.now)},
+                                  {"relative", json_number(d.relative)}});
+  return out;
+}
+
+// What was found, or an error: the numbers of the second run are not those of the first.
+void run_again(Session& session, const VerifyVerb& verb, const std::string& document) {
+  const Rerun run = rerun(session, document, verb.again, verb.inputs_in);
+  if (verb.json) {
+    Json out = document_head(session, "rerun", {});
+    out["rerun"] = rerun_json(run);
+    print(dump_json(out));
+  } else {
+    print(rerun_text(run));
+  }
+  if (run.holds()) return;
+  throw Error({ErrorKind::check,
+               "E0520",
+               document,
+               "a second run gives other results",
+               "",
+               run.same_program
+                   ? "the same program wrote it: look at its inputs and at --in"
+                   : "another build wrote it, and its numbers differ beyond 8 digits"});
+}
+
 void run_verify(Session& session, const VerifyVerb& verb) {
   const std::vector<ResultCheck> checks = check_results(verb.results, verb.inputs_in);
+  if (!verb.again.empty()) {
+    if (checks.size() != 1)
+      throw Error({ErrorKind::usage,
+                   "E0205",
+                   "--rerun",
+                   "runs one document again, and here are several",
+                   std::to_string(checks.size()),
+                   "name the document itself"});
+    return run_again(session, verb, checks[0].document);
+  }
   if (verb.json) {
     Json document = document_head(session, "result-check", {});
     document["documents"] = Json::array();
@@ -80,6 +156,12 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
       .add_text("--in",
                 verb->inputs_in,
                 "folder that the paths of inputs are meant from (default: the one you are in)")
+      .value_name("FOLDER");
+  options
+      .add_text("--rerun",
+                verb->again,
+                "run it again into this new folder, as the report's command says, and compare "
+                "every number")
       .value_name("FOLDER");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   return [&session, verb] { run_verify(session, *verb); };
