@@ -90,7 +90,12 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (const TermAccuracy& term : bench.methods.front().terms)
     out.heads.push_back(
         fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter));
-  for (const char* head : {"Coverage of 95 %", "False terms", "ns a sample", "B a sample", "Front"})
+  for (const char* head : {"Coverage of 95 %",
+                           "False terms",
+                           "ns a sample",
+                           "Time over the first",
+                           "B a sample",
+                           "Front"})
     out.heads.emplace_back(head);
   std::vector<const EstimatorAccuracy*> order;
   for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
@@ -102,6 +107,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
     row.push_back(coverage_cell(*method));
     row.push_back(method->false_terms.count == 0 ? "–" : percent(method->false_terms.value));
     row.push_back(figure_text(method->ns_per_sample));
+    row.push_back(figure_text(method->time_ratio));
     row.push_back(bytes_cell(method->bytes_per_sample));
     row.push_back(gap_text(method->front_gap));
     out.rows.push_back(std::move(row));
@@ -124,7 +130,8 @@ BenchSection legend_section(const CharacterizationBench& bench) {
       "detected counts as an estimate of zero, which can be nearer than the bound says where the "
       "bound is wide. False terms: records in which a coefficient is stated that is not in them "
       "(–: "
-      "it is told which there are, or all are). Methods that are told count against each other "
+      "it is told which there are, or all are). Time over the first: of the first method listed "
+      "below, record by record. Methods that are told count against each other "
       "only. "
       "A coefficient whose bound is wider than half of it is not in the mean that the front and "
       "the chart go by. Front: no method is at least as fast and more "

@@ -202,8 +202,13 @@ CharacterizationBench bench_characterization(const BenchSignal& signal,
     }
   }
   CharacterizationBench out{signal, options.seed, options.records, {}, notes_on(signal.model)};
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     out.methods.push_back(accuracy_of(rows[i], tallies[i], truth, bound));
+    std::vector<double> ratios;
+    for (std::size_t r = 0; r < options.records; ++r)
+      ratios.push_back(tallies[i].ns[r] / tallies[0].ns[r]);
+    out.methods[i].time_ratio = median_figure(std::move(ratios));
+  }
   add_front_gaps(out.methods);
   return out;
 }

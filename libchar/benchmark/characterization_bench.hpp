@@ -55,6 +55,8 @@ struct EstimatorAccuracy {
   /// records in which it states a coefficient that is not in them; no count: it was told what is, or all are
   Figure false_terms;
   Figure ns_per_sample;
+  Figure
+      time_ratio;  ///< over the first method's on the same record: what load falls on alike is not in it
   std::optional<double> bytes_per_sample;  ///< of heap beside the record
   /// detail/pareto.hpp; those that are told do not count against those that are not
   double front_gap = 0;

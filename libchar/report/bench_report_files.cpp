@@ -49,6 +49,7 @@ Json method_json(const EstimatorAccuracy& method) {
           {"error", json_number(method.error)},
           {"false_terms", figure_json(method.false_terms)},
           {"ns_per_sample", figure_json(method.ns_per_sample)},
+          {"time_ratio", figure_json(method.time_ratio)},
           {"bytes_per_sample", json_number(method.bytes_per_sample)},
           {"front_gap", json_number(method.front_gap)}};
 }

@@ -13,8 +13,10 @@
 #include "libchar/benchmark/bench_report.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/output_files.hpp"
+#include "libchar/core/result_check.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/report/bench_against.hpp"
 #include "libchar/report/bench_report_files.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -26,10 +28,10 @@ using namespace libchar;
 
 struct BenchVerb {
   std::vector<std::string> files, parts, methods, algorithms, sweeps;
-  std::string folder;
+  std::string folder, against;
   BenchInputOptions inputs;
   std::uint64_t seed = 1, records = 0, runs = 0, samples = 0;
-  std::optional<double> target, tau_s, share, rate_hz;
+  std::optional<double> target, tau_s, share, rate_hz, tolerance;
   bool quick = false, force = false, json = false;
 
   /// Parts that were not named are done where they are asked of what was given.
@@ -125,6 +127,20 @@ BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs&
   return report;
 }
 
+void refuse_worse(const BenchChanges& changes, double tolerance, const std::string& older) {
+  const std::vector<BenchChange> worse = changes.worse(tolerance);
+  if (worse.empty()) return;
+  throw Error({ErrorKind::check,
+               "E0969",
+               older,
+               fmt::format("{} figures are worse than there by more than {} %, the first {}",
+                           worse.size(),
+                           100 * tolerance,
+                           worse[0].what),
+               "",
+               "other work on the machine? run again; --tolerance accepts more"});
+}
+
 void run_bench(Session& session, BenchVerb& verb) {
   check_parts(verb);
   const auto foreseen = [&] {
@@ -134,6 +150,7 @@ void run_bench(Session& session, BenchVerb& verb) {
     return out;
   };
   if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
+  const Json older = verb.against.empty() ? Json() : result_document(verb.against);
   const BenchInputs inputs = inputs_of(session, verb);
   const BenchReport report = measured(session, verb, inputs);
   if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design)
@@ -146,9 +163,21 @@ void run_bench(Session& session, BenchVerb& verb) {
   std::vector<std::string> removed;
   if (!verb.folder.empty())
     removed = write_outputs(bench_files(report, verb.folder), verb.folder, verb.files, verb.force);
-  if (verb.json) return print(dump_json(bench_json(report)));
-  print_text(bench_text(report));
-  if (!verb.folder.empty()) print(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
+  Json document = bench_json(report);
+  const double tolerance = verb.tolerance.value_or(5) / 100;
+  std::optional<BenchChanges> changes;
+  if (!verb.against.empty()) {
+    changes = bench_changes(older, document, verb.against);
+    document["against"] = changes_json(*changes, tolerance);
+  }
+  if (verb.json) {
+    print(dump_json(document));
+  } else {
+    print_text(bench_text(report));
+    if (changes) print(changes_text(*changes, tolerance));
+    if (!verb.folder.empty()) print(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
+  }
+  if (changes) refuse_worse(*changes, tolerance, verb.against);
 }
 
 std::function<void()> bench_options(VerbOptions& options, Session& session) {
@@ -212,6 +241,20 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
   options.add_rate("--instants-rate",
                    verb->rate_hz,
                    "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
+  options
+      .add_text(
+          "--against",
+          verb->against,
+          "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
+          "beyond both intervals")
+      .value_name("FILE");
+  options
+      .add_number("--tolerance",
+                  verb->tolerance,
+                  "percent that a figure may be worse by (default: 5)",
+                  0,
+                  1000)
+      .value_name("PERCENT");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);

@@ -1,0 +1,112 @@
+// The verb bench: on built-in signals, on a model, a log and a scene; what is refused.
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/json.hpp"
+#include "tests/support/run.hpp"
+
+using Catch::Contains;
+
+namespace {
+
+namespace files = std::filesystem;
+
+const std::vector<std::string> kShort = {
+    "--quick", "--records", "2", "--samples", "2048", "--methods", "sensorchar,log-log"};
+
+std::vector<std::string> bench_words(std::vector<std::string> words) {
+  words.insert(words.begin(), "bench");
+  words.insert(words.end(), kShort.begin(), kShort.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("bench: three files that agree, from the fixture's own models") {
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const auto ran = test::run(
+      bench_words({test::fixture("imu_at_rest.csv"), "--parts", "characterization", "-o", out}));
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("Noise coefficients: gyro_z") && Contains("log-log"));
+  for (const char* name : {"bench.html", "bench.json", "bench.md"})
+    CHECK(files::exists(files::path(out) / name));
+  const auto document =
+      libchar::parse_json(test::slurp(files::path(out) / "bench.json"), "bench.json");
+  CHECK(document["characterization"].size() == 2);
+  CHECK(document["fusion"].is_null());
+  // Errors of one seed are the same to the last bit, so the gate finds none worse.
+  const auto again = test::run(bench_words({test::fixture("imu_at_rest.csv"),
+                                            "--parts",
+                                            "characterization",
+                                            "--against",
+                                            out + "/bench.json",
+                                            "--tolerance",
+                                            "1000"}));
+  CHECK(again.code == 0);
+  CHECK_THAT(again.out, Contains("Against the older run"));
+  CHECK(test::run(bench_words({"--parts", "characterization", "-o", out})).code == 5);
+}
+
+TEST_CASE("bench: a gate that a worse error does not pass, exit 6") {
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const std::vector<std::string> words =
+      bench_words({test::fixture("imu_at_rest.csv"), "--parts", "characterization"});
+  auto first = words;
+  first.insert(first.end(), {"-o", out});
+  REQUIRE(test::run(first).code == 0);
+  const files::path report = files::path(out) / "bench.json";
+  auto document = libchar::parse_json(test::slurp(report), "bench.json");
+  auto& figure = document["characterization"][0]["methods"][0]["terms"][0]["rmse_over_bound"];
+  figure["value"] = 1e-3;
+  figure["ci95"] = {1e-3, 1e-3};
+  std::ofstream(report) << document.dump();
+  auto second = words;
+  second.insert(second.end(), {"--against", report.string()});
+  const auto ran = test::run(second);
+  CHECK(ran.code == 6);
+  CHECK_THAT(ran.err, Contains("E0969") && Contains("RMSE of white_noise"));
+}
+
+TEST_CASE("bench: a scene with a sweep, a model with a target") {
+  const test::TemporaryFolder folder;
+  auto ran = test::run({"bench",
+                        test::fixture("scenes/lever-arm.yaml"),
+                        "--runs",
+                        "2",
+                        "--algorithms",
+                        "mean,minque",
+                        "--sweep",
+                        "minque.gamma=.99,.999"});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("minque (gamma=0.99)") && Contains("minque (gamma=0.999)"));
+  const std::string model = (folder / "m.yaml").string();
+  std::ofstream(model) << "format: sensor-model\nversion: 1\nchannel: g\nunit: deg/s\n"
+                          "rate_hz: 100\ndensity: two-sided\nwhite_noise: 0.005\n";
+  ran = test::run({"bench", model, "--parts", "design", "--target", "2e-3", "--quick"});
+  INFO(ran.err);
+  CHECK(ran.code == 0);
+  // (5e-3/2e-3)^2 = 6.25
+  CHECK_THAT(ran.out, Contains("Design: how many sensors") && Contains(" 7 "));
+}
+
+TEST_CASE("bench: refused in a sentence") {
+  CHECK_THAT(test::run({"bench", "--parts", "charakterization"}).err,
+             Contains("E0202") && Contains("characterization"));
+  CHECK(test::run({"bench", "--parts", "charakterization"}).code == 2);
+  CHECK(test::run({"bench", "no-such-file.csv"}).code == 3);
+  CHECK_THAT(test::run({"bench", test::fixture("scenes/lever-arm.yaml"), "--parts", "design"}).err,
+             Contains("E0205"));
+  const auto ran = test::run({"bench",
+                              test::fixture("imu_at_rest.csv"),
+                              "--quick",
+                              "--records",
+                              "2",
+                              "--against",
+                              test::fixture("imu_at_rest.csv")});
+  CHECK(ran.code == 3);
+}
