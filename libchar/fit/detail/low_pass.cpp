@@ -14,6 +14,7 @@
 #include "libchar/fit/detail/bin_likelihood.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/detail/scoring.hpp"
+#include "libchar/fit/detail/solver_settings.hpp"
 
 namespace libchar {
 namespace {
@@ -152,25 +153,15 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
   x.push_back(log_corner);
   ceres::Problem problem;
   problem.AddResidualBlock(new LowPassResiduals(bins, rate_hz, terms), nullptr, x.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = 200;
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance =
-      std::numeric_limits<double>::epsilon();
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(exact_solver_options(200), &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::nullopt;
 
   LowPassFit fit;
   fit.corner_hz = std::exp(x.back());
   fit.half_deviance = summary.final_cost;
   for (std::size_t i = 0; i < terms.size(); ++i) fit.theta[terms[i]] = std::exp(x[i]);
-  ceres::Covariance::Options covariance_options;
-  covariance_options.algorithm_type = ceres::DENSE_SVD;
-  covariance_options.null_space_rank = -1;
-  ceres::Covariance covariance(covariance_options);
+  ceres::Covariance covariance(exact_covariance_options());
   const std::vector<std::pair<const double*, const double*>> wanted = {{x.data(), x.data()}};
   std::vector<double> block(x.size() * x.size());
   if (!covariance.Compute(wanted, &problem) ||

@@ -9,9 +9,9 @@
 #include <ceres/ceres.h>
 
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/silent_glog.hpp"
+#include "libchar/fit/detail/solver_settings.hpp"
 
 namespace libchar {
 namespace {
@@ -58,18 +58,6 @@ class BinResiduals final : public ceres::CostFunction {
   std::vector<Eigen::Index> terms_;
 };
 
-ceres::Solver::Options solver_options() {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-  options.minimizer_progress_to_stdout = false;
-  options.max_num_iterations = 50;
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance =
-      std::numeric_limits<double>::epsilon();
-  return options;
-}
-
 }  // namespace
 
 DevianceResidual deviance_residual(double energy, double model, double dof) {
@@ -110,7 +98,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   ceres::Problem solver_problem;
   solver_problem.AddResidualBlock(new BinResiduals(problem, terms), nullptr, unknown.data());
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(), &solver_problem, &summary);
+  ceres::Solve(exact_solver_options(50), &solver_problem, &summary);
   result.iterations = static_cast<int>(summary.iterations.size());
   ModelPoint polished;
   for (std::size_t i = 0; i < terms.size(); ++i)
@@ -126,11 +114,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     result.half_deviance = value;
   }
 
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  options.null_space_rank = -1;
-  options.num_threads = 1;
-  ceres::Covariance covariance(options);
+  ceres::Covariance covariance(exact_covariance_options());
   const std::size_t p = terms.size(), all = p + shapes;
   std::vector<double> block(all * all);
   const std::vector<std::pair<const double*, const double*>> wanted = {
