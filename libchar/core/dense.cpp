@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <cmath>
 
 namespace libchar {
 
@@ -47,11 +48,15 @@ MatrixXd least_squares(const MatrixXd& a, const MatrixXd& b) {
 PivotedSolution pivoted_least_squares(const MatrixXd& a,
                                       const VectorXd& b,
                                       std::optional<double> threshold) {
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  // Columns of length one: what counts as nothing beyond the others must not depend on units.
+  VectorXd scale = a.colwise().norm().cwiseInverse();
+  for (double& s : scale)
+    if (!std::isfinite(s)) s = 1;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(a * scale.asDiagonal());
   if (threshold) qr.setThreshold(*threshold);
   // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
   if (qr.rank() == 0) return {VectorXd::Zero(a.cols()), 0};
-  return {qr.solve(b), qr.rank()};
+  return {scale.cwiseProduct(qr.solve(b)), qr.rank()};
 }
 
 PivotedSolution shortest_least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
