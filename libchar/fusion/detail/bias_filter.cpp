@@ -89,6 +89,7 @@ void BiasFilter::add_inputs(const InputModel& input, double rate_hz) {
   seen_ = MatrixXd::Zero(n, s);
   for (Index k = 0; k < b; ++k) seen_(states_.channel[static_cast<std::size_t>(k)], k) = 1;
   transition_ = drive_ = start_ = MatrixXd::Zero(s, s);
+  if (s == 0) return;  // no sensor drifts; an empty matrix has no diagonal to point at
   transition_.diagonal().head(b) = states_.pole;
   drive_.diagonal().head(b) = states_.drive;
   start_.diagonal().head(b) = states_.start;
