@@ -185,6 +185,21 @@ TEST_CASE("grids") {
   CHECK(part.points.back().m == 32);
 }
 
+TEST_CASE(
+    "averaging times reach as far as a term does, of the total deviation over the whole record") {
+  const auto y = white(101, 4);
+  for (const DeviationRow& row : deviation_rows()) {
+    CAPTURE(row.word);
+    AllanOptions options;
+    options.type = row.type;
+    options.grid = TauGrid::dense;
+    options.tau_max_s = 1000;
+    const std::uint64_t last = allan_deviation(y, 1, options).points.back().m;
+    CHECK(row.span(last) <= 101);
+    CHECK(row.span(last + 1) > 101);
+  }
+}
+
 TEST_CASE("powers of two scale bit-exactly, from denormals to 1e200") {
   const auto y = white(3000, 3, 7.5);
   for (const DeviationType type : kAll) {
@@ -385,6 +400,16 @@ TEST_CASE("one missing sample ends no curve, a long gap leaves long times withou
   REQUIRE(gap.notes.size() == 2);
   CHECK(gap.notes[0].find("are missing") != std::string::npos);
   CHECK(gap.notes[1].find("gaps leave no term") != std::string::npos);
+}
+
+TEST_CASE("missing samples are worth a note from more than one in a hundred on") {
+  auto y = white(1000, 14);
+  for (std::size_t k = 0; k < 10; ++k) y[50 + 100 * k] = std::nan("");
+  CHECK(curve_of(y, DeviationType::oadev, TauGrid::octave).notes.empty());
+  y[7] = std::nan("");
+  const AllanCurve more = curve_of(y, DeviationType::oadev, TauGrid::octave);
+  REQUIRE(more.notes.size() == 1);
+  CHECK(more.notes[0].find("1.1 % of the samples are missing") == 0);
 }
 
 TEST_CASE("the number of threads changes no bit") {

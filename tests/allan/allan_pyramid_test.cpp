@@ -2,12 +2,17 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/detail/pyramid_kernels.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/allan/present_reference.hpp"
 
@@ -186,4 +191,32 @@ TEST_CASE("pyramid can be asked before the end and refuses too short records") {
   CHECK_THROWS_AS(pyramid_of({1.0}), Error);
   CHECK_THROWS_AS(pyramid_of({1.0, std::nan(""), 2.0}), Error);
   CHECK(pyramid_of({1.0, 2.0}).points.size() == 1);
+}
+
+TEST_CASE("pyramid: what stands behind a block is not looked at, what stands in it is") {
+  // A page that may not be read stands behind the last value.
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  void* const pages =
+      ::mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  REQUIRE(pages != MAP_FAILED);
+  REQUIRE(::mprotect(static_cast<char*>(pages) + page, page, PROT_NONE) == 0);
+  const std::span<double> whole(static_cast<double*>(pages), page / sizeof(double));
+  for (std::size_t n = 1; n <= 24; ++n) {
+    const std::span<double> z = whole.last(n);
+    std::fill(z.begin(), z.end(), 1.0);
+    double squares[3] = {}, pairs[12];
+    INFO("n " << n);
+    squares_of_one_two_four(z.data(), n, squares);
+    sum_pairs(z.data(), n / 2, 1, pairs);
+    CHECK(squares[0] + squares[1] + squares[2] + squares_of_four(z.data(), n) == 0);
+    CHECK(all_finite(z.data(), n));
+    for (std::size_t k = 0; k < n; ++k)
+      for (const double bad :
+           {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        z[k] = bad;
+        CHECK_FALSE(all_finite(z.data(), n));
+        z[k] = 1;
+      }
+  }
+  ::munmap(pages, 2 * page);
 }

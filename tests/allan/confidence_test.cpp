@@ -158,6 +158,34 @@ TEST_CASE("degrees of freedom of the total deviation where the others have none"
   CHECK(dof(kWalk, 750) == 1);
 }
 
+TEST_CASE(
+    "degrees of freedom of the total deviation: a sample more is no worse, a ramp is certain") {
+  for (const Mixture& theta :
+       {kWhite, kFlicker, kWalk, Mixture{0, 0, 0, 1, 0}, Mixture{1, 1, 1, 1, 0}}) {
+    double before = 1;
+    for (const std::uint64_t n : {16, 17, 18, 20, 30, 100}) {
+      const double dof = equivalent_dof(DeviationType::totdev, theta, 8, n - 1, 1, 1);
+      INFO("n " << n << " before " << before);
+      CHECK(dof >= before);
+      before = dof;
+    }
+  }
+  CHECK(equivalent_dof(DeviationType::totdev, {0, 0, 0, 0, 1}, 8, 99, 1, 1) > 1e12);
+}
+
+TEST_CASE("how low the total deviation is says its note, from flicker of any size on") {
+  const auto note = [](const Mixture& theta) {
+    AllanCurve curve = octaves(1024);
+    curve.type = DeviationType::totdev;
+    add_intervals(curve, theta);
+    return curve.notes.empty() ? std::string() : curve.notes.at(0);
+  };
+  CHECK(note(kWhite).empty());
+  // SP 1065, 5.11: 0.481 tau/T flicker, 0.75 walk; here tau/T = 1/2.
+  CHECK(note({1e-8, 1e-12, 0, 0, 0}).find("by up to 24 %") != std::string::npos);
+  CHECK(note({1e-8, 1e-12, 1e-20, 0, 0}).find("by up to 38 %") != std::string::npos);
+}
+
 TEST_CASE("the covariance that is remembered is that of the curve") {
   const Mixture theta = {1, 0.1, 1e-3, 0, 0};
   const AllanCurve a = octaves(1024), b = octaves(1024, 0, 2), c = octaves(2048);
@@ -186,6 +214,10 @@ TEST_CASE("covariance against every pair of terms, N = 256, all five terms") {
     plain.points.push_back(p);
   }
   const Mixture theta = {1, 0.5, 0.1, 2, 0.01};
+  CHECK(worst_of_diagonal(allan_covariance(plain, theta), brute_force(plain, theta)) * 1e12 <= 1);
+  // Gaps may leave fewer short terms than there are between two long ones.
+  plain.points[0].terms = 3;
+  plain.points[2].terms = 2;
   CHECK(worst_of_diagonal(allan_covariance(plain, theta), brute_force(plain, theta)) * 1e12 <= 1);
 }
 

@@ -1,5 +1,7 @@
 // Means over what is present: whole curves, no bias, intervals that cover, whatever the noise and the gaps.
 
+#include "libchar/allan/detail/missing_samples.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -132,4 +134,25 @@ TEST_CASE("the way with missing samples meets the way with none") {
     CHECK(holed.points[k].deviation == Approx(whole.points[k].deviation).epsilon(1e-12));
     CHECK(holed_pass.points[k].deviation == Approx(passed.points[k].deviation).epsilon(1e-12));
   }
+}
+
+TEST_CASE("what missing samples add lies on the power law of the octaves beside, in any unit") {
+  for (const double unit : {1e-6, 1.0, 1e6})
+    for (const double power : {-0.5, 0.0, 1.0}) {
+      // S^2(m) = unit m^power at 2 and 4: sigma^2(1) = S^2(2), and the mean with 2 sigma^2(2) is S^2(4).
+      const double at_two = unit * std::pow(2, power), at_four = unit * std::pow(4, power);
+      PresentTerms octave;
+      octave.imbalance = octave.squares = 1;
+      octave.terms = octave.starts = 1;
+      MissingSamples missing;
+      missing.add_octave(1, octave, at_two);
+      missing.add_octave(2, octave, (2 * at_four - at_two) / 2);
+      PresentTerms terms;
+      terms.terms = 1000;
+      terms.squares = 2000 * unit;
+      terms.shortfall = 20;  // c = 0.01
+      INFO("unit " << unit << " power " << power);
+      CHECK(missing.corrected(3, terms, 2, 1.0 / 3, 100).added ==
+            Approx(0.01 * unit * std::pow(3, power)).epsilon(1e-12));
+    }
 }

@@ -39,6 +39,18 @@ TEST_CASE("inverse-variance: weights and error of the known answers") {
         Approx(answer["rms_1_2000"].get<double>()).epsilon(1e-13));
 }
 
+TEST_CASE("mean and inverse-variance: samples that agree are returned to the bit") {
+  Array array = test::array(5);
+  array.noise_levels = (Eigen::VectorXd(5) << 0.3, 1, 7, 1e-4, 1e3).finished();
+  for (const double value : {0.1, 1e9 + 0.1, -7e-300, 3e70})
+    for (const char* name : {"mean", "inverse-variance"}) {
+      INFO(name << " " << value);
+      Eigen::MatrixXd y = Eigen::MatrixXd::Constant(5, 2, value);
+      y(1, 1) = std::nan("");
+      CHECK(test::run(*test::make(name, array), y).x == Eigen::RowVector2d(value, value));
+    }
+}
+
 TEST_CASE("missing samples: the others take over") {
   const double gap = std::nan("");
   Eigen::MatrixXd y(3, 4);

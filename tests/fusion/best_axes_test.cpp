@@ -129,3 +129,14 @@ TEST_CASE("best-axes: channels that were never seen, or that do not determine th
   CHECK(run.x(0, 5) == Approx(4.95));  // half of the second's error
   CHECK(run.x(1, 5) == -2);
 }
+
+TEST_CASE("best-axes: the best channels on one axis do not stand for the others") {
+  Eigen::MatrixXd h(5, 3);
+  h << 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  const Eigen::VectorXd d = (Eigen::VectorXd(5) << 1e-6, 1e-6, 2e-6, 1, 4).finished();
+  const ChosenAxes chosen = choose_axes(h, d);
+  REQUIRE(chosen.determined);
+  CHECK(chosen.variance[0] == Approx(1e-6));
+  CHECK(chosen.variance[1] == Approx(1));
+  CHECK(chosen.variance[2] == Approx(4));
+}

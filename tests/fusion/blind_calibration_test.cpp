@@ -107,3 +107,23 @@ TEST_CASE("blind calibration: an offset of the input moves the estimate by itsel
     CHECK(ours < 1.1 * mean);
   }
 }
+
+TEST_CASE(
+    "blind calibration: two channels cannot tell noise from gain unless its levels are known") {
+  for (const bool known : {false, true}) {
+    Array array = test::array(2);
+    if (known) array.noise_levels = Eigen::Vector2d(0.04, 0.01);
+    test::Gaussian gauss(8);
+    Eigen::MatrixXd y(2, 20000);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      const double x = gauss();
+      y.col(k) << x + 0.2 * gauss(), 0.8 * x + 0.1 * gauss();
+    }
+    auto blind = test::make("blind-calibration", array, {{"gauge", 1}});
+    CHECK(test::run(*blind, y).x.allFinite());
+    libchar::Warnings warnings;
+    blind->remarks(warnings);
+    CHECK(warnings.find("not_calibrated") == nullptr);
+    CHECK((warnings.find("noise_bias") != nullptr) == !known);
+  }
+}

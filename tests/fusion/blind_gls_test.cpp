@@ -90,3 +90,31 @@ TEST_CASE("blind-gls: a scene that stands still is the plain mean, and that is s
   CHECK(warnings.find("not_calibrated") != nullptr);
   CHECK((x - y.colwise().mean()).cwiseAbs().maxCoeff() < 1e-12);
 }
+
+TEST_CASE("blind-gls: no channel is taken to be more than a hundred times better than the others") {
+  // The first measures the input without any error; the others' errors go against each other, so that of its own less than none is left.
+  test::Gaussian gauss(12);
+  Eigen::MatrixXd y(3, 5000);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    const double x = gauss(), e = gauss();
+    y.col(k) << x, x + e, x - 0.3 * e + 0.9 * gauss();
+  }
+  auto blind = test::make("blind-gls", test::array(3));
+  test::run(*blind, y);
+  CHECK((*blind->weights())(0, 0) == Approx(100.0 / 101).epsilon(1e-6));
+}
+
+TEST_CASE("blind-gls: calibrated from twenty instants on, and three a channel") {
+  for (const Eigen::Index n : {4, 10}) {
+    test::Gaussian gauss(13);
+    Eigen::MatrixXd y(n, 60);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      const double x = 5 * gauss();
+      for (Eigen::Index i = 0; i < n; ++i) y(i, k) = x + 0.3 * gauss();
+    }
+    const test::Run run = test::run(*test::make("blind-gls", test::array(n)), y);
+    const Eigen::Index first = std::max<Eigen::Index>(20, 3 * n) - 1;
+    CHECK(run.variance.leftCols(first).array().isNaN().all());
+    CHECK(run.variance.rightCols(60 - first).allFinite());
+  }
+}

@@ -261,3 +261,22 @@ TEST_CASE("kalman-takens: what lives on repetition says so") {
   CHECK(remark(true));
   CHECK_FALSE(remark(false));
 }
+
+TEST_CASE("kalman-takens: two stretches of the past a neighbour, or a full dictionary, predict") {
+  const auto predicted = [](Eigen::Index heard, double neighbours, double dictionary) {
+    Eigen::MatrixXd y(2, heard + 1);
+    for (Eigen::Index k = 0; k < heard; ++k) y.col(k).setConstant(k % 3 == 0 ? 2.5 : -0.5);
+    y.col(heard).setConstant(std::nan(""));
+    auto runner = test::make(
+        "kalman-takens",
+        levels(Eigen::Vector2d(1e-4, 1e-4)),
+        {{"dimension", 2}, {"theiler", 2}, {"neighbours", neighbours}, {"dictionary", dictionary}});
+    return test::run(*runner, y).variance(0, heard);
+  };
+  // A stretch is two instants, what follows it, and one that is too near to now.
+  CHECK(std::isnan(predicted(8, 3, 1000)));
+  CHECK(std::isnan(predicted(22, 15, 20)));
+  // No prediction was judged yet: what the samples scatter by stands for its error.
+  CHECK(predicted(9, 3, 1000) == Approx(9.0 * 3 * 6 / 9 / 8).epsilon(1e-12));
+  CHECK(predicted(23, 15, 20) == Approx(9.0 * 8 * 15 / 23 / 22).epsilon(1e-12));
+}

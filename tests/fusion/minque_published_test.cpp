@@ -93,3 +93,8 @@ TEST_CASE("minque-published: about zero a lasting bias stays visible, about the 
     CHECK(out == mended);
   }
 }
+
+TEST_CASE("minque-published: before the first instant the weights are those of the mean") {
+  const Eigen::MatrixXd w = *test::make("minque-published", test::array(4))->weights();
+  CHECK(w == Eigen::MatrixXd::Constant(4, 1, 0.25));
+}

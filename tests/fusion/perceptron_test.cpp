@@ -237,6 +237,15 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   };
   CHECK(remarks(5).empty());
   CHECK_FALSE(remarks(200).empty());
+  // Ten neurons of three inputs, bias and output each, and the bias of the output: 51 weights.
+  const auto neurons = [](double most) {
+    const Perceptron perceptron(test::array(3),
+                                test::settings("perceptron", {{"most_weights", most}}));
+    CHECK(static_cast<double>(perceptron.network().size()) <= most);
+    return perceptron.network().hidden;
+  };
+  CHECK(neurons(51) == 10);
+  CHECK(neurons(50) == 9);
 }
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
@@ -268,6 +277,13 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
   CHECK(whole < 0.012);
   for (const Eigen::Index learning : {1001, 2001, 4003, 5005})
     CHECK(error_of(learning) < 1.3 * whole);
+}
+
+TEST_CASE("perceptron: what is held out of a sampled window is its end") {
+  TrainingScene s = scene(501, 501);
+  s.x[0] += 20;  // wrong by far, and it is not among the last
+  auto runner = trained(s, {{"most_samples", 500}, {"neurons", 3}});
+  CHECK(test::run(*runner, s.y.rightCols(1)).variance(0, 0) < 1);
 }
 
 TEST_CASE("perceptron: a reference that stands still is refused") {

@@ -266,3 +266,29 @@ TEST_CASE("tilt: a wild first sample of the accelerometer is not carried on") {
   CHECK(error("tilt-gyroscope", {}) < 0.05);
   CHECK(error("tilt-complementary", {{"time_constant", 100}}) < 0.05);
 }
+
+TEST_CASE("tilt: the start is the mean over start_s, not an instant more") {
+  // Three instants of 1/4 s make a mean; then the gyroscope, which stands still.
+  ComplementaryFilter filter(1, 0.25, false, 0.75);
+  CHECK(filter.step({0, 0.1}) == 0.1);
+  CHECK(filter.step({0, 0.2}) == Approx(0.15).epsilon(1e-14));
+  CHECK(filter.step({0, 0.6}) == Approx(0.3).epsilon(1e-14));
+  CHECK(filter.step({0, -0.5}) == Approx(0.3).epsilon(1e-14));
+}
+
+TEST_CASE("tilt tuned: constants are said once they are learnt") {
+  const Eigen::MatrixXd y = turning(300);
+  for (const char* name : {"tilt-complementary-tuned", "tilt-kalman-tuned"}) {
+    INFO(name);
+    Array array = tilt_array();
+    array.learning_samples = 300;
+    auto runner = test::make(name, array);
+    libchar::Warnings before, after;
+    runner->remarks(before);
+    CHECK(before.empty());
+    runner->learn(y.topRows(3), y.bottomRows(1));
+    runner->finish_learning();
+    runner->remarks(after);
+    CHECK(after.find("tilt_tuned") != nullptr);
+  }
+}

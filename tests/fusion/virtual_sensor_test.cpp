@@ -294,3 +294,15 @@ TEST_CASE(
       "virtual-sensor", scene.array, {{"input_deviation", 1e3}, {"input_corner_hz", 1e5}});
   CHECK((test::run(*plain, scene.y).x - test::run(*white, scene.y).x).cwiseAbs().maxCoeff() < 1e-6);
 }
+
+TEST_CASE("virtual-sensor: who looks ahead says so, who does not does not") {
+  for (const double smoothed : {0, 1}) {
+    Array array = test::array(2);
+    array.rate_hz = 10;
+    array.noise_levels = Eigen::Vector2d(0.01, 0.04);
+    array.noise_models = {{0.01, 0, 0.1, {}}, {0.04, 0, 0, {}}};
+    libchar::Warnings warnings;
+    test::make("virtual-sensor", array, {{"smoothed", smoothed}})->remarks(warnings);
+    CHECK((warnings.find("looks_ahead") != nullptr) == (smoothed == 1));
+  }
+}
