@@ -158,6 +158,40 @@ TEST_CASE("degrees of freedom of the total deviation where the others have none"
   CHECK(dof(kWalk, 750) == 1);
 }
 
+TEST_CASE("degrees of freedom of the total deviation where nothing says that it has more") {
+  // Quantization gains nothing by the reflected record, and a record without noise has no shares of noise.
+  const std::uint64_t samples = 1000;
+  for (const Mixture& theta : {Mixture{0, 0, 0, 1, 0}, Mixture{}})
+    for (const std::uint64_t m : {1ULL, 10ULL, 100ULL, 499ULL, 500ULL}) {
+      CAPTURE(theta, m);
+      CHECK(equivalent_dof(DeviationType::totdev, theta, m, samples - 1, 1, 1) ==
+            equivalent_dof(DeviationType::oadev, theta, m, samples - 2 * m + 1, 1, 1));
+    }
+}
+
+TEST_CASE("the bias of the total deviation is noted by the noise, however little of it there is") {
+  AllanCurve curve;
+  curve.type = DeviationType::totdev;
+  curve.samples = 1000;
+  curve.dt_s = 0.01;
+  curve.points.resize(1);
+  curve.points[0].m = 500;
+  curve.points[0].tau_s = 5;
+  curve.points[0].terms = 999;
+  curve.points[0].deviation = 1e-6;
+  const auto notes = [&](const Mixture& theta) {
+    AllanCurve with_intervals = curve;
+    add_intervals(with_intervals, theta);
+    return with_intervals.notes;
+  };
+  // Half of the record: 0.481/2 of flicker noise, 0.75/2 of a walk.
+  REQUIRE(notes({1e-12, 1e-12, 0, 0, 0}).size() == 1);
+  CHECK_THAT(notes({1e-12, 1e-12, 0, 0, 0})[0], Catch::Contains("low by up to 24 %"));
+  REQUIRE(notes({1e-12, 1e-12, 1e-15, 0, 0}).size() == 1);
+  CHECK_THAT(notes({1e-12, 1e-12, 1e-15, 0, 0})[0], Catch::Contains("low by up to 38 %"));
+  CHECK(notes({1e-12, 0, 0, 0, 0}).empty());
+}
+
 TEST_CASE("the covariance that is remembered is that of the curve") {
   const Mixture theta = {1, 0.1, 1e-3, 0, 0};
   const AllanCurve a = octaves(1024), b = octaves(1024, 0, 2), c = octaves(2048);
@@ -187,6 +221,10 @@ TEST_CASE("covariance against every pair of terms, N = 256, all five terms") {
   }
   const Mixture theta = {1, 0.5, 0.1, 2, 0.01};
   CHECK(worst_of_diagonal(allan_covariance(plain, theta), brute_force(plain, theta)) * 1e12 <= 1);
+  // Of short times only a few terms are left, fewer than fit between two of the long ones.
+  AllanCurve few = octaves(256, 1);
+  for (AllanPoint& p : few.points) p.terms = std::min<std::uint64_t>(p.terms, 3 + p.m % 2);
+  CHECK(worst_of_diagonal(allan_covariance(few, theta), brute_force(few, theta)) * 1e12 <= 1);
 }
 
 TEST_CASE("fast covariance against every lag, N = 20000, full overlap and stride m/4") {

@@ -87,6 +87,10 @@ TEST_CASE("ten a decade: a long record has the same points, from the first mean 
   }
   CHECK(added > 15);
   CHECK(lengthy.points.size() < whole.points.size());
+  // Long is what is longer than the number.
+  AllanCurve as_long = octaves;
+  add_ten_a_decade(x, {}, x.size(), as_long);
+  CHECK(as_long.points.size() == whole.points.size());
 }
 
 TEST_CASE("ten a decade: limits hold, and missing samples are exact or nothing") {
