@@ -48,6 +48,18 @@ TEST_CASE("far below its correlation time a Gauss-Markov process is a random wal
     }
 }
 
+TEST_CASE("the density of a Gauss-Markov process is the sum over its covariances") {
+  const double dt = 0.25;
+  for (const double tau : {0.1, 1.0, 5.0})
+    for (const double f : {0.01, 0.3, 2.0}) {
+      double sum = 1;
+      for (int lag = 1; lag * dt < 45 * tau; ++lag)
+        sum += 2 * std::exp(-lag * dt / tau) * std::cos(2 * std::numbers::pi * f * lag * dt);
+      CAPTURE(tau, f);
+      CHECK(gauss_markov_spectrum(tau, f, dt) == Approx(dt * sum).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("the density of a Gauss-Markov process adds up to its variance") {
   const double dt = 0.25, tau = 3;
   double sum = 0;
