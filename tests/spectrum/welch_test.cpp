@@ -380,6 +380,33 @@ TEST_CASE("a stream gives the bits of the whole, however it is pushed, with miss
   }
 }
 
+TEST_CASE("a stream of one segment, or of one more than a group, counts the last") {
+  const auto x = white_samples(4000, 12);
+  WelchOptions options = welch_segments(50);
+  options.overlap = 0;
+  const Spectrum one = welch(std::span(x).first(50), 1, options);
+  REQUIRE(one.segments == 1);
+  double power = 0;
+  for (const double v : one.value) power += v;
+  CHECK(power > 0);
+  // Of white noise every number of segments has the mean of their spectra.
+  for (const std::size_t segments : {2U, 3U, 9U, 17U, 33U, 65U}) {
+    std::vector<double> mean(one.value.size());
+    for (std::size_t s = 0; s < segments; ++s) {
+      const Spectrum part = welch(std::span(x).subspan(50 * s, 50), 1, options);
+      for (std::size_t k = 0; k < mean.size(); ++k)
+        mean[k] += part.value[k] / static_cast<double>(segments);
+    }
+    WelchStream stream(options);
+    stream.push(std::span(x).first(50 * segments));
+    const Spectrum s = stream.finish(1);
+    CAPTURE(segments);
+    REQUIRE(s.segments == segments);
+    for (std::size_t k = 0; k < mean.size(); ++k)
+      CHECK(s.value[k] == Approx(mean[k]).epsilon(1e-12));
+  }
+}
+
 TEST_CASE(
     "segments that touch a missing sample are dropped and counted, and the rest is untouched") {
   auto x = white_samples(1000, 9);
