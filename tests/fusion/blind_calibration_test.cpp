@@ -85,6 +85,20 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
   CHECK(error(true, 1) < 0.03);
 }
 
+TEST_CASE("blind calibration: two channels of unknown noise are calibrated all the same") {
+  Eigen::MatrixXd y(2, 400);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    const double x =
+        std::sin(0.1 * static_cast<double>(k)) + 0.3 * std::sin(static_cast<double>(k));
+    y(0, k) = x;
+    y(1, k) = 0.5 * x;
+  }
+  const Eigen::MatrixXd found =
+      test::run(*test::make("blind-calibration", test::array(2), {{"gauge", 1}}), y).x;
+  // The mean would be 3/4 of it.
+  CHECK((found - y.row(0)).rightCols(300).cwiseAbs().maxCoeff() < 0.1);
+}
+
 TEST_CASE("blind calibration: an offset of the input moves the estimate by itself") {
   // Four barometers: gains within a percent, the input 1013 with a swing of 3.
   test::Gaussian gauss(6);

@@ -90,3 +90,40 @@ TEST_CASE("blind-gls: a scene that stands still is the plain mean, and that is s
   CHECK(warnings.find("not_calibrated") != nullptr);
   CHECK((x - y.colwise().mean()).cwiseAbs().maxCoeff() < 1e-12);
 }
+
+TEST_CASE("blind-gls: no channel is taken to be more than a hundred times better than all others") {
+  // One channel is the input itself: its variance runs to zero in half of the records.
+  double largest = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    test::Gaussian gauss(seed);
+    Eigen::MatrixXd y(4, 2000);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      y(0, k) = gauss();
+      for (Eigen::Index i = 1; i < 4; ++i) y(i, k) = y(0, k) + 0.5 * gauss();
+    }
+    BlindGls blind(test::array(4), test::settings("blind-gls", {{"gauge", 1}}));
+    for (Eigen::Index k = 0; k < y.cols(); ++k) blind.step(Sample(y.col(k).data(), 4));
+    // w g is the information of each channel.
+    const Eigen::VectorXd share = blind.weights().col(0).cwiseProduct(blind.gain());
+    CHECK(share.sum() == Approx(1).epsilon(1e-12));
+    CHECK(share[0] <= 100.0 / 101 + 1e-9);
+    largest = std::max(largest, share[0]);
+  }
+  CHECK(largest == Approx(100.0 / 101).epsilon(1e-9));
+}
+
+TEST_CASE("blind-gls: the first gains come after three instants for each channel, 20 at least") {
+  for (const auto& [channels, first] : {std::pair{4, 20}, std::pair{8, 24}, std::pair{12, 36}}) {
+    test::Gaussian gauss(9);
+    Eigen::MatrixXd y(channels, 60);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      const double x = 5 * gauss();
+      for (Eigen::Index i = 0; i < channels; ++i) y(i, k) = x + 0.1 * gauss();
+    }
+    const Eigen::MatrixXd variance =
+        test::run(*test::make("blind-gls", test::array(channels)), y).variance;
+    CAPTURE(channels);
+    CHECK(variance.array().isNaN().count() == first - 1);
+    CHECK(std::isnan(variance(0, first - 2)));
+  }
+}

@@ -237,6 +237,17 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   };
   CHECK(remarks(5).empty());
   CHECK_FALSE(remarks(200).empty());
+  // A neuron has a weight for each channel, one for its offset and one to the output, which has an offset of its own.
+  for (const double most : {300.0, 301.0, 312.0, 313.0}) {
+    Array array = test::array(10);
+    array.learning_samples = 1000;
+    libchar::Warnings warnings;
+    test::make("perceptron", array, {{"neurons", 64}, {"most_weights", most}})->remarks(warnings);
+    REQUIRE(warnings.find("perceptron_fewer_neurons") != nullptr);
+    const int neurons = static_cast<int>((most - 1) / 12);
+    CHECK_THAT(warnings.find("perceptron_fewer_neurons")->message,
+               Catch::Contains("has " + std::to_string(neurons) + " neurons instead of 64"));
+  }
 }
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {

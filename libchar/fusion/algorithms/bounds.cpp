@@ -48,7 +48,6 @@ Eigen::MatrixXd BestSensor::weights() const {
 SectionedLeastSquares::SectionedLeastSquares(const Array& array, const Settings& settings)
     : form_{settings["calibrate"] != 0, true, false}, starts_(array.section_starts) {
   std::sort(starts_.begin(), starts_.end());
-  starts_.erase(std::unique(starts_.begin(), starts_.end()), starts_.end());
   std::erase_if(starts_, [](std::int64_t start) { return start <= 0; });
   learners_.assign(starts_.size() + 1, WeightLearner(array.channels));
   means_.resize(learners_.size());
