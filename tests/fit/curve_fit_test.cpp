@@ -168,6 +168,29 @@ TEST_CASE("residuals that go together are fewer points, and widen the intervals"
   CHECK(relative_sd(8) > 1.4 * relative_sd(2));
 }
 
+TEST_CASE("a term that is there but barely known has an interval off zero on either side of it") {
+  // Six points that scatter by 40 %: what is kept is so at 5.41, and twice the log-likelihood need only fall by 3.84.
+  test::Gaussian gauss(5);
+  int profiled = 0;
+  for (int round = 0; round < 60; ++round) {
+    DigitisedCurve curve;
+    for (double tau = 0.01; tau < 2e4; tau *= 8) {
+      curve.x.push_back(tau);
+      curve.y.push_back(std::sqrt(25e-6 / tau + 1e-8 * tau / 3) * std::exp(0.4 * gauss()));
+    }
+    const NoiseFit fit = fit_curve(curve);
+    for (const Coefficient& term : fit.term) {
+      if (!term.profile) continue;
+      ++profiled;
+      CAPTURE(round, *term.value, term.ci95.low, term.ci95.high);
+      CHECK(term.ci95.low > 0.1 * *term.value);
+      CHECK(term.ci95.low < *term.value);
+      CHECK(term.ci95.high > *term.value);
+    }
+  }
+  CHECK(profiled > 5);
+}
+
 TEST_CASE("stated uncertainties: intervals cover, wrong ones are said to be wrong") {
   test::Gaussian gauss(5);
   int covered = 0, total = 0;

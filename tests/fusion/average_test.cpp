@@ -39,6 +39,18 @@ TEST_CASE("inverse-variance: weights and error of the known answers") {
         Approx(answer["rms_1_2000"].get<double>()).epsilon(1e-13));
 }
 
+TEST_CASE("inverse-variance: noise levels near the ends of a double are levels like any others") {
+  for (const double level : {1e-309, 1e-200, 1e200, 4e307}) {
+    Array array = test::array(2);
+    array.noise_levels = Eigen::Vector2d(level, 4 * level);
+    const test::Run run =
+        test::run(*test::make("inverse-variance", array), Eigen::Vector2d(10, 20));
+    CAPTURE(level);
+    CHECK(run.x(0, 0) == Approx(12).epsilon(1e-12));
+    CHECK(run.variance(0, 0) == Approx(0.8 * level).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("missing samples: the others take over") {
   const double gap = std::nan("");
   Eigen::MatrixXd y(3, 4);
