@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 
+#include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/allan/present_reference.hpp"
 #include "tests/support/places.hpp"
@@ -140,6 +141,34 @@ TEST_CASE("numbers of terms follow the formulas") {
   CHECK(terms(DeviationType::hdev) == 123);
   CHECK(terms(DeviationType::ohdev) == 977);
   CHECK(terms(DeviationType::totdev) == 999);
+}
+
+TEST_CASE("the total deviation may go to nearly the whole record") {
+  AllanOptions options;
+  options.type = DeviationType::totdev;
+  options.grid = TauGrid::list;
+  options.taus_s = {60, 98};
+  options.tau_max_s = 100;
+  const AllanCurve curve = allan_deviation(white(100, 6), 1, options);
+  REQUIRE(curve.points.size() == 2);
+  CHECK(curve.points[0].m == 60);
+  CHECK(curve.points[1].m == 98);
+}
+
+TEST_CASE("the scale that balances a record is that of its deviations, whatever the offset") {
+  CHECK(balancing_scale(std::vector<double>(11, 5.0)) == 1);
+  const auto y = white(1003, 7);
+  for (const double factor : {1.0, 0x1p-500, 0x1p900})
+    for (const double offset : {0.0, 64.0, -1048576.0}) {
+      std::vector<double> x;
+      for (const double v : y) x.push_back(factor * (v + offset));
+      const double scale = balancing_scale(x);
+      CAPTURE(factor, offset);
+      double largest = 0;
+      for (const double v : x) largest = std::max(largest, std::fabs(v * 0.5 - x[0] * 0.5) * scale);
+      CHECK(largest >= 1);
+      CHECK(largest < 2);
+    }
 }
 
 TEST_CASE("grids") {

@@ -1,67 +1,72 @@
-// The curves of a sampled Gauss-Markov process against its covariance phi^|j|, from its definition.
-
 #include "libchar/allan/gauss_markov_curves.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "libchar/allan/noise_curves.hpp"
-
 using namespace libchar;
 
 namespace {
 
-/// Covariance of the means of two stretches of m samples that begin `apart` samples apart, term by term.
-long double covariance_of_means(long double x, int m, int apart) {
-  long double sum = 0;
+// Variance of the mean of m samples and covariance of neighbouring means, added up pair by pair from phi^|lag|.
+MeanCovariance pair_by_pair(double tau_s, int m, double dt_s) {
+  const long double x = static_cast<long double>(dt_s) / tau_s;
+  long double variance = 0, neighbours = 0;
   for (int i = 0; i < m; ++i)
-    for (int j = 0; j < m; ++j)
-      sum += std::exp(-x * static_cast<long double>(std::abs(apart + j - i)));
-  return sum / m / m;
+    for (int k = 0; k < m; ++k) {
+      variance += std::exp(-x * std::abs(i - k));
+      neighbours += std::exp(-x * (m + k - i));
+    }
+  const long double pairs = static_cast<long double>(m) * m;
+  return {static_cast<double>(variance / pairs), static_cast<double>(neighbours / pairs)};
 }
 
 }  // namespace
 
-TEST_CASE("Gauss-Markov: means and Allan variance are those of the covariance") {
-  const double dt = 0.25;
-  for (const double tau : {0.05, 0.25, 3.0, 400.0})
-    for (const int m : {1, 2, 5, 40}) {
-      INFO("tau " << tau << " m " << m);
-      const long double x = static_cast<long double>(dt) / tau;
-      const auto own = covariance_of_means(x, m, 0), next = covariance_of_means(x, m, m);
-      const MeanCovariance means = gauss_markov_means(tau, m, dt);
-      CHECK(means.variance == Approx(static_cast<double>(own)).epsilon(1e-12));
-      CHECK(means.neighbours == Approx(static_cast<double>(next)).epsilon(1e-12));
-      CHECK(gauss_markov_allan_variance(tau, m, dt) ==
-            Approx(static_cast<double>(own - next)).epsilon(1e-9));
-    }
-}
-
-TEST_CASE("Gauss-Markov: slow against the averaging time it is the walk of K^2 = 2/tau") {
-  const double dt = 0.01, m = 1000;
-  const double walk = unit_allan_variance(Term::walk, m, dt);
-  // On both sides of m dt/tau = 1e-5, where the difference of two numbers near one takes over.
-  for (const double across : {1e-9, 0.99e-5, 1.01e-5, 1e-3}) {
-    const double tau = m * dt / across;
-    INFO("m dt/tau " << across);
-    CHECK(gauss_markov_allan_variance(tau, m, dt) ==
-          Approx(2 / tau * walk * (1 - 0.75 * across)).epsilon(across * across + 1e-8));
-  }
-}
-
-TEST_CASE("Gauss-Markov: the spectrum is that of the covariance, lag by lag") {
-  const double dt = 0.5;
-  constexpr int kFrequencies = 512;
-  for (const double tau : {0.2, 1.0, 7.0})
-    for (const int lag : {0, 1, 3}) {
-      double sum = 0;  // over whole turns: exact but for phi^512
-      for (int k = 0; k < kFrequencies; ++k) {
-        const double turns = (k + 0.5) / kFrequencies;
-        sum += gauss_markov_spectrum(tau, turns / dt, dt) / dt *
-               std::cos(2 * std::numbers::pi * turns * lag);
+TEST_CASE("means of a Gauss-Markov process vary as the sum over all pairs of samples says") {
+  for (const double dt : {0.01, 0.5})
+    for (const double tau : {0.02, 1.0, 300.0})
+      for (const int m : {1, 2, 3, 10, 250}) {
+        INFO("dt " << dt << " tau " << tau << " m " << m);
+        const MeanCovariance known = pair_by_pair(tau, m, dt), got = gauss_markov_means(tau, m, dt);
+        CHECK(got.variance == Approx(known.variance).epsilon(1e-12));
+        CHECK(got.neighbours == Approx(known.neighbours).epsilon(1e-12));
+        CHECK(gauss_markov_allan_variance(tau, m, dt) ==
+              Approx(known.variance - known.neighbours).epsilon(1e-9));
       }
-      INFO("tau " << tau << " lag " << lag);
-      CHECK(sum / kFrequencies == Approx(std::exp(-lag * dt / tau)).epsilon(1e-12));
+}
+
+TEST_CASE("far below its correlation time a Gauss-Markov process is a random walk") {
+  // K² = 2/tau: K² (2 m² + 1) dt / (6 m), less 3/4 of m dt/tau of it, to first order.
+  for (const double across : {1e-9, 9e-6, 1.1e-5})
+    for (const double m : {1.0, 7.0, 1000.0}) {
+      const double dt = 0.1, tau = m * dt / across;
+      const double walk = 2 / tau * (2 * m * m + 1) * dt / (6 * m);
+      INFO(across << " " << m);
+      CHECK(gauss_markov_allan_variance(tau, m, dt) ==
+            Approx(walk * (1 - 0.75 * across)).epsilon(across / m + 2e-9));
     }
+}
+
+TEST_CASE("the density of a Gauss-Markov process is the sum over its covariances") {
+  const double dt = 0.25;
+  for (const double tau : {0.1, 1.0, 5.0})
+    for (const double f : {0.01, 0.3, 2.0}) {
+      double sum = 1;
+      for (int lag = 1; lag * dt < 45 * tau; ++lag)
+        sum += 2 * std::exp(-lag * dt / tau) * std::cos(2 * std::numbers::pi * f * lag * dt);
+      CAPTURE(tau, f);
+      CHECK(gauss_markov_spectrum(tau, f, dt) == Approx(dt * sum).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("the density of a Gauss-Markov process adds up to its variance") {
+  const double dt = 0.25, tau = 3;
+  double sum = 0;
+  constexpr int kSteps = 4096;
+  for (int i = 0; i < kSteps; ++i) {
+    const double f = (i + 0.5) / kSteps / (2 * dt);
+    sum += 2 * gauss_markov_spectrum(tau, f, dt) / (2 * dt) / kSteps;
+  }
+  CHECK(sum == Approx(1).epsilon(1e-9));
 }

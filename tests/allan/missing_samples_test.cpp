@@ -98,6 +98,42 @@ TEST_CASE("missing samples bias no noise, and intervals cover") {
       }
 }
 
+TEST_CASE("missing samples bias no averaging time between the octaves either") {
+  AllanOptions list;
+  list.grid = TauGrid::list;
+  list.taus_s = {3, 6, 12, 24};
+  for (const Mixture& theta : {Mixture{1}, Mixture{0, 0, 1}}) {
+    test::NoiseSource source(kSamples, 1, 8);
+    std::vector<double> holed(4), whole(4);
+    for (int r = 0; r < 100; ++r) {
+      const auto y = source.record(std::sqrt(theta[0]), std::sqrt(theta[1]), std::sqrt(theta[2]));
+      const AllanCurve one = allan_deviation(y, 1, list);
+      const AllanCurve other = allan_deviation(punched(y, 0.3, 1, source.gauss()), 1, list);
+      REQUIRE(one.points.size() == 4);
+      REQUIRE(other.points.size() == 4);
+      for (std::size_t k = 0; k < 4; ++k) {
+        whole[k] += one.points[k].deviation * one.points[k].deviation;
+        holed[k] += other.points[k].deviation * other.points[k].deviation;
+      }
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      CAPTURE(theta, list.taus_s[k]);
+      CHECK(std::sqrt(holed[k] / whole[k]) == Approx(1).margin(0.015));
+    }
+  }
+}
+
+TEST_CASE("missing samples are noted where they are more than one in a hundred") {
+  test::Gaussian gauss(12);
+  std::vector<double> y(200);
+  for (double& v : y) v = gauss();
+  y[50] = y[150] = kNaN;
+  CHECK(allan_deviation(y, 1).notes.empty());
+  y[100] = kNaN;
+  REQUIRE(allan_deviation(y, 1).notes.size() == 1);
+  CHECK_THAT(allan_deviation(y, 1).notes[0], Catch::StartsWith("1.5 % of the samples are missing"));
+}
+
 TEST_CASE("noise that what is missing hides is left out, or its interval says so") {
   test::Gaussian gauss(9);
   // Differences of white noise: sigma²(m) falls with 1/m², what 10 % missing samples add with 1/m.

@@ -63,6 +63,19 @@ TEST_CASE("document: what YAML allows and nobody means is refused with its place
   CHECK(refusal("version: 1\nchannels: {gx: {N: 1.0e-").starts_with("f:2:"));
 }
 
+TEST_CASE("document: text that is no UTF-8, and text of the largest size, are told what is wrong") {
+  CHECK(refusal("a: \"\xB0\"\n") == "f (byte 4): error E0522: is not valid UTF-8");
+  CHECK_THAT(refusal(std::string(kMaxDocumentBytes, ' ')), Catch::Contains("is empty"));
+  CHECK_THAT(refusal(std::string(kMaxDocumentBytes + 1, ' ')),
+             Catch::Contains("16777217 bytes exceeds the limit of 16777216"));
+}
+
+TEST_CASE("document: whole numbers of either sign stay whole") {
+  const Json j = as_json(parse_yaml_document(
+      "a: -3\nb: -9223372036854775808\nc: 18446744073709551615\nd: 0\ne: -1.0\n", "f"));
+  CHECK(j.dump() == R"({"a":-3,"b":-9223372036854775808,"c":18446744073709551615,"d":0,"e":-1.0})");
+}
+
 TEST_CASE("document: JSON gives the same tree") {
   const Document json =
       parse_json_document(R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})", "f.json");
@@ -106,6 +119,10 @@ TEST_CASE("schema: refusals name place, key and the nearest valid key") {
   CHECK(schema_refusal("alpha: 1e-05\n", number).empty());
   CHECK(schema_refusal("beta: 1\n", number).find("alpha is missing") != std::string::npos);
   CHECK(schema_refusal("alpha: null\n", number).find("alpha is missing") != std::string::npos);
+  const auto list = [](const MapReader& m) { m.list("list"); };
+  CHECK(schema_refusal("list: [1, 2]\n", list).empty());
+  CHECK(schema_refusal("alpha: 1\nlist: 3\n", list)
+            .starts_with("f:2:7: error E0541: list: expected a list"));
   // A refusal quotes what stands there, and stands where that is.
   const auto refuse = [](const MapReader& m) { m.refuse("alpha", "no", "hint"); };
   CHECK_THAT(schema_refusal("beta: 1\nalpha: hello\n", refuse),

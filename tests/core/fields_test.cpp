@@ -126,6 +126,23 @@ TEST_CASE("fields: refusals name line, column and the nearest key or word") {
   CHECK(field_refusal("name: a\nopen: 1\n").starts_with("f.yaml:2:7: error E0541"));
 }
 
+TEST_CASE("fields: yes and no may have words of their own") {
+  struct Door {
+    bool ajar = false;
+  };
+  static constexpr Word kDoors[] = {{"shut", 0}, {"ajar", 1}};
+  const Fields<Door> rows = {field<&Door::ajar>("door", {.words = kDoors})};
+  for (const bool ajar : {false, true}) {
+    Door door{ajar};
+    const std::string yaml = yaml_of(entries_of(selected(rows, {"door"}, Written::always), door));
+    CHECK(yaml == (ajar ? "door: ajar\n" : "door: shut\n"));
+    Door back{!ajar};
+    const Document document = parse_yaml_document(yaml, "f");
+    read_fields(rows, MapReader(document, "f", "", keys_of(rows)), back);
+    CHECK(back.ajar == ajar);
+  }
+}
+
 TEST_CASE("fields: the words of an enum with a table need no second list") {
   Room room = read("name: a\nsocket: E14\n");
   CHECK(room.socket == Socket::e14);

@@ -48,6 +48,8 @@ TEST_CASE("JSON that readers usually let through is refused with its place") {
         "accepted");  // the same key in two objects is fine
   CHECK(starts(json_refusal("{\"N\":1e400}"), "f.json:1:6"));
   CHECK(starts(json_refusal("[-1e400]"), "f.json:1:2"));
+  CHECK(starts(json_refusal("1e400"), "f.json:1:1"));
+  CHECK(starts(json_refusal("\n 1e400"), "f.json:2:2"));
   CHECK(json_refusal("{\"n\":18446744073709551616}") !=
         "accepted");  // no integer type holds it: it would become a double
   CHECK(json_refusal("[-9223372036854775809]") != "accepted");

@@ -102,6 +102,28 @@ TEST_CASE("outliers: at most 1 % of lots without one have one, and one that is t
     }
 }
 
+TEST_CASE("random effects: what is the same far from zero has the same spread") {
+  const std::vector<double> near = {1, 2.5, 3, 4.25, 10}, v = {0.25, 1, 0.5, 2, 0.25};
+  std::vector<double> far = near;
+  for (double& y : far) y += 1073741824;
+  const RandomEffects here = random_effects(near, v), there = random_effects(far, v);
+  CHECK(there.spread == Approx(here.spread).epsilon(1e-6));
+  CHECK(there.spread_ci95.high == Approx(here.spread_ci95.high).epsilon(1e-6));
+  CHECK(there.mean - 1073741824 == Approx(here.mean).epsilon(1e-6));
+  CHECK(there.p == Approx(here.p).epsilon(1e-6));
+}
+
+TEST_CASE("outliers: the probability is that of Student's t, of any of the values") {
+  // Of four equal values with variance 1 the mean has 1/4: the fifth is off by t sqrt(5/4). With 3 degrees of freedom 12.924 is
+  // passed on either side with probability 0.001.
+  const std::vector<double> y = {2, 2, 2, 2, 2 + 12.924 * std::sqrt(1.25)}, v(5, 1.0);
+  const auto outliers = find_outliers(y, v, 0.02);
+  REQUIRE(outliers.size() == 1);
+  CHECK(outliers[0].index == 4);
+  CHECK(outliers[0].deviation == Approx(12.924).epsilon(1e-9));
+  CHECK(outliers[0].p == Approx(5 * 0.001).epsilon(1e-3));
+}
+
 TEST_CASE("outliers: two of them do not hide each other in a lot of twelve") {
   test::Gaussian gauss(13);
   Lot lot = made(12, 0.2, gauss);

@@ -121,6 +121,11 @@ TEST_CASE("habitual units: 1 deg/s·√s is 60 deg/√h, and a datasheet's densi
   CHECK(habitual_units("white_noise", "g")[0].factor == Approx(60 * 9.80665).epsilon(1e-14));
   CHECK(habitual_units("bias_instability", "m/s^2")[1].factor ==
         Approx(1e6 / 9.80665 * 0.66428247034).epsilon(1e-9));
+  const auto pressure = habitual_units("white_noise", "hPa");
+  REQUIRE(pressure.size() == 1);
+  CHECK(pressure[0].factor == Approx(std::numbers::sqrt2).epsilon(1e-14));
+  CHECK(pressure[0].symbol == "hPa/√Hz");
+  CHECK(habitual_units("bias_instability", "hPa")[0].symbol == "hPa");
   CHECK(habitual_units("white_noise", "furlong").empty());
   CHECK(habitual_units("ramp", "V").empty());
 }

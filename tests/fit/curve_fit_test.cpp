@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
@@ -13,6 +14,7 @@
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "tests/support/algebra.hpp"
 #include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
@@ -101,6 +103,92 @@ TEST_CASE("scaling a curve scales the coefficients") {
     if (one.term[i].value)
       CHECK(*million.term[i].value == Approx(1e6 * *one.term[i].value).epsilon(1e-9));
   }
+}
+
+TEST_CASE("with the length of the record, a curve in another unit has the same intervals") {
+  DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 1e-12}, 100.0);
+  curve.duration_s = 1e5;
+  test::Gaussian gauss(3);
+  for (double& y : curve.y) y *= std::exp(0.02 * gauss());
+  const NoiseFit one = fit_curve(curve);
+  for (double& y : curve.y) y *= 1e-6;
+  const NoiseFit millionth = fit_curve(curve);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    REQUIRE(one.term[i].status == millionth.term[i].status);
+    if (!one.term[i].value) continue;
+    CHECK(*millionth.term[i].value == Approx(1e-6 * *one.term[i].value).epsilon(1e-6));
+    CHECK(millionth.term[i].relative_sd == Approx(one.term[i].relative_sd).epsilon(1e-6));
+  }
+}
+
+TEST_CASE(
+    "with the length of the record, white noise at long times is known as well as weights tell") {
+  // Generalised least squares of one term: the variance of ln theta is 1 / (1' C^-1 1).
+  DigitisedCurve curve;
+  curve.rate_hz = 1;
+  curve.duration_s = 1000;
+  AllanCurve record;
+  record.samples = 1000;
+  const Mixture white = {4, 0, 0, 0, 0};
+  for (const std::uint64_t m : {100ULL, 150ULL, 200ULL, 250ULL, 300ULL, 333ULL}) {
+    AllanPoint point;
+    point.m = m;
+    point.tau_s = static_cast<double>(m);
+    point.terms = 1000 - 2 * m + 1;
+    record.points.push_back(point);
+    curve.x.push_back(point.tau_s);
+    curve.y.push_back(std::sqrt(allan_variance(white, point.tau_s, 1)));
+  }
+  Eigen::MatrixXd c = allan_covariance(record, white);
+  for (Eigen::Index i = 0; i < c.rows(); ++i)
+    for (Eigen::Index j = 0; j < c.cols(); ++j) {
+      const double yi = curve.y[static_cast<std::size_t>(i)],
+                   yj = curve.y[static_cast<std::size_t>(j)];
+      c(i, j) /= yi * yi * yj * yj;
+    }
+  const NoiseFit fit = fit_curve(curve);
+  REQUIRE(fit[Term::white].value);
+  CHECK(*fit[Term::white].value == Approx(2).epsilon(1e-6));
+  CHECK(fit[Term::white].relative_sd ==
+        Approx(0.5 / std::sqrt(test::inverse(c).sum())).epsilon(0.05));
+}
+
+TEST_CASE("residuals that go together are fewer points, and widen the intervals") {
+  const auto relative_sd = [](int period) {
+    DigitisedCurve curve;
+    for (int j = 0; j < 48; ++j) {
+      const double tau = 0.01 * std::pow(2, 0.25 * j);
+      curve.x.push_back(tau);
+      curve.y.push_back(5e-3 / std::sqrt(tau) * (2 * (j % period) < period ? 1.01 : 0.99));
+    }
+    const NoiseFit fit = fit_curve(curve);
+    REQUIRE(fit[Term::white].value);
+    return fit[Term::white].relative_sd;
+  };
+  CHECK(relative_sd(8) > 1.4 * relative_sd(2));
+}
+
+TEST_CASE("a term that is there but barely known has an interval off zero on either side of it") {
+  // Six points that scatter by 40 %: what is kept is so at 5.41, and twice the log-likelihood need only fall by 3.84.
+  test::Gaussian gauss(5);
+  int profiled = 0;
+  for (int round = 0; round < 60; ++round) {
+    DigitisedCurve curve;
+    for (double tau = 0.01; tau < 2e4; tau *= 8) {
+      curve.x.push_back(tau);
+      curve.y.push_back(std::sqrt(25e-6 / tau + 1e-8 * tau / 3) * std::exp(0.4 * gauss()));
+    }
+    const NoiseFit fit = fit_curve(curve);
+    for (const Coefficient& term : fit.term) {
+      if (!term.profile) continue;
+      ++profiled;
+      CAPTURE(round, *term.value, term.ci95.low, term.ci95.high);
+      CHECK(term.ci95.low > 0.1 * *term.value);
+      CHECK(term.ci95.low < *term.value);
+      CHECK(term.ci95.high > *term.value);
+    }
+  }
+  CHECK(profiled > 5);
 }
 
 TEST_CASE("stated uncertainties: intervals cover, wrong ones are said to be wrong") {

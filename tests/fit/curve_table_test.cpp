@@ -126,6 +126,9 @@ TEST_CASE("relative and absolute errors are read, whatever they are called") {
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau;adev;Relative error [%]\n1;2;25\n2;1;50\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,adev,error\n1,2,0.5\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau_s,adev,low68,high68\n1,2,1.5,2.5\n2,1,0.75,1.75\n") ==
+        std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau_s,avar,low68,high68\n1,2,1,3\n2,1,0.5,2.5\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") ==
         std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,\n").empty());  // not for every point: for none

@@ -85,6 +85,25 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
   CHECK(error(true, 1) < 0.03);
 }
 
+TEST_CASE("blind calibration: of two channels of unknown noise no noise is taken off") {
+  // One factor and two noises cannot be told from three moments. On the Gram matrix, with the first gain one, the other inverse
+  // gain is the regression of the first channel on the second.
+  test::Gaussian gauss(8);
+  Eigen::MatrixXd y(2, 1000);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    const double x = gauss();
+    y(0, k) = x + 0.2 * gauss();
+    y(1, k) = 0.5 * x + 0.3 * gauss();
+  }
+  BlindCalibration blind(test::array(2), test::settings("blind-calibration", {{"gauge", 1}}));
+  for (Eigen::Index k = 0; k < y.cols(); ++k) blind.step(Sample(y.col(k).data(), 2));
+  blind.solve();
+  const Eigen::MatrixXd off = y.colwise() - y.rowwise().mean();
+  CHECK(blind.inverse_gain()[0] == Approx(1).epsilon(1e-12));
+  CHECK(blind.inverse_gain()[1] ==
+        Approx(off.row(0).dot(off.row(1)) / off.row(1).squaredNorm()).epsilon(1e-9));
+}
+
 TEST_CASE("blind calibration: an offset of the input moves the estimate by itself") {
   // Four barometers: gains within a percent, the input 1013 with a swing of 3.
   test::Gaussian gauss(6);

@@ -213,6 +213,33 @@ TEST_CASE("kalman-takens: gaps are predicted, dead instants do not enter the dic
         constant.topRows(1));
 }
 
+TEST_CASE(
+    "kalman-takens: it predicts once there are two stretches of the past for each neighbour") {
+  // Stretches of 2 that end 4 or more before now; six of them from eleven instants on.
+  const Eigen::VectorXd variances = Eigen::Vector2d(0.01, 0.01), x = sine(40, 7);
+  const test::Values values{
+      {"dimension", 2}, {"neighbours", 3}, {"dictionary", 20}, {"theiler", 4}};
+  for (Eigen::Index heard = 3; heard < 30; ++heard) {
+    Eigen::MatrixXd y = noisy(x, variances).leftCols(heard + 1);
+    y.col(heard).setConstant(std::nan(""));
+    const test::Run run = test::run(*test::make("kalman-takens", levels(variances), values), y);
+    CAPTURE(heard);
+    CHECK(std::isfinite(run.x(0, heard)) == (heard >= 11));
+  }
+}
+
+TEST_CASE("kalman-takens-taught: before any error is known a prediction is worth the spread") {
+  Array array = levels(Eigen::VectorXd::Constant(1, 1e-6));
+  array.learning_samples = 4;
+  auto taught = test::make("kalman-takens-taught", array, {{"dimension", 1}, {"neighbours", 1}});
+  const Eigen::RowVector4d past(1, 2, 4, 7);
+  taught->learn(past, past);
+  taught->finish_learning();
+  const test::Run run = test::run(*taught, Eigen::RowVector2d(1, std::nan("")));
+  CHECK(run.x(0, 1) == 2);                                       // what came after the 1
+  CHECK(run.variance(0, 1) == Approx(26.0 / 4).epsilon(1e-12));  // of 1, 2, 4, 7 and 1
+}
+
 TEST_CASE("kalman-takens-taught: the dictionary is the reference, too short is said") {
   const Eigen::VectorXd variances = Eigen::Vector3d(1, 0.5, 2);
   const Eigen::VectorXd x = sine(6000, 40);

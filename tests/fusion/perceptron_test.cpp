@@ -237,15 +237,17 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   };
   CHECK(remarks(5).empty());
   CHECK_FALSE(remarks(200).empty());
-  // Ten neurons of three inputs, bias and output each, and the bias of the output: 51 weights.
-  const auto neurons = [](double most) {
-    const Perceptron perceptron(test::array(3),
-                                test::settings("perceptron", {{"most_weights", most}}));
-    CHECK(static_cast<double>(perceptron.network().size()) <= most);
-    return perceptron.network().hidden;
-  };
-  CHECK(neurons(51) == 10);
-  CHECK(neurons(50) == 9);
+  // A neuron has a weight for each channel, one for its offset and one to the output, which has an offset of its own.
+  for (const double most : {300.0, 301.0, 312.0, 313.0}) {
+    Array array = test::array(10);
+    array.learning_samples = 1000;
+    libchar::Warnings warnings;
+    test::make("perceptron", array, {{"neurons", 64}, {"most_weights", most}})->remarks(warnings);
+    REQUIRE(warnings.find("perceptron_fewer_neurons") != nullptr);
+    const int neurons = static_cast<int>((most - 1) / 12);
+    CHECK_THAT(warnings.find("perceptron_fewer_neurons")->message,
+               Catch::Contains("has " + std::to_string(neurons) + " neurons instead of 64"));
+  }
 }
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
@@ -277,13 +279,6 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
   CHECK(whole < 0.012);
   for (const Eigen::Index learning : {1001, 2001, 4003, 5005})
     CHECK(error_of(learning) < 1.3 * whole);
-}
-
-TEST_CASE("perceptron: what is held out of a sampled window is its end") {
-  TrainingScene s = scene(501, 501);
-  s.x[0] += 20;  // wrong by far, and it is not among the last
-  auto runner = trained(s, {{"most_samples", 500}, {"neurons", 3}});
-  CHECK(test::run(*runner, s.y.rightCols(1)).variance(0, 0) < 1);
 }
 
 TEST_CASE("perceptron: a reference that stands still is refused") {

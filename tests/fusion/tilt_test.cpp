@@ -252,6 +252,34 @@ TEST_CASE("tilt tuned: near the best constants there are, unlike noise, unlike c
   CHECK_THROWS_AS(deaf->finish_learning(), libchar::Error);
 }
 
+TEST_CASE("tilt: the start is the mean over start_s, and what comes after it is the filter") {
+  // A tenth of a second at 100 Hz: ten angles of gravity.
+  const auto angle_after = [](Eigen::Index at) {
+    Eigen::MatrixXd y = Eigen::MatrixXd::Zero(3, at + 1);
+    y.row(2).setConstant(9.81);
+    y(1, at) = 9.81 * std::sin(0.1);
+    y(2, at) = 9.81 * std::cos(0.1);
+    return test::run(*test::make(
+                         "tilt-complementary", tilt_array(), {{"lambda", 0.99}, {"start_s", 0.1}}),
+                     y)
+        .x(0, at);
+  };
+  CHECK(angle_after(1) == Approx(0.1 / 2).epsilon(1e-12));
+  CHECK(angle_after(9) == Approx(0.1 / 10).epsilon(1e-12));
+  CHECK(angle_after(10) == Approx(0.1 * 0.01).epsilon(1e-9));
+}
+
+TEST_CASE("tilt tuned: what has learnt nothing says nothing of it") {
+  for (const char* name : {"tilt-complementary-tuned", "tilt-kalman-tuned"}) {
+    Array array = tilt_array();
+    array.learning_samples = 1000;
+    auto runner = test::make(name, array);
+    libchar::Warnings warnings;
+    runner->remarks(warnings);
+    CHECK(warnings.empty());
+  }
+}
+
 TEST_CASE("tilt: a wild first sample of the accelerometer is not carried on") {
   Eigen::MatrixXd y = turning(20000, 0.02, 0).topRows(3);
   const Eigen::MatrixXd truth = turning(20000, 0.02, 0).row(3);

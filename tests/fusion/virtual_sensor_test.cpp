@@ -221,6 +221,19 @@ TEST_CASE("virtual-sensor: several inputs are those of generalized least squares
   CHECK(warnings.find("no_drift") != nullptr);
 }
 
+TEST_CASE("virtual-sensor: it says when it looks ahead, and when there is no drift") {
+  const auto remarked = [](double smoothed, double flicker) {
+    const Array array =
+        drifting_array(std::vector<NoiseModel>(3, NoiseModel{0.01, flicker, 0, {}}), 100);
+    libchar::Warnings warnings;
+    test::make("virtual-sensor", array, {{"smoothed", smoothed}})->remarks(warnings);
+    return std::pair{warnings.find("looks_ahead") != nullptr, warnings.find("no_drift") != nullptr};
+  };
+  CHECK(remarked(0, 0.05) == std::pair{false, false});
+  CHECK(remarked(1, 0.05) == std::pair{true, false});
+  CHECK(remarked(0, 0) == std::pair{false, true});
+}
+
 TEST_CASE("virtual-sensor: more states than allowed are refused") {
   std::vector<NoiseModel> models(40, {1e-4, 0.1, 0.01, {{0.1, 3}, {0.1, 30}}});
   try {

@@ -166,6 +166,8 @@ TEST_CASE("a cell is one finite number, missing, infinite or wrong") {
   CHECK_FALSE(read_cell("9007199254740994", '.').inexact_integer);
   CHECK(read_cell("1_000", '.').offset == 1);
   CHECK(read_cell("--1", '.').offset == 0);
+  CHECK(kind("+") == Cell::bad);
+  CHECK(kind("-") == Cell::bad);
 }
 
 TEST_CASE("a cell that is no number is told with reason and place") {

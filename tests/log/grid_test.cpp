@@ -122,6 +122,64 @@ TEST_CASE("rows that step back are dropped and counted, a restarted clock is an 
   CHECK(failure(log_of(twice)).find("log.csv:302:1: error E0317: the time steps back here") == 0);
 }
 
+TEST_CASE("rows that step back are a restarted clock when none between them goes on") {
+  // 120 rows out of order, in two halves with 256 good rows between: what is looked at together begins and ends there.
+  std::vector<std::int64_t> t;
+  const auto good = [&](std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) t.push_back(t.empty() ? 1000000 : t.back() + 1000);
+  };
+  const auto back = [&](std::size_t n) {
+    const std::int64_t last = t.back();
+    for (std::size_t i = 0; i < n; ++i) t.push_back(500000 + static_cast<std::int64_t>(i));
+    return last;
+  };
+  good(2048 - 60);
+  const std::int64_t first = back(60);
+  for (std::int64_t i = 1; i <= 256; ++i) t.push_back(first + 1000 * i);
+  const std::int64_t second = back(60);
+  for (std::int64_t i = 1; i <= 1000; ++i) t.push_back(second + 1000 * i);
+  ReadOptions options;
+  options.block_bytes = 1 << 20;
+  const Recording r = read_text(log_of(t), options);
+  CHECK(count(r, "backward_timestamp") == 120);
+  CHECK(r.info.samples == 2048 - 60 + 256 + 1000);
+}
+
+TEST_CASE("the same gap now and then is no change of rate, eight in a row are") {
+  std::vector<std::int64_t> now_and_then;
+  for (int i = 0; i < 4000; ++i)
+    if (i < 2000 || i % 10 != 0) now_and_then.push_back(5000 * i);
+  const Recording r = read_text(log_of(now_and_then));
+  CHECK(count(r, "gap") == 200);
+  CHECK(count(r, "rate_change") == 0);
+  std::vector<std::int64_t> slower = even(2000, 5000);
+  for (int i = 0; i < 100; ++i) slower.push_back(slower.back() + 10000);
+  CHECK(count(read_text(log_of(slower)), "rate_change") == 1);
+}
+
+TEST_CASE("two rates that gaps do not explain: rows over time, and both are said") {
+  std::vector<std::int64_t> t = even(3001, 10000);
+  for (int i = 0; i < 1000; ++i) t.push_back(t.back() + 14000);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.time.gaps == 0);
+  CHECK(r.info.time.rate_hz == Approx(1 / 0.011).epsilon(1e-9));
+  REQUIRE(count(r, "uneven_sampling") == 1);
+  CHECK_THAT(r.info.warnings.find("uneven_sampling")->message,
+             Catch::Contains("keep 100 Hz, rows over time are 90.909 Hz"));
+}
+
+TEST_CASE("stamps too far away for a grid are refused with their distance") {
+  CHECK_THAT(failure("t_ns,x\n-3000000000000000000,1\n-2999999999000000000,2\n"
+                     "3000000000000000000,3\n3000000001000000000,4\n"),
+             Catch::Contains("log.csv:4:1: error E0316: wild time stamp: 6e+09 s away from the "
+                             "first"));
+  auto t = even(1001, 1000);
+  for (int i = 0; i < 100; ++i) t.push_back(200001000000 + 1000 * i);
+  CHECK_THAT(failure(log_of(t)),
+             Catch::Contains("log.csv:1003:1: error E0316: wild time stamp: 2e+05 s after the row "
+                             "before (199999999 missing samples)"));
+}
+
 TEST_CASE("16- and 32-bit microsecond clocks run over and go on") {
   for (const int bits : {16, 32}) {
     const std::int64_t range = std::int64_t{1} << bits;

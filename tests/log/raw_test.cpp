@@ -6,6 +6,7 @@
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/log/binary/number_type.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/rows.hpp"
@@ -146,6 +147,50 @@ TEST_CASE(
   CHECK_FALSE(doubtful({1e-310, 3e-312, 7e-315}, false));
   CHECK_FALSE(doubtful({0, 0, 0}, true));
   CHECK_FALSE(doubtful({1, 2, 3}, false));
+}
+
+TEST_CASE("single floats in the other byte order are told as well") {
+  const auto swapped = [](const std::vector<float>& values) {
+    std::vector<double> other;
+    for (const float x : values) {
+      char b[4];
+      std::memcpy(b, &x, 4);
+      std::swap(b[0], b[3]);
+      std::swap(b[1], b[2]);
+      float y = 0;
+      std::memcpy(&y, b, 4);
+      other.push_back(static_cast<double>(y));
+    }
+    return other;
+  };
+  CHECK(looks_byte_swapped(swapped({1, 2, 3, -4.5F}), NumberType::f32));
+  CHECK(looks_byte_swapped(swapped({0.001F, 2.5F, 100, 1024}), NumberType::f32));
+  CHECK_FALSE(looks_byte_swapped(std::vector<double>{1, 2, 3, -4.5}, NumberType::f32));
+  CHECK_FALSE(looks_byte_swapped(swapped({1, 2, 3}), NumberType::i32));
+}
+
+TEST_CASE("a block keeps to its bytes, stamps included, and progress is that of the file") {
+  for (const bool planar : {false, true}) {
+    INFO((planar ? "planar" : "interleaved"));
+    const Raw raw(std::string(10 * 16 + 3, '\0'),
+                  std::string(R"({"dtype": "i64", "endian": "little", "rows": 10, "channels": )") +
+                      R"([{"name": "t", "unit": "s"}, {"name": "a"}], "order": ")" +
+                      (planar ? "planar" : "interleaved") + R"("})");
+    ReadOptions options;
+    options.block_bytes = 64;
+    const auto source = find_format("raw")->open(raw.path, options);
+    RowBlock block;
+    Warnings warnings;
+    for (const std::size_t rows : {4UL, 8UL}) {
+      REQUIRE(source->next(block, warnings));
+      CHECK(block.rows == 4);
+      CHECK(source->bytes_read() == 16 * rows);
+    }
+    REQUIRE(source->next(block, warnings));
+    CHECK(block.rows == 2);
+    CHECK(source->bytes_read() == source->bytes_total());
+    CHECK_FALSE(source->next(block, warnings));
+  }
 }
 
 TEST_CASE("a missing sidecar is answered with one to copy, two are one too many") {

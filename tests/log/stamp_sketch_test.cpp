@@ -2,6 +2,7 @@
 
 #include "libchar/log/time/stamp_sketch.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -23,6 +24,14 @@ StampSketch sketch_of(const std::vector<std::int64_t>& stamps) {
   return sketch;
 }
 
+StampSketch sketch_of_runs(const std::vector<std::int64_t>& stamps, std::size_t run) {
+  StampSketch sketch;
+  for (std::size_t i = 0; i < stamps.size(); i += run)
+    sketch.add_run(
+        static_cast<std::int64_t>(i), stamps.data() + i, std::min(run, stamps.size() - i));
+  return sketch;
+}
+
 }  // namespace
 
 TEST_CASE("the stamp that deviates most is kept through every thinning, early or late") {
@@ -38,6 +47,10 @@ TEST_CASE("the stamp that deviates most is kept through every thinning, early or
         const auto deviation = sketch.deviation(1e6);
         CHECK(deviation.largest == 12345);
         CHECK(deviation.robust == 0);
+        for (const std::size_t run : {5UL, 64UL, 100000UL}) {
+          INFO("in runs of " << run);
+          CHECK(sketch_of_runs(stamps, run).deviation(1e6).largest == 12345);
+        }
       }
 }
 

@@ -112,7 +112,11 @@ TEST_CASE("the same stamps have one unit and one rate in every format") {
   const std::vector<std::pair<Stamps, Found>> cases = {
       {{"t", every(100)}, {true, "ms", true, 10, 1}},
       {{"t", every(1)}, {true, "s", true, 1, 1}},
+      {{"t", every(2)}, {true, "ms", true, 500, 1}},
+      {{"t", every(199)}, {true, "ms", true, 1000.0 / 199, 1}},
+      {{"t", every(200)}, {true, "us", true, 5000, 1}},
       {{"t", every(5000)}, {true, "us", true, 200, 1}},
+      {{"t", every(200000)}, {true, "ns", true, 5000, 1}},
       {{"t", every(10000000)}, {true, "ns", true, 100, 1}},
       {{"timestamp", every(10, 1700000000000)}, {true, "ms", true, 100, 1}},
       {{"timestamp", every(10000, 1700000000000000)}, {true, "us", true, 100, 1}},
@@ -174,6 +178,30 @@ TEST_CASE("two columns that differ in the unit of time only: the first is the ti
   CHECK(info.time.column == "time_us");
   CHECK(info.time.rate_hz == Approx(200));
   CHECK(info.channels.size() == 2);
+}
+
+TEST_CASE("stamps with a fraction are seconds since 1970 by their size, else go by their step") {
+  const auto unit_of = [](const std::string& rows) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "x.csv") << "t,x\n" << rows;
+    return read_recording((folder / "x.csv").string()).info.time.unit;
+  };
+  CHECK(unit_of("1700000000.5,0\n1700000010.5,1\n1700000020.5,0\n") == "s");
+  CHECK(unit_of("0.5,0\n10.5,1\n20.5,0\n") == "ms");
+  CHECK(unit_of("500.5,0\n10500.5,1\n20500.5,0\n") == "us");
+}
+
+TEST_CASE("of several columns of time the choice is said where it is the device's") {
+  const auto guesses = [](const std::string& header) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "x.csv") << header << "\n0,0,1\n5000,5,2\n10000,10,1\n";
+    return read_recording((folder / "x.csv").string()).info.guesses;
+  };
+  CHECK(guesses("host_time[us],device_time[ms],x") ==
+        std::vector<std::string>{"time column: device_time[ms], the device's own clock "
+                                 "(`time_column` takes another one)"});
+  CHECK(guesses("device_time[us],y[ms],x").empty());
+  CHECK(guesses("host_timestamp[us],timestamp[ms],x").empty());
 }
 
 TEST_CASE("the device's own time is preferred to the host's") {

@@ -166,6 +166,10 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
             .find("bandwidth_hz") != std::string::npos);
 }
 
+TEST_CASE("model reader: a file that does not say where it is from was written by hand") {
+  CHECK(parse("white_noise: 1e-4\ndensity: two-sided\n").obtained == "written by hand");
+}
+
 TEST_CASE("model reader: kind and axis from unit and name") {
   SensorModel m;
   const auto axis = [&](const char* name) {
@@ -181,8 +185,23 @@ TEST_CASE("model reader: kind and axis from unit and name") {
   CHECK(axis("flux") == "");
   CHECK(axis("index") == "");
   CHECK(axis("temp") == "");
-  m.unit = "mg";
-  CHECK(kind_of(m) == "accelerometer");
+  m.axis = "y";
+  CHECK(axis("temp") == "y");
+  CHECK(axis("gyr_x") == "y");  // what the file says
+  const auto kind = [&](const char* unit) {
+    m.unit = unit;
+    return kind_of(m);
+  };
+  CHECK(kind("mg") == "accelerometer");
+  CHECK(kind("deg/s") == "gyroscope");
+  CHECK(kind("uT") == "magnetometer");
+  CHECK(kind("hPa") == "barometer");
+  CHECK(kind("degC") == "thermometer");
+  CHECK(kind("V") == "sensor");
+  CHECK(kind("furlong") == "sensor");
+  CHECK(kind("") == "sensor");
+  m.kind = "scale";
+  CHECK(kind("mg") == "scale");
 }
 
 TEST_CASE("model reader: every example of docs/models.md is read") {

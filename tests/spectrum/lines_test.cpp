@@ -179,6 +179,25 @@ TEST_CASE("rounding a slow drift makes no lines, and hides none that are larger 
   CHECK(rounded_lines(y).size() == 1);
 }
 
+TEST_CASE("a line next to the end of the spectrum is as wide as one in its middle") {
+  const auto line_at = [](std::size_t bin) {
+    std::mt19937_64 generator(21);
+    std::normal_distribution<double> normal;
+    std::vector<double> x(65536);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = 0.05 * normal(generator) + std::sin(2 * std::numbers::pi * static_cast<double>(bin) *
+                                                     static_cast<double>(i) / 1024 +
+                                                 std::numbers::pi / 4);
+    const auto lines = find_lines(welch(x, 1024, line_segments(1024)));
+    REQUIRE(lines.size() == 1);
+    CHECK(lines[0].frequency_hz == Approx(static_cast<double>(bin)).margin(0.2));
+    return lines[0].width_hz;
+  };
+  // Hann's window: a neighbour has a quarter of the power, so that half of it is 2/3 of a bin away by straight lines.
+  CHECK(line_at(256) == Approx(4.0 / 3).epsilon(0.01));
+  CHECK(line_at(510) == Approx(4.0 / 3).epsilon(0.01));
+}
+
 TEST_CASE("constant, empty and tiny spectra have no lines") {
   CHECK(find_lines(Spectrum{}).empty());
   CHECK(find_lines(welch(std::vector<double>(1000, 2.0), 1)).empty());

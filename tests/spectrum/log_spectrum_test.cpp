@@ -109,3 +109,14 @@ TEST_CASE("the log-frequency spectrum serves short records and records with miss
   CHECK(s.value.size() > 20);
   for (const double v : s.value) CHECK(std::isfinite(v));
 }
+
+TEST_CASE("an offset of the log-frequency spectrum is none, with missing samples either") {
+  auto x = gaussian_record(600'000, 3);
+  for (std::size_t i = 11; i < x.size(); i += 101) x[i] = std::numeric_limits<double>::quiet_NaN();
+  const Spectrum here = log_frequency_spectrum(x, 1, Sides::one, 64);
+  for (double& v : x) v += 1024;
+  const Spectrum there = log_frequency_spectrum(x, 1, Sides::one, 64);
+  REQUIRE(here.value.size() == there.value.size());
+  for (std::size_t k = 0; k < here.value.size(); ++k)
+    CHECK(there.value[k] == Approx(here.value[k]).epsilon(1e-6));
+}

@@ -380,6 +380,30 @@ TEST_CASE("a stream gives the bits of the whole, however it is pushed, with miss
   }
 }
 
+TEST_CASE("a stream of one segment, or of one more than a group of 32, counts the last") {
+  constexpr std::size_t kSegment = 2048;
+  const auto x = white_samples(65 * kSegment, 12);
+  WelchOptions options = welch_segments(kSegment);
+  options.overlap = 0;
+  std::vector<double> sum(kSegment / 2 + 1);
+  for (std::size_t s = 0; s < 65; ++s) {
+    WelchStream alone(options), all(options);
+    alone.push(std::span(x).subspan(s * kSegment, kSegment));
+    const Spectrum one = alone.finish(1);
+    REQUIRE(one.segments == 1);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += one.value[k];
+    if (s != 0 && s != 1 && s != 31 && s != 32 && s != 64) continue;
+    all.push(std::span(x).first((s + 1) * kSegment));
+    const Spectrum mean = all.finish(1);
+    CAPTURE(s);
+    REQUIRE(mean.segments == s + 1);
+    for (std::size_t k = 1; k < sum.size(); ++k) {
+      REQUIRE(sum[k] > 0);
+      REQUIRE(mean.value[k] == Approx(sum[k] / static_cast<double>(s + 1)).epsilon(1e-12));
+    }
+  }
+}
+
 TEST_CASE(
     "segments that touch a missing sample are dropped and counted, and the rest is untouched") {
   auto x = white_samples(1000, 9);

@@ -68,7 +68,7 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   layout.rows = count_rows(sidecar, *file, layout.warnings);
   layout.data_byte = sidecar.offset;
   layout.named = sidecar.named;
-  layout.column_major = sidecar.planar && sidecar.channels.size() > 1;
+  layout.column_major = sidecar.planar;
   const std::uint64_t item = size_of(sidecar.number.type);
   const std::uint64_t columns = sidecar.channels.size();
   layout.data_bytes = layout.rows * columns * item;

@@ -145,8 +145,8 @@ struct Study {
   }
 
   std::size_t cells_of(const std::vector<Field>& fields) const {
-    const bool ends_empty = fields.size() > 1 && dialect.delimiter != ' ' &&
-                            fields.back().text.empty() && !fields.back().quoted;
+    const bool ends_empty =
+        dialect.delimiter != ' ' && fields.back().text.empty() && !fields.back().quoted;
     return fields.size() - (ends_empty && fields.size() == columns_ + 1 ? 1 : 0);
   }
 

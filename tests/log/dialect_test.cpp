@@ -1,0 +1,103 @@
+// How the dialect of a CSV file is found out from its first lines, and where a message says that something is wrong.
+#include "libchar/log/csv/dialect.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "libchar/log/csv/delimiter.hpp"
+#include "libchar/log/csv/sample.hpp"
+#include "tests/log/log_text.hpp"
+
+using namespace libchar;
+using test::count;
+using test::failure;
+using test::read_text;
+
+namespace {
+
+std::vector<csv::Line> sampled_lines(const std::string& text) {
+  return csv::sample_lines(text, true, 0, 1, "log.csv").lines;
+}
+
+}  // namespace
+
+TEST_CASE("an empty last cell ends a line of the sample, a quoted one is a cell") {
+  const std::string bare = "1,2,\n3,4,\n", quoted = "1,2,\"\"\n3,4,\"\"\n";
+  CHECK(csv::score(sampled_lines(bare), ',').columns == 2);
+  CHECK(csv::score(sampled_lines(quoted), ',').columns == 3);
+  // A last column that is empty at times is a column.
+  const std::string slow = "1,2,3\n4,5,\n6,7,\n";
+  CHECK(csv::score(sampled_lines(slow), ',').columns == 3);
+}
+
+TEST_CASE("blank lines and comments between the first rows are no part of the sample") {
+  const std::string text = "# a;b;c\n\nt,x\n# u;v;w\n\n0,1\n  \n// p;q;r\n1,2\n";
+  const csv::Sample sample = csv::sample_lines(text, true, 0, 1, "log.csv");
+  REQUIRE(sample.lines.size() == 3);
+  CHECK(sample.lines[0].text == "t,x");
+  CHECK(sample.lines[1].text == "0,1");
+  CHECK(sample.lines[1].number == 6);
+  CHECK(sample.lines[2].text == "1,2");
+  CHECK(sample.comments.size() == 1);
+  std::string remarks;
+  for (int i = 0; i < 90; ++i) remarks += "# 1;2;3;4\n";
+  const Recording r = read_text("t,x\n0,1\n" + remarks + "1,2\n2,3\n");
+  CHECK(r.samples == std::vector<std::vector<double>>{{1, 2, 3}});
+}
+
+TEST_CASE(
+    "rows that end with a delimiter have no further column, and that is said where it begins") {
+  const Recording r = read_text("t,x\n0,1,\n1,2,\n2,3,\n");
+  CHECK(r.samples == std::vector<std::vector<double>>{{1, 2, 3}});
+  REQUIRE(count(r, "trailing_delimiter") == 1);
+  CHECK(r.info.warnings.find("trailing_delimiter")->places[0] == "line 2, column 5");
+}
+
+TEST_CASE("columns without a header are c0, c1 and so on, the time not counted") {
+  const auto names = [](const Recording& r) {
+    std::string list;
+    for (const Channel& c : r.info.channels) list += c.name + " ";
+    return list;
+  };
+  CHECK(names(read_text("0.0,5,7,9\n0.1,6,6,9\n0.2,1,5,8\n0.3,7,8,9\n")) == "c0 c1 c2 ");
+  CHECK(names(read_text("5,7,9\n1,6,9\n4,5,8\n2,8,9\n")) == "c0 c1 c2 ");
+}
+
+TEST_CASE("what is wrong with the first lines is told with line, column and number of lines") {
+  CHECK(failure("# nothing\n\n").find("log.csv:1:1 (byte 0): error E0322: no data") == 0);
+  // A name of two lines: the columns behind it count from the second.
+  CHECK(failure("t,\"a\nb\",x,x\n0,1,2,3\n")
+            .find("log.csv:2:6: error E0307: two columns have the same name (first at 2:4)") == 0);
+  CHECK_THAT(failure("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n"),
+             Catch::Contains("E0303: 2 line(s) before the table do not fit its 2 columns") &&
+                 Catch::Contains("`skip_rows` 2 leaves them out"));
+}
+
+TEST_CASE("a file exactly as long as the head is whole though no line end follows") {
+  for (const std::size_t less : {0U, 1U}) {
+    const std::string row = "1.5";
+    std::string text;
+    while (text.size() + 1000 < csv::kHeadBytes) text += "#" + std::string(500, ' ') + "\n";
+    text +=
+        "#" + std::string(csv::kHeadBytes - less - text.size() - row.size() - 2, ' ') + "\n" + row;
+    REQUIRE(text.size() == csv::kHeadBytes - less);
+    ReadOptions options;
+    options.rate_hz = 1;
+    CHECK(read_text(text, options).samples == std::vector<std::vector<double>>{{1.5}});
+  }
+}
+
+TEST_CASE("text with control characters in a fiftieth of its first 4096 bytes is binary") {
+  const auto text_with = [](std::size_t controls, std::size_t last) {
+    std::string text(4096, ' ');
+    for (std::size_t i = 0; i + 1 < controls; ++i) text[40 * i] = '\x01';
+    text[last] = '\x01';
+    return text + "\n0,1\n";
+  };
+  CHECK_THAT(
+      failure(text_with(82, 4095)),
+      Catch::Contains("E0301") && Catch::Contains("82 control characters in the first 4096 bytes"));
+  CHECK_THAT(failure(text_with(81, 4095)), !Catch::Contains("E0301"));
+}
