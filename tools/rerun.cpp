@@ -113,12 +113,13 @@ bool is_of_numbers(const fs::path& name) {
 }  // namespace
 
 bool Rerun::holds() const {
-  const bool small = std::all_of(differences.begin(), differences.end(), [&](const auto& d) {
-    return !same_program && d.relative <= kSameDigits;
+  const bool digits = std::all_of(differences.begin(), differences.end(), [](const auto& d) {
+    return d.relative <= kSameDigits;
   });
-  return small && (!same_program || std::all_of(files.begin(), files.end(), [](const auto& file) {
-           return file.second;
-         }));
+  // Tables and models hold the document's numbers: where those are the same, so are their bytes.
+  return digits &&
+         (!differences.empty() ||
+          std::all_of(files.begin(), files.end(), [](const auto& f) { return f.second; }));
 }
 
 Rerun rerun(Session& session,

@@ -16,7 +16,7 @@ struct Rerun {
   /// tables, models: name and whether the bytes are the same
   std::vector<std::pair<std::string, bool>> files;
   bool same_program = false;
-  /// everything is the same, or numbers of documents agree to `kSameDigits` where another build wrote the first
+  /// everything is the same, or the numbers of the document agree to `kSameDigits`
   bool holds() const;
 };
 

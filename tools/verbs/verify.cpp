@@ -73,7 +73,10 @@ std::string rerun_text(const Rerun& run) {
   }
   if (run.differences.size() > kShown)
     out += fmt::format("  and {} more\n", run.differences.size() - kShown);
-  if (run.differences.empty()) out += "  same      every number of the document\n";
+  if (run.differences.empty())
+    out += "  same      every number of the document\n";
+  else if (run.holds())
+    out += "  within 8 digits: another processor or build\n";
   return out;
 }
 
