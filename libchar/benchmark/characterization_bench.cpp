@@ -136,7 +136,7 @@ EstimatorAccuracy accuracy_of(const Estimator& estimator,
   out.error = std::exp(log_sum / tellable);
   if (has_absent && !estimator.told)
     out.false_terms = share_figure(tally.false_records, tally.records);
-  out.ns_per_sample = median_figure(tally.ns);
+  out.ns_per_sample = time_figure(tally.ns);
   out.bytes_per_sample = tally.bytes;
   return out;
 }
@@ -207,7 +207,7 @@ CharacterizationBench bench_characterization(const BenchSignal& signal,
     std::vector<double> ratios;
     for (std::size_t r = 0; r < options.records; ++r)
       ratios.push_back(tallies[i].ns[r] / tallies[0].ns[r]);
-    out.methods[i].time_ratio = median_figure(std::move(ratios));
+    out.methods[i].time_ratio = time_figure(std::move(ratios));
   }
   add_front_gaps(out.methods);
   return out;

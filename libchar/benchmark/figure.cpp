@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/distributions.hpp"
@@ -11,17 +12,17 @@ namespace {
 
 constexpr double kOutside = 0.025;  // on either side of an interval
 
-/// The largest k for which fewer than k of n values lie below the median with at most 2.5 %; 0: none.
-std::size_t median_rank(std::size_t n) {
+constexpr double kOutsideOfRuns = 0.005, kLeastOfTimes = 0.015;
+
+/// The largest k for which fewer than k of n values lie below the median with at most this probability; 0: none.
+std::size_t median_rank(std::size_t n, double outside) {
   const auto trials = static_cast<double>(n);
   std::size_t k = 0;
-  while (k < n / 2 && binomial_cdf(static_cast<double>(k), trials, 0.5) <= kOutside) ++k;
+  while (k < n / 2 && binomial_cdf(static_cast<double>(k), trials, 0.5) <= outside) ++k;
   return k;
 }
 
-}  // namespace
-
-Figure median_figure(std::vector<double> values) {
+Figure median_within(std::vector<double> values, double outside) {
   Figure out;
   out.count = values.size();
   if (values.empty()) return out;
@@ -29,7 +30,21 @@ Figure median_figure(std::vector<double> values) {
   const std::size_t n = values.size();
   out.value =
       n % 2 == 1 ? values[n / 2] : values[n / 2 - 1] + (values[n / 2] - values[n / 2 - 1]) / 2;
-  if (const std::size_t k = median_rank(n); k > 0) out.ci95 = {values[k - 1], values[n - k]};
+  if (const std::size_t k = median_rank(n, outside); k > 0)
+    out.ci95 = {values[k - 1], values[n - k]};
+  return out;
+}
+
+}  // namespace
+
+Figure median_figure(std::vector<double> values) {
+  return median_within(std::move(values), kOutside);
+}
+
+Figure time_figure(std::vector<double> values) {
+  Figure out = median_within(std::move(values), kOutsideOfRuns);
+  out.ci95.low = std::min(out.ci95.low, (1 - kLeastOfTimes) * out.value);
+  out.ci95.high = std::max(out.ci95.high, (1 + kLeastOfTimes) * out.value);
   return out;
 }
 

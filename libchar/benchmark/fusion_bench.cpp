@@ -106,7 +106,7 @@ FusionBenchCell cell_of(const Runs& runs) {
   out.ran = !runs.ratio.empty();
   out.why = runs.why;
   out.excess = minus_one(mean_figure(runs.ratio));
-  out.ns_per_sample = median_figure(runs.ns);
+  out.ns_per_sample = time_figure(runs.ns);
   out.learning_s = median_figure(runs.learning_s).value;
   out.bytes = runs.bytes;
   return out;
@@ -146,7 +146,7 @@ void over_scenes(const std::vector<SceneRuns>& all, FusionBenchRow& row) {
   for (double& v : ratio) v = std::exp(v);
   for (double& v : ns) v = std::exp(v);
   row.excess = minus_one(mean_figure(ratio));
-  row.ns_per_sample = median_figure(ns);
+  row.ns_per_sample = time_figure(ns);
 }
 
 void add_fronts(FusionBench& bench) {

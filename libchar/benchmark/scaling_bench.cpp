@@ -102,7 +102,7 @@ class Plan {
         if (heap_ != nullptr) bytes[i] = static_cast<double>(heap_->end().peak);
       }
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
-      ScalingPoint point{tasks_[i].x, median_figure(costs[i]), {}};
+      ScalingPoint point{tasks_[i].x, time_figure(costs[i]), {}};
       if (heap_ != nullptr) point.bytes = bytes[i];
       out_[tasks_[i].series].points.push_back(point);
     }

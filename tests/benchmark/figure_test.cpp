@@ -26,6 +26,20 @@ TEST_CASE("median: order statistics of the binomial, by hand") {
   CHECK(std::isnan(median_figure({}).value));
 }
 
+TEST_CASE(
+    "times: wider than a median's interval, and never narrower than what code placement costs") {
+  std::vector<double> values(20, 100);
+  const Figure still = time_figure(values);
+  CHECK(still.ci95.low == Approx(98.5));
+  CHECK(still.ci95.high == Approx(101.5));
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i + 1);
+  // 20 values: the 4th and 17th at 99 % (P(K <= 3) = 0.13 %, P(K <= 4) = 0.59 %), the 6th and 15th at 95 %.
+  CHECK(time_figure(values).ci95.low == 4);
+  CHECK(time_figure(values).ci95.high == 17);
+  CHECK(median_figure(values).ci95.low == 6);
+  CHECK(std::isinf(time_figure({1, 2, 3, 4, 5, 6, 7}).ci95.high));
+}
+
 TEST_CASE("mean and rms: Student and chi-square, by hand") {
   const Figure mean = mean_figure({1e9 + 1, 1e9 + 2, 1e9 + 3});
   CHECK(mean.value == 1e9 + 2);
