@@ -10,6 +10,7 @@
 #include "libchar/benchmark/design_bench.hpp"
 #include "libchar/benchmark/fusion_bench.hpp"
 #include "libchar/benchmark/scaling_bench.hpp"
+#include "libchar/benchmark/stress_bench.hpp"
 #include "libchar/benchmark/turns.hpp"
 
 namespace libchar {
@@ -23,6 +24,7 @@ struct BenchReport {
   std::optional<FusionBench> fusion;
   std::optional<ScalingBench> scaling;
   std::optional<DesignBench> design;
+  std::optional<StressBench> stress;
 };
 
 }  // namespace libchar

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "libchar/core/lanes.hpp"
 
@@ -78,15 +79,43 @@ LIBCHAR_WIDE_LANES bool extremes(const double* x, int n, double& minimum, double
   return true;
 }
 
+/// 0 where the fourth powers of values up to `range` are numbers.
+int unit_exponent(double range) {
+  constexpr double kLargest = 0x1p240;
+  if (range == 0 || (range > 1 / kLargest && range < kLargest)) return 0;
+  return std::isfinite(range) ? std::ilogb(range) : std::numeric_limits<double>::max_exponent;
+}
+
 }  // namespace
 
 Moments::Central Moments::of_block(const double* x, int n) const {
+  const int exponent = unit_exponent(std::max(maximum_ - origin_, origin_ - minimum_));
+  if (exponent == 0) return of_block(x, n, origin_);
+  double scaled[kBlock];
+  for (int i = 0; i < n; ++i) scaled[i] = std::ldexp(x[i], -exponent);
+  Central c = of_block(scaled, n, std::ldexp(origin_, -exponent));
+  c.exponent = exponent;
+  return c;
+}
+
+Moments::Central Moments::in_unit(const Central& c, int exponent) {
+  const int up = c.exponent - exponent;
+  if (up == 0) return c;
+  return {c.n,
+          std::ldexp(c.mean, up),
+          std::ldexp(c.m2, 2 * up),
+          std::ldexp(c.m3, 3 * up),
+          std::ldexp(c.m4, 4 * up),
+          exponent};
+}
+
+Moments::Central Moments::of_block(const double* x, int n, double origin) const {
   const double shift = x[0];
   Central c;
   c.n = n;
   const double offset = shifted_sum(x, n, shift) / n;
   // About the first sample of all: a mean stored whole would round away the differences of means that `merged` needs.
-  c.mean = (shift - origin_) + offset;
+  c.mean = (shift - origin) + offset;
   double s[4] = {};
   power_sums(x, n, shift, offset, s);
   // s[0]: what rounding left of the sum of deviations (Chan's corrected two-pass formula).
@@ -99,7 +128,12 @@ Moments::Central Moments::of_block(const double* x, int n) const {
 Moments::Central Moments::merged(const Central& a, const Central& b) {
   if (a.n == 0) return b;
   if (b.n == 0) return a;
+  if (a.exponent != b.exponent) {
+    // The range only grows; a unit of its own for small samples ends where larger ones come.
+    return merged(in_unit(a, b.exponent), b);
+  }
   Central c;
+  c.exponent = a.exponent;
   c.n = a.n + b.n;
   const double d = b.mean - a.mean, f = d / c.n;
   c.mean = a.mean + f * b.n;
@@ -154,14 +188,16 @@ std::uint64_t Moments::missing() const {
   return missing_;
 }
 double Moments::mean() const {
-  return origin_ + total().mean;
+  const Central c = total();
+  return origin_ + std::ldexp(c.mean, c.exponent);
 }
 double Moments::variance() const {
   const Central c = total();
-  return c.n < 2 ? 0.0 : c.m2 / (c.n - 1);
+  return c.n < 2 ? 0.0 : std::ldexp(c.m2 / (c.n - 1), 2 * c.exponent);
 }
 double Moments::standard_deviation() const {
-  return std::sqrt(variance());
+  const Central c = total();
+  return c.n < 2 ? 0.0 : std::ldexp(std::sqrt(c.m2 / (c.n - 1)), c.exponent);
 }
 double Moments::skewness() const {
   const Central c = total();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "libchar/core/dense.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::fusion {
@@ -20,6 +21,17 @@ Eigen::Index wanted_channels(const Needs& needs, const Array& array) {
 
 bool known(const Eigen::VectorXd& levels, Eigen::Index channels) {
   return levels.size() == channels && levels.allFinite() && (levels.array() > 0).all();
+}
+
+/// Columns of H in unit length differ by more than what rounding of samples leaves.
+bool tells_inputs_apart(const Array& array) {
+  constexpr double kRounding = 1e-12;
+  if (array.observation_matrix.size() == 0 || array.channels < array.inputs()) return true;
+  const Eigen::VectorXd length = array.observation_matrix.colwise().norm();
+  if (!(length.minCoeff() > 0)) return false;
+  const Eigen::VectorXd r =
+      thin_qr(array.observation_matrix * length.cwiseInverse().asDiagonal()).r_diagonal;
+  return r.cwiseAbs().minCoeff() > kRounding;
 }
 
 }  // namespace
@@ -42,6 +54,9 @@ std::string why_not(const Description& description, const Array& array) {
                : name +
                      " needs channels that see the input with gain one; this scene's observation "
                      "matrix says otherwise";
+  if (!needs.tilt && !tells_inputs_apart(array))
+    return name + " needs sensors that tell the inputs apart; by this scene's observation matrix " +
+           count(array.inputs(), "input leaves", "inputs leave") + " the same in all of them";
   if (array.channels < wanted_channels(needs, array)) {
     std::string sentence =
         name + " needs at least " + count(wanted_channels(needs, array), "channel", "channels");

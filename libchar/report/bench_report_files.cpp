@@ -148,6 +148,21 @@ Json design_json(const DesignBench& bench) {
   return out;
 }
 
+Json stress_json(const StressBench& bench) {
+  Json out = {{"seed", bench.seed}, {"cells", Json::array()}};
+  for (const StressOutcome outcome :
+       {StressOutcome::digits, StressOutcome::held, StressOutcome::refused, StressOutcome::wrong})
+    out[std::string(name_of(outcome))] = bench.count(outcome);
+  for (const StressCell& cell : bench.cells)
+    out["cells"].push_back({{"of", cell.subject},
+                            {"input", cell.input},
+                            {"outcome", std::string(name_of(cell.outcome))},
+                            {"digits", json_number(cell.digits)},
+                            {"stated", json_number(cell.stated)},
+                            {"what", json_text(cell.what)}});
+  return out;
+}
+
 std::string section_html(const BenchSection& section) {
   std::string out = "<section class=\"channel\">\n<h2>" + html_text(section.title) + "</h2>\n";
   for (const std::string& sentence : section.sentences)
@@ -183,6 +198,7 @@ Json bench_json(const BenchReport& report) {
   out["fusion"] = report.fusion ? fusion_json(*report.fusion) : Json(nullptr);
   out["scaling"] = report.scaling ? scaling_json(*report.scaling) : Json(nullptr);
   out["design"] = report.design ? design_json(*report.design) : Json(nullptr);
+  out["stress"] = report.stress ? stress_json(*report.stress) : Json(nullptr);
   return out;
 }
 

@@ -77,8 +77,9 @@ Json quality_json(const ChannelResult& channel) {
 Json for_drawing(const std::vector<double>& values, int digits) {
   Json out = Json::array();
   for (const double value : values)
-    out.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, digits)))
-                                       : Json(nullptr));
+    out.push_back(std::isfinite(value)
+                      ? Json(parse_double(fmt::format("{:.{}g}", value, digits)).value_or(value))
+                      : Json(nullptr));
   return out;
 }
 

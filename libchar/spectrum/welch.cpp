@@ -220,6 +220,7 @@ Spectrum welch(std::span<const double> record,
                                             [&](const Group& group) { take(group, average); }));
     });
   }
+  average.note_samples(record);
   Spectrum spectrum = average.spectrum(window, rate_hz);
   spectrum.notes = std::move(notes);
   if (spectrum.dropped > 0)

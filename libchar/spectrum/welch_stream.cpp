@@ -192,6 +192,7 @@ WelchStream& WelchStream::operator=(WelchStream&&) noexcept = default;
 
 void WelchStream::push(std::span<const double> samples) {
   state_->samples += samples.size();
+  state_->average.note_samples(samples);
   state_->halves ? state_->push_by_halves(samples, nullptr) : state_->push_by_segments(samples);
 }
 
@@ -202,6 +203,7 @@ std::uint64_t WelchStream::shared_length() const {
 void WelchStream::push(std::span<const double> samples, SharedBlocks& blocks) {
   state_->check_shared(blocks);
   state_->samples += samples.size();
+  state_->average.note_samples(samples);
   state_->push_by_halves(samples, &blocks);
 }
 

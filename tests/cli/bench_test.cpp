@@ -110,3 +110,12 @@ TEST_CASE("bench: refused in a sentence") {
                               test::fixture("imu_at_rest.csv")});
   CHECK(ran.code == 3);
 }
+
+TEST_CASE("bench --stress: nothing wrong, all cells in the document") {
+  const auto ran = test::run({"bench", "--stress", "--quick", "--json"});
+  REQUIRE(ran.code == 0);
+  const auto document = libchar::parse_json(ran.out, "stdout");
+  CHECK(document["stress"]["wrong"] == 0);
+  CHECK(document["stress"]["cells"].size() > 1000);
+  CHECK(document["scaling"].is_null());
+}

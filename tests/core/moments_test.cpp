@@ -148,3 +148,32 @@ TEST_CASE("none, one, constant and only missing samples give numbers, not NaN") 
   CHECK(constant.skewness() == 0);
   CHECK(constant.kurtosis() == 0);
 }
+
+TEST_CASE("moments: deviations of any size that a double has, also where they change on the way") {
+  std::vector<double> plain(10000);
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
+  const auto of = [](const std::vector<double>& y) {
+    Moments moments;
+    moments.push(y);
+    return moments;
+  };
+  const Moments expected = of(plain);
+  for (const int power : {-900, -400, 400, 900}) {
+    INFO(power);
+    std::vector<double> scaled = plain;
+    for (double& y : scaled) y = std::ldexp(y, power);
+    const Moments moments = of(scaled);
+    CHECK(std::ldexp(moments.standard_deviation(), -power) ==
+          Approx(expected.standard_deviation()).epsilon(1e-14));
+    CHECK(moments.kurtosis() == Approx(expected.kurtosis()).epsilon(1e-12));
+    CHECK(moments.skewness() == Approx(expected.skewness()).margin(1e-12));
+    CHECK(std::ldexp(moments.mean(), -power) == Approx(expected.mean()).margin(1e-14));
+  }
+  std::vector<double> spike = plain;
+  spike[8000] = 1e300;
+  CHECK(of(spike).standard_deviation() == Approx(1e300 / std::sqrt(10000.0)).epsilon(1e-3));
+  CHECK(of(spike).kurtosis() == Approx(10000.0).epsilon(1e-3));
+  CHECK(of({1e308, -1e308, 1e308, -1e308}).standard_deviation() ==
+        Approx(1e308 * std::sqrt(4 / 3.0)).epsilon(1e-14));
+}

@@ -131,3 +131,14 @@ TEST_CASE("mean and inverse variance of several inputs are least squares", "[fus
   InverseVariance weighted(array);
   check(weighted, array.noise_levels.cwiseInverse());
 }
+
+TEST_CASE("inverse-variance: no estimate has no variance either") {
+  libchar::fusion::Array array;
+  array.channels = 2;
+  array.noise_levels = Eigen::Vector2d(1, 4);
+  const libchar::fusion::InverseVariance algorithm(array);
+  const Eigen::Vector2d none(std::nan(""), std::nan(""));
+  const auto estimate = algorithm.step(libchar::fusion::Sample(none.data(), 2));
+  CHECK(std::isnan(estimate.x[0]));
+  CHECK(std::isnan(estimate.variance[0]));
+}

@@ -125,3 +125,17 @@ TEST_CASE("what cannot run is refused with the same sentence") {
     }
   }
 }
+
+TEST_CASE("why_not: gains that do not tell the inputs apart") {
+  Array array;
+  array.channels = 4;
+  array.observation_matrix = Eigen::MatrixXd::Ones(4, 2);
+  const Description& mean = *algorithm("mean").description;
+  CHECK_THAT(why_not(mean, array), Catch::Contains("tell the inputs apart"));
+  array.observation_matrix.col(1) << 1, 1, 1, 1 + 1e-14;
+  CHECK_FALSE(why_not(mean, array).empty());
+  array.observation_matrix.col(1) << 1e-9, 1e-9, 1e-9, 2e-9;  // another unit is no reason
+  CHECK(why_not(mean, array).empty());
+  array.observation_matrix.col(1).setZero();
+  CHECK_FALSE(why_not(mean, array).empty());
+}

@@ -476,3 +476,29 @@ TEST_CASE("infinite samples are missing samples") {
   CHECK(s.dropped == 2);
   for (const double v : s.value) REQUIRE(std::isfinite(v));
 }
+
+TEST_CASE("welch: squares that a double does not hold are refused, in memory and streamed") {
+  std::vector<double> plain(4096);
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
+  WelchOptions options;
+  options.segment = 256;
+  const auto streamed = [&](const std::vector<double>& y) {
+    WelchStream stream(options);
+    stream.push(y);
+    return stream.finish(1);
+  };
+  for (const double factor : {1e200, 1e-200, 1e-310}) {
+    INFO(factor);
+    std::vector<double> y = plain;
+    for (double& v : y) v *= factor;
+    CHECK_THROWS_WITH(welch(y, 1, options), Catch::Contains("E0420"));
+    CHECK_THROWS_WITH(streamed(y), Catch::Contains("E0420"));
+  }
+  // A record that does not move has no power, and one whose only move is in no segment neither.
+  std::vector<double> still(4100, 9.81);
+  CHECK(welch(still, 1, options).value[3] == 0);
+  still.back() = 10;
+  CHECK(welch(still, 1, options).value[3] == 0);
+  CHECK(streamed(still).value[3] == 0);
+}

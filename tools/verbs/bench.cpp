@@ -32,7 +32,7 @@ struct BenchVerb {
   BenchInputOptions inputs;
   std::uint64_t seed = 1, records = 0, runs = 0, samples = 0;
   std::optional<double> target, tau_s, share, rate_hz, tolerance;
-  bool quick = false, force = false, json = false;
+  bool quick = false, stress = false, force = false, json = false;
 
   /// Parts that were not named are done where they are asked of what was given.
   bool wants(const std::string& part) const {
@@ -40,7 +40,8 @@ struct BenchVerb {
   }
 };
 
-const std::vector<std::string> kBenchParts = {"characterization", "fusion", "scaling", "design"};
+const std::vector<std::string> kBenchParts = {
+    "characterization", "fusion", "scaling", "design", "stress"};
 
 void check_parts(const BenchVerb& verb) {
   for (const std::string& part : verb.parts)
@@ -122,6 +123,8 @@ BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs&
     report.scaling = bench_growth(session, verb);
   if (verb.wants("design") && !inputs.signals.empty())
     report.design = bench_needs(session, verb, inputs);
+  if (verb.parts.empty() ? verb.files.empty() : verb.wants("stress"))
+    report.stress = bench_stress({verb.quick, verb.seed}, session.terminal);
   report.machine = watch.finish();
   session.terminal.clear();
   return report;
@@ -141,7 +144,25 @@ void refuse_worse(const BenchChanges& changes, double tolerance, const std::stri
                "other work on the machine? run again; --tolerance accepts more"});
 }
 
+void refuse_wrong(const StressBench& stress) {
+  const std::size_t wrong = stress.count(StressOutcome::wrong);
+  if (wrong == 0) return;
+  const StressCell& first = stress.cells.front();
+  throw Error({ErrorKind::check,
+               "E0971",
+               "",
+               fmt::format("{} of {} results under stress are wrong, the first: {}, {}: {}",
+                           wrong,
+                           stress.cells.size(),
+                           first.subject,
+                           first.input,
+                           first.what),
+               "",
+               ""});
+}
+
 void run_bench(Session& session, BenchVerb& verb) {
+  if (verb.stress) verb.parts.emplace_back("stress");
   check_parts(verb);
   const auto foreseen = [&] {
     std::vector<std::string> out;
@@ -153,7 +174,8 @@ void run_bench(Session& session, BenchVerb& verb) {
   const Json older = verb.against.empty() ? Json() : result_document(verb.against);
   const BenchInputs inputs = inputs_of(session, verb);
   const BenchReport report = measured(session, verb, inputs);
-  if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design)
+  if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design &&
+      !report.stress)
     throw Error({ErrorKind::usage,
                  "E0205",
                  "--parts",
@@ -177,6 +199,7 @@ void run_bench(Session& session, BenchVerb& verb) {
     if (changes) print(changes_text(*changes, tolerance));
     if (!verb.folder.empty()) print(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
   }
+  if (report.stress) refuse_wrong(*report.stress);
   if (changes) refuse_worse(*changes, tolerance, verb.against);
 }
 
@@ -195,6 +218,7 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .separated_by_commas()
       .value_name("PART,…");
   options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
+  options.add_flag("--stress", verb->stress, "the same as --parts stress");
   options.add_count("--seed", verb->seed, "of the first simulation (default: 1)");
   options.add_count("--records",
                     verb->records,

@@ -33,13 +33,23 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
                  ""});
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
-  if (!(largest > 0) || !std::isfinite(largest)) {
+  constexpr double kLargestPower = 1e200, kSmallestPower = 1e-200;  // their products are numbers
+  if (largest > 0 && !(largest > kSmallestPower && largest < kLargestPower))
     throw Error({ErrorKind::numeric,
-                 "E0412",
+                 "E0420",
                  "",
-                 "the record is constant or not finite: there is no noise to fit",
+                 "the squares of the samples do not fit into a double",
                  "",
-                 ""});
+                 "give them in another unit: noise from 1e-100 to 1e100 can be fitted"});
+  if (!(largest > 0)) {
+    throw Error(
+        {ErrorKind::numeric,
+         "E0412",
+         "",
+         "the record is constant, or its squares are too small for a double: there is no noise "
+         "to fit",
+         "",
+         ""});
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];

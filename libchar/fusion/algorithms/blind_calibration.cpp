@@ -49,11 +49,11 @@ Estimate BlindCalibration::step(const Sample& y) {
     solve();
   }
   const Eigen::Index n = y.size();
-  const double base = solved_ ? centre_ : y[0];
+  const double base = solved_ ? centre_ : y[0] - origin_;
   double x = 0;
   for (Eigen::Index i = 0; i < n; ++i)
-    x += inverse_gain_[i] * (y[i] - (solved_ ? solved_mean_[i] : base));
-  return Estimate::scalar(base + x / static_cast<double>(n),
+    x += inverse_gain_[i] * ((y[i] - origin_) - (solved_ ? solved_mean_[i] : base));
+  return Estimate::scalar(origin_ + (base + x / static_cast<double>(n)),
                           std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -62,7 +62,8 @@ void BlindCalibration::gather(const Sample& y) {
   instants_ += 1;
   const Eigen::Index n = y.size();
   const double gain = 1 / instants_;
-  for (Eigen::Index i = 0; i < n; ++i) delta_[i] = y[i] - mean_[i];
+  if (instants_ == 1) origin_ = y[0];
+  for (Eigen::Index i = 0; i < n; ++i) delta_[i] = (y[i] - origin_) - mean_[i];
   for (Eigen::Index j = 0; j < n; ++j) {
     const double scaled = delta_[j] * (1 - gain);
     for (Eigen::Index i = j; i < n; ++i) squares_(i, j) += delta_[i] * scaled;
@@ -120,8 +121,12 @@ void BlindCalibration::set_gauge() {
 void BlindCalibration::set_offsets() {
   solved_mean_ = mean_;
   centre_ = mean_[0] + (mean_.array() - mean_[0]).mean();
-  const double t = mean_.sum() / inverse_gain_.cwiseInverse().sum();
-  offset_ = mean_ - t * inverse_gain_.cwiseInverse();
+  // Loops: `step` calls it.
+  double gains = 0, means = 0;
+  for (const double inverse : inverse_gain_) gains += 1 / inverse;
+  for (const double mean : mean_) means += origin_ + mean;
+  for (Eigen::Index i = 0; i < mean_.size(); ++i)
+    offset_[i] = (origin_ + mean_[i]) - means / gains / inverse_gain_[i];
 }
 
 void BlindCalibration::remarks(Warnings& warnings) const {

@@ -84,6 +84,7 @@ struct BlindCalibration {
   Eigen::VectorXd solution_;
   Eigen::FullPivLU<Eigen::MatrixXd> elimination_;
   double instants_ = 0, next_ = 0, centre_ = 0;
+  double origin_ = 0;  // of samples and means: the first one
   bool solved_ = false;
 };
 

@@ -76,12 +76,14 @@ Estimate BlindGls::step(const Sample& y) {
   double sum = 0, information = 0, base = std::nan("");
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     if (!usable(y[i])) continue;
-    if (std::isnan(base)) base = solved_ ? centre_ : y[i];
-    sum += weight_[i] * (y[i] - (solved_ ? mean_[i] : base));
+    const double from_origin = y[i] - moments_.origin();
+    if (std::isnan(base)) base = solved_ ? centre_ : from_origin;
+    sum += weight_[i] * (from_origin - (solved_ ? mean_[i] : base));
     information += weight_[i] * gain_[i];
   }
   if (!(information > 0)) return Estimate::none(1);
-  return Estimate::scalar(base + sum / information, solved_ ? 1 / information : std::nan(""));
+  return Estimate::scalar(moments_.origin() + (base + sum / information),
+                          solved_ ? 1 / information : std::nan(""));
 }
 
 Eigen::MatrixXd BlindGls::weights() const {

@@ -1,6 +1,7 @@
 #include "libchar/fusion/algorithms/inverse_variance.hpp"
 
 #include <cassert>
+#include <cmath>
 
 #include "libchar/fusion/detail/weighted_mean.hpp"
 
@@ -21,7 +22,8 @@ InverseVariance::InverseVariance(const Array& array) : levels_(array.noise_level
 Estimate InverseVariance::step(const Sample& y) const {
   if (general_) return general_->step(y);
   const WeightedMean mean = weighted_mean(y.data(), weights_.data(), weights_.size());
-  return Estimate::scalar(mean.x, variance_ / mean.used);
+  // Only samples that the levels say nothing for: no opinion.
+  return Estimate::scalar(mean.x, mean.used > 0 ? variance_ / mean.used : std::nan(""));
 }
 
 }  // namespace libchar::fusion

@@ -19,6 +19,11 @@ bool PairCovariance::by_pairs() const {
 }
 
 void PairCovariance::add(const Sample& y) {
+  for (Eigen::Index i = 0; i < y.size() && !started_; ++i)
+    if (usable(y[i])) {
+      origin_ = y[i];
+      started_ = true;
+    }
   const bool whole = complete(y);
   if (!whole && !pairs_) begin_pairs();
   if (by_pairs()) add_pairs(y);
@@ -41,7 +46,7 @@ void PairCovariance::add_complete(const Sample& y) {
   const Eigen::Index n = y.size();
   complete_ += 1;
   const double gain = 1 / complete_;
-  for (Eigen::Index i = 0; i < n; ++i) delta_[i] = y[i] - mean_[i];
+  for (Eigen::Index i = 0; i < n; ++i) delta_[i] = (y[i] - origin_) - mean_[i];
   for (Eigen::Index j = 0; j < n; ++j) {
     const double scaled = delta_[j] * (1 - gain);
     for (Eigen::Index i = j; i < n; ++i) products_(i, j) += delta_[i] * scaled;
@@ -53,13 +58,14 @@ void PairCovariance::add_pairs(const Sample& y) {
   const Eigen::Index n = y.size();
   for (Eigen::Index j = 0; j < n; ++j) {
     if (!usable(y[j])) continue;
+    const double second = y[j] - origin_;
     for (Eigen::Index i = j; i < n; ++i) {
       if (!usable(y[i])) continue;
       const double count = count_(i, j) += 1;
-      const double off = y[i] - pair_mean_(i, j);
+      const double off = (y[i] - origin_) - pair_mean_(i, j);
       pair_mean_(i, j) += off / count;
-      if (i != j) pair_mean_(j, i) += (y[j] - pair_mean_(j, i)) / count;
-      pair_products_(i, j) += off * (y[j] - pair_mean_(j, i));
+      if (i != j) pair_mean_(j, i) += (second - pair_mean_(j, i)) / count;
+      pair_products_(i, j) += off * (second - pair_mean_(j, i));
     }
   }
 }

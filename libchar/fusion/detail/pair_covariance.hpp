@@ -14,8 +14,11 @@ class PairCovariance {
   explicit PairCovariance(Eigen::Index channels);
   /// No trip to the heap.
   void add(const Sample& y);
+  /// Of the samples: the first usable one. Means and products are about it, so that an offset costs no digits.
+  double origin() const { return origin_; }
   /// Instants behind the mean of channel i.
   double instants(Eigen::Index i) const { return by_pairs() ? count_(i, i) : complete_; }
+  /// Less the origin.
   double mean(Eigen::Index i) const { return by_pairs() ? pair_mean_(i, i) : mean_[i]; }
   /// Into the lower triangle of `out`; a pair never seen together has covariance zero.
   void covariance(Eigen::MatrixXd& out) const;
@@ -25,7 +28,8 @@ class PairCovariance {
   void add_complete(const Sample& y);
   void begin_pairs();
   void add_pairs(const Sample& y);
-  double complete_ = 0;
+  double complete_ = 0, origin_ = 0;
+  bool started_ = false;
   bool pairs_ = false;  // some instant was not complete
   Eigen::VectorXd mean_, delta_;
   Eigen::MatrixXd products_;  // of complete instants about the mean, lower triangle

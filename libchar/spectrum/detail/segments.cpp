@@ -242,7 +242,31 @@ void Average::note_segment(bool used) {
   ++(used ? used_ : dropped_);
 }
 
+void Average::note_samples(std::span<const double> samples) {
+  constexpr double kSquareFits = 1e-140;
+  for (auto y = samples.begin(); y != samples.end() && !moves_; ++y) {
+    if (std::isnan(first_)) first_ = *y;
+    const double apart = std::abs(*y - first_);
+    moves_ = apart > kSquareFits;
+    moves_little_ = moves_little_ || apart > 0;
+  }
+}
+
+void Average::check_powers() const {
+  constexpr double kSmallest = 1e-290;  // below it digits are missing
+  double largest = 0;
+  for (const double p : power_) largest = std::max(largest, std::isfinite(p) ? p : HUGE_VAL);
+  if (std::isfinite(largest) && (largest >= kSmallest || moves_ || !moves_little_)) return;
+  throw Error({ErrorKind::numeric,
+               "E0420",
+               "",
+               "the squares of the samples do not fit into a double",
+               "",
+               "give them in another unit"});
+}
+
 Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) const {
+  check_powers();
   const std::size_t n = layout_.segment;
   const double count = static_cast<double>(used_);
   double amplitude = 0, energy = 0;

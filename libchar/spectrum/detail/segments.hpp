@@ -3,6 +3,7 @@
 // spectrum.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -49,12 +50,16 @@ class Average {
   Average(const WelchOptions& options, const Layout& layout);
   void add_group(const std::vector<double>& power);
   void note_segment(bool used);  ///< in the order of the segments
+  /// Looks until two of the samples differ by more than the root of the smallest power.
+  void note_samples(std::span<const double> samples);
   std::uint64_t used() const { return used_; }
   std::uint64_t dropped() const { return dropped_; }
-  /// No window: the periodic Hann window, half overlapping.
+  /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers are no numbers, or too small for one
+  /// and the samples not constant.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
 
  private:
+  void check_powers() const;
   WelchOptions options_;
   Layout layout_;
   std::vector<double> power_;
@@ -62,6 +67,8 @@ class Average {
   std::vector<std::uint64_t> pairs_;  // [lag]: pairs of used segments so many hops apart
   std::size_t next_ = 0;
   std::uint64_t used_ = 0, dropped_ = 0;
+  double first_ = std::numeric_limits<double>::quiet_NaN();
+  bool moves_ = false, moves_little_ = false;
 };
 
 }  // namespace libchar::welch_detail

@@ -1,0 +1,148 @@
+// Definitions: NIST SP 1065 (2008), 5.2 (Allan family); Welch 1967; weights by Householder QR of differences of errors.
+#include "libchar/benchmark/detail/exact_estimators.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace libchar {
+namespace {
+
+constexpr Exact kPi = std::numbers::pi_v<Exact>;
+
+/// Integral of the rate less its first sample: every difference of order two and more loses that offset anyway.
+std::vector<Exact> phase_of(std::span<const double> y, std::size_t reflected) {
+  std::vector<Exact> x{0};
+  const auto add = [&](double sample) { x.push_back(x.back() + (Exact(sample) - Exact(y[0]))); };
+  for (std::size_t j = reflected; j-- > 0;) add(y[j]);
+  for (const double sample : y) add(sample);
+  for (std::size_t j = 0; j < reflected; ++j) add(y[y.size() - 1 - j]);
+  return x;
+}
+
+Exact difference(const std::vector<Exact>& x, std::size_t i, std::size_t m, int order) {
+  if (order == 2) return (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
+  return difference(x, i + m, m, 2) - difference(x, i, m, 2);
+}
+
+std::vector<Exact> without_mean(std::span<const double> y) {
+  Exact sum = 0;
+  for (const double v : y) sum += Exact(v) - Exact(y[0]);
+  std::vector<Exact> out;
+  for (const double v : y)
+    out.push_back((Exact(v) - Exact(y[0])) - sum / static_cast<Exact>(y.size()));
+  return out;
+}
+
+}  // namespace
+
+Exact exact_deviation(std::span<const double> y,
+                      double dt_s,
+                      DeviationType type,
+                      std::uint64_t m,
+                      std::uint64_t stride) {
+  const DeviationRow& row = deviation_row(type);
+  const std::size_t reflected = row.reflected ? m - 1 : 0;
+  const std::vector<Exact> x = phase_of(y, reflected);
+  const std::size_t reach = 2 * m + (row.of_sum ? m - 1 : (row.order - 2) * m);
+  Exact sum = 0;
+  std::size_t terms = 0;
+  for (std::size_t i = 0; i + reach < x.size(); i += row.overlapping ? stride : m, ++terms) {
+    Exact term = 0;
+    if (row.of_sum)
+      for (std::size_t j = 0; j < m; ++j)
+        term += difference(x, i + j, m, 2) / static_cast<Exact>(m);
+    else
+      term = difference(x, i, m, row.order);
+    sum += term * term;
+  }
+  const Exact deviation =
+      std::sqrt(sum / static_cast<Exact>(terms) / Exact(row.divisor)) / Exact(m);
+  return row.as_time ? deviation * Exact(m) * Exact(dt_s) / std::sqrt(Exact(3)) : deviation;
+}
+
+std::vector<Exact> exact_moments(std::span<const double> y) {
+  const std::vector<Exact> centred = without_mean(y);
+  Exact squares = 0;
+  for (const Exact v : centred) squares += v * v;
+  return {Exact(y[0]) - centred[0], std::sqrt(squares / static_cast<Exact>(y.size() - 1))};
+}
+
+std::vector<Exact> exact_welch(std::span<const double> y, double rate_hz, std::size_t segment) {
+  std::vector<Exact> window(segment), cosine(segment), sine(segment), out(segment / 2 + 1, 0);
+  Exact power = 0;
+  for (std::size_t t = 0; t < segment; ++t) {
+    const Exact angle = 2 * kPi * static_cast<Exact>(t) / static_cast<Exact>(segment);
+    cosine[t] = std::cos(angle);
+    sine[t] = std::sin(angle);
+    window[t] = (1 - cosine[t]) / 2;
+    power += window[t] * window[t];
+  }
+  std::size_t segments = 0;
+  for (std::size_t from = 0; from + segment <= y.size(); from += segment / 2, ++segments) {
+    const std::vector<Exact> part = without_mean(y.subspan(from, segment));
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      Exact re = 0, im = 0;
+      for (std::size_t t = 0; t < segment; ++t) {
+        re += window[t] * part[t] * cosine[k * t % segment];
+        im += window[t] * part[t] * sine[k * t % segment];
+      }
+      out[k] += re * re + im * im;
+    }
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const bool twice = k > 0 && 2 * k < segment;
+    out[k] *= (twice ? 2 : 1) / (power * Exact(rate_hz) * static_cast<Exact>(segments));
+  }
+  return out;
+}
+
+std::vector<Exact> exact_cosine_transform(std::span<const double> y) {
+  const std::vector<Exact> x = without_mean(y);
+  const std::size_t n = x.size();
+  std::vector<Exact> cosine(4 * n), out(n, 0);
+  for (std::size_t j = 0; j < 4 * n; ++j)
+    cosine[j] = std::cos(kPi * static_cast<Exact>(j) / static_cast<Exact>(2 * n));
+  const Exact scale = std::sqrt(2 / static_cast<Exact>(n));
+  for (std::size_t k = 1; k < n; ++k) {
+    for (std::size_t t = 0; t < n; ++t) out[k] += x[t] * cosine[k * (2 * t + 1) % (4 * n)];
+    out[k] *= scale;
+  }
+  return out;
+}
+
+std::vector<Exact> exact_weights(const std::vector<std::vector<double>>& errors) {
+  const std::size_t n = errors.size(), unknowns = n - 1, rows = errors[0].size();
+  std::vector<std::vector<Exact>> column(n);
+  for (std::size_t i = 0; i < n; ++i) column[i].assign(errors[i].begin(), errors[i].end());
+  for (std::size_t i = 0; i < unknowns; ++i)
+    for (std::size_t k = 0; k < rows; ++k) column[i][k] -= column[n - 1][k];
+  for (Exact& v : column[n - 1]) v = -v;
+  // Householder, column by column, the last one being the right side.
+  for (std::size_t j = 0; j < unknowns; ++j) {
+    Exact length = 0;
+    for (std::size_t k = j; k < rows; ++k) length += column[j][k] * column[j][k];
+    length = std::sqrt(length);
+    if (column[j][j] > 0) length = -length;
+    std::vector<Exact> v(column[j].begin() + static_cast<std::ptrdiff_t>(j), column[j].end());
+    v[0] -= length;
+    Exact squares = 0;
+    for (const Exact a : v) squares += a * a;
+    for (std::size_t i = j; i < n && squares > 0; ++i) {
+      Exact dot = 0;
+      for (std::size_t k = j; k < rows; ++k) dot += v[k - j] * column[i][k];
+      for (std::size_t k = j; k < rows; ++k) column[i][k] -= 2 * dot / squares * v[k - j];
+    }
+  }
+  std::vector<Exact> w(n, 0);
+  w[n - 1] = 1;
+  for (std::size_t j = unknowns; j-- > 0;) {
+    Exact value = column[n - 1][j];
+    for (std::size_t i = j + 1; i < unknowns; ++i) value -= column[i][j] * w[i];
+    w[j] = value / column[j][j];
+    w[n - 1] -= w[j];
+  }
+  return w;
+}
+
+}  // namespace libchar

@@ -1,0 +1,270 @@
+// Estimators of records: every curve against its definition in long double, fits against themselves in comfortable numbers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/benchmark/detail/stress_cells.hpp"
+#include "libchar/benchmark/detail/stress_records.hpp"
+#include "libchar/core/moments.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/simulate/random.hpp"
+#include "libchar/spectrum/fft.hpp"
+#include "libchar/spectrum/welch.hpp"
+
+namespace libchar {
+namespace {
+
+// Stated digits (docs/reliability.md).
+constexpr double kMomentDigits = 13, kAllanDigits = 12, kSpectrumDigits = 11, kFitDigits = 6;
+/// Results near the end of the range of a double have no more; a third difference of a drift of 1e6 deviations cancels as many.
+constexpr double kDenormalDigits = 10, kDriftDigits = 9;
+constexpr std::size_t kSegment = 256;
+
+using Values = std::vector<double>;
+using ExactValues = std::vector<Exact>;
+
+AllanCurve curve_of(DeviationType type, std::span<const double> y) {
+  AllanOptions options;
+  options.type = type;
+  options.grid = TauGrid::decade;
+  options.threads = 1;
+  return allan_deviation(y, 1 / kStressRate, options);
+}
+
+Values deviations(const AllanCurve& curve) {
+  Values out;
+  for (const AllanPoint& p : curve.points) out.push_back(p.deviation);
+  return out;
+}
+
+ExactValues exact_deviations(const AllanCurve& curve, std::span<const double> y) {
+  ExactValues out;
+  for (const AllanPoint& p : curve.points) {
+    const std::uint64_t stride = curve.stride_divisor > 0 && p.m >= 2 * curve.stride_divisor
+                                     ? p.m / curve.stride_divisor
+                                     : 1;
+    out.push_back(exact_deviation(y, curve.dt_s, curve.type, p.m, stride));
+  }
+  return out;
+}
+
+Spectrum spectrum_of(std::span<const double> y) {
+  WelchOptions options;
+  options.segment = kSegment;
+  options.threads = 1;
+  return welch(y, kStressRate, options);
+}
+
+/// A record that lacks samples: what is asked of curves is that they stay near those of the whole record.
+void judge_near(const Values& found, const Values& whole, double factor, StressCell& cell) {
+  bool held = !found.empty() && found.size() <= whole.size();
+  for (std::size_t i = 0; held && i < found.size(); ++i)
+    held = found[i] > whole[i] / factor && found[i] < whole[i] * factor;
+  judge_held(held, fmt::format("not within a factor of {} of the whole record", factor), cell);
+}
+
+double stated(double digits, const StressRecord& record) {
+  if (record.power < -1000) digits = std::min(digits, kDenormalDigits);
+  if (record.drifts) digits = std::min(digits, kDriftDigits);
+  return digits;
+}
+
+bool lacks(const StressRecord& record) {
+  return !record.whole.empty();
+}
+
+void stress_moments(const StressRecord& record, StressCell& cell) {
+  const auto found = [](const Values& y) {
+    Moments moments;
+    moments.push(y);
+    return Values{moments.mean(), moments.standard_deviation()};
+  };
+  Values present;
+  for (const double y : record.y)
+    if (!std::isnan(y)) present.push_back(y);
+  if (present.size() < 2)
+    return judge_held(found(present)[1] == 0, "one sample has no deviation", cell);
+  judge_digits(
+      right_digits(found(record.y), exact_moments(present)), stated(kMomentDigits, record), cell);
+}
+
+void stress_deviation(DeviationType type, const StressRecord& record, StressCell& cell) {
+  const AllanCurve curve = curve_of(type, record.y);
+  if (lacks(record))
+    return judge_near(deviations(curve), deviations(curve_of(type, record.whole)), 3, cell);
+  judge_digits(right_digits(deviations(curve), exact_deviations(curve, record.y)),
+               stated(kAllanDigits, record),
+               cell);
+}
+
+void stress_pyramid(const StressRecord& record, StressCell& cell) {
+  const auto curve_of_pyramid = [](const Values& y) {
+    return pyramid_deviation(y, 1 / kStressRate);
+  };
+  const AllanCurve curve = curve_of_pyramid(record.y);
+  if (lacks(record)) {
+    // Its longest averages are of one or two terms.
+    Values found = deviations(curve), whole = deviations(curve_of_pyramid(record.whole));
+    return judge_near(found, whole, 3, cell);
+  }
+  judge_digits(right_digits(deviations(curve), exact_deviations(curve, record.y)),
+               stated(kAllanDigits, record),
+               cell);
+}
+
+void stress_welch(const StressRecord& record, StressCell& cell) {
+  const Spectrum spectrum = spectrum_of(record.y);
+  if (lacks(record)) {
+    const auto level = [](const Spectrum& s) {
+      return Values{std::accumulate(s.value.begin(), s.value.end(), 0.0)};
+    };
+    return judge_near(level(spectrum), level(spectrum_of(record.whole)), 1.5, cell);
+  }
+  judge_digits(
+      right_digits_together(spectrum.value, exact_welch(record.y, kStressRate, spectrum.segment)),
+      stated(kSpectrumDigits, record),
+      cell);
+}
+
+void stress_cosines(const StressRecord& record, StressCell& cell) {
+  if (lacks(record)) return judge_refused("it takes whole records only", cell);
+  Dct transform(record.y.size());
+  const auto found = transform.transform(record.y);
+  Values without_mean(found.begin(), found.end());
+  without_mean[0] = 0;
+  judge_digits(right_digits_together(without_mean, exact_cosine_transform(record.y)),
+               stated(kSpectrumDigits, record),
+               cell);
+}
+
+/// Values of all terms; a term without one is zero.
+Values coefficients(std::span<const double> y) {
+  const NoiseFit fit = fit_record(y, kStressRate, nullptr);
+  Values out;
+  for (const Coefficient& c : fit.term) out.push_back(c.value.value_or(0));
+  return out;
+}
+
+void stress_fit(const StressRecord& record, StressCell& cell) {
+  const Values found = coefficients(record.y);
+  if (lacks(record)) {
+    const Values whole = coefficients(record.whole);
+    return judge_near({found[0]}, {whole[0]}, 1.5, cell);
+  }
+  StressRecord other = record;
+  if (other.shift == 0 && other.power == 0) other.power = -10;
+  ExactValues expected;
+  for (const double c : coefficients(comfortable(other)))
+    expected.push_back(std::ldexp(Exact(c), other.power));
+  judge_digits(right_digits(found, expected), stated(kFitDigits, record), cell);
+}
+
+struct Subject {
+  std::string name;
+  std::function<void(const StressRecord&, StressCell&)> run;
+};
+
+std::vector<Subject> subjects() {
+  std::vector<Subject> out = {{"moments", stress_moments}};
+  for (const DeviationRow& row : deviation_rows())
+    out.push_back(
+        {std::string(row.word), [type = row.type](const StressRecord& record, StressCell& cell) {
+           stress_deviation(type, record, cell);
+         }});
+  out.push_back({"oadev, streamed", stress_pyramid});
+  out.push_back({"spectrum (Welch)", stress_welch});
+  out.push_back({"cosine transform", stress_cosines});
+  out.push_back({"fit of noise terms", stress_fit});
+  return out;
+}
+
+/// Terms of the streamed Allan deviation from sums of a quarter of m, as they come.
+class ExactStream {
+ public:
+  explicit ExactStream(std::uint64_t m)
+      : part_(std::max<std::uint64_t>(1, m / 4)), parts_(2 * m / part_), m_(m) {}
+  void push(Exact y) {
+    sum_ += y;
+    if (++in_part_ < part_) return;
+    recent_.push_back(sum_);
+    sum_ = 0;
+    in_part_ = 0;
+    if (recent_.size() < parts_) return;
+    Exact term = 0;
+    for (std::size_t i = 0; i < parts_; ++i) term += i < parts_ / 2 ? -recent_[i] : recent_[i];
+    squares_ += term * term;
+    ++terms_;
+    recent_.erase(recent_.begin());
+  }
+  Exact deviation() const {
+    return std::sqrt(squares_ / static_cast<Exact>(terms_) / 2) / Exact(m_);
+  }
+
+ private:
+  std::uint64_t part_, parts_, m_, in_part_ = 0, terms_ = 0;
+  Exact sum_ = 0, squares_ = 0;
+  std::vector<Exact> recent_;
+};
+
+/// White noise of deviation one with an offset and a drift, a hundred million samples, none of them kept.
+void stress_long_stream(
+    double offset, double drift, std::uint64_t seed, Progress& progress, StressCell& cell) {
+  constexpr std::uint64_t kSamples = 100'000'000;
+  constexpr std::size_t kBlock = 1U << 16U;
+  DeviateStream noise({seed, 0, Purpose::white});
+  AllanPyramid pyramid;
+  std::vector<ExactStream> exact = {
+      ExactStream(1), ExactStream(4), ExactStream(1024), ExactStream(1U << 20U)};
+  Values block(kBlock);
+  Exact first = 0;
+  for (std::uint64_t done = 0; done < kSamples; done += block.size()) {
+    progress.update(static_cast<double>(done) / kSamples, "stress: " + cell.input);
+    block.resize(std::min<std::uint64_t>(kBlock, kSamples - done));
+    noise.fill_normal(block);
+    for (std::size_t i = 0; i < block.size(); ++i)
+      block[i] += offset + drift * static_cast<double>(done + i) / kSamples;
+    if (done == 0) first = block[0];
+    pyramid.push(block);
+    for (ExactStream& stream : exact)
+      for (const double y : block) stream.push(Exact(y) - first);
+  }
+  const AllanCurve curve = std::move(pyramid).finish(1 / kStressRate);
+  Values found;
+  ExactValues expected;
+  for (std::size_t i = 0; const std::uint64_t m : {1U, 4U, 1024U, 1U << 20U}) {
+    for (const AllanPoint& p : curve.points)
+      if (p.m == m) found.push_back(p.deviation);
+    expected.push_back(exact[i++].deviation());
+  }
+  judge_digits(right_digits(found, expected), drift != 0 ? 10 : kAllanDigits, cell);
+}
+
+}  // namespace
+
+std::vector<StressCell> stress_estimators(const StressBenchOptions& options, Progress& progress) {
+  std::vector<StressCell> out;
+  const std::vector<StressRecord> records = stress_records(options.seed);
+  const std::vector<Subject> all = subjects();
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (const Subject& subject : all) {
+      progress.update(static_cast<double>(i) / static_cast<double>(records.size()),
+                      "stress: " + subject.name);
+      out.push_back(stress_cell(
+          subject.name, records[i].name, [&](StressCell& cell) { subject.run(records[i], cell); }));
+    }
+  if (options.quick) return out;
+  for (const auto& [offset, drift] : {std::pair{1e9, 0.0}, std::pair{0.0, 1e6}})
+    out.push_back(stress_cell("oadev, streamed",
+                              offset != 0 ? "1e8 samples, offset of 1e9 deviations"
+                                          : "1e8 samples, drift of 1e6 deviations",
+                              [&](StressCell& cell) {
+                                stress_long_stream(offset, drift, options.seed, progress, cell);
+                              }));
+  return out;
+}
+
+}  // namespace libchar
