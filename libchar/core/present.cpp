@@ -53,6 +53,19 @@ LIBCHAR_WIDE_LANES std::size_t missing_in(const double* x, std::size_t n) {
   return missing;
 }
 
+LIBCHAR_WIDE_LANES std::size_t beyond_in(const double* x, std::size_t n) {
+  Four none = {};
+  auto count = none != none;
+  std::size_t i = 0;
+  for (; i + 4 <= n; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i);
+    count += (v > kLargestSample) | (v < -kLargestSample);
+  }
+  auto beyond = static_cast<std::size_t>(-(count[0] + count[1] + count[2] + count[3]));
+  for (; i < n; ++i) beyond += std::abs(x[i]) > kLargestSample;
+  return beyond;
+}
+
 LIBCHAR_WIDE_LANES double sum_of_fours(const double* x, std::size_t fours, double origin) {
   Four sum = {}, other = {};
   std::size_t i = 0;
@@ -88,6 +101,10 @@ std::size_t finite_run(std::span<const double> samples) {
 
 std::size_t count_missing(std::span<const double> samples) {
   return missing_in(samples.data(), samples.size());
+}
+
+std::size_t count_beyond(std::span<const double> samples) {
+  return beyond_in(samples.data(), samples.size());
 }
 
 PresentMean present_mean(std::span<const double> samples) {

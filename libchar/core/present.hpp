@@ -6,6 +6,12 @@
 
 namespace libchar {
 
+/// Beyond it a sample is no measurement, and powers of it would overflow: analyses take it as missing.
+inline constexpr double kLargestSample = 1e100;
+
+/// Samples that are present and beyond it.
+std::size_t count_beyond(std::span<const double> samples);
+
 /// How many samples from the first on are present.
 std::size_t present_run(std::span<const double> samples);
 

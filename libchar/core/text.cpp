@@ -72,4 +72,8 @@ std::string ascii_lower(std::string_view text) {
   return out;
 }
 
+std::string plural(std::uint64_t n, std::string_view noun) {
+  return std::to_string(n) + " " + std::string(noun) + (n == 1 ? "" : "s");
+}
+
 }  // namespace libchar

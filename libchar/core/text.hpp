@@ -1,6 +1,7 @@
 #pragma once
 // Text at the borders: untrusted strings made safe for a terminal and for YAML.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,5 +18,8 @@ std::string quoted_yaml(std::string_view text);
 
 /// Capitals A to Z made small, everything else as it is.
 std::string ascii_lower(std::string_view text);
+
+/// "1 sample", "2 samples".
+std::string plural(std::uint64_t n, std::string_view noun);
 
 }  // namespace libchar

@@ -41,6 +41,7 @@
 #include <string>
 #include <string_view>
 
+#include "libchar/core/present.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/fault_log.hpp"
@@ -56,8 +57,7 @@ using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStat
 /// One instant, one value a channel, NaN = missing; or the true inputs of that instant.
 using Sample = Eigen::Map<const Eigen::VectorXd>;
 
-/// Beyond it a sample is no measurement (and its square would overflow).
-inline constexpr double kLargestSample = 1e100;
+using libchar::kLargestSample;
 /// A sample that carries a value: NaN marks a missing one.
 inline bool usable(double sample) {
   return std::abs(sample) <= kLargestSample;

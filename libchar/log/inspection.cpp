@@ -51,10 +51,6 @@ std::string small_time(double seconds) {
   return seconds < 1 ? fmt::format("{:.2g} ms", seconds * 1e3) : fmt::format("{:.2g} s", seconds);
 }
 
-std::string plural(std::uint64_t n, const std::string& noun) {
-  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
-
 }  // namespace
 
 Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress) {

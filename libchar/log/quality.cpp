@@ -6,11 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
 #include "libchar/core/median.hpp"
+#include "libchar/core/present.hpp"
+#include "libchar/core/text.hpp"
 
 namespace libchar {
 namespace {
@@ -162,16 +165,17 @@ LIBCHAR_WIDE_LANES double squares_about(const double* x,
   return fold(sum[0] + sum[1]);
 }
 
+// Or beyond what is a measurement.
 LIBCHAR_WIDE_LANES bool any_missing(const double* x, std::size_t n) {
   Four sum = {};
   auto missing = sum != sum;
   const std::size_t whole = n - n % 4;
   for (std::size_t i = 0; i < whole; i += 4) {
     const Four v = LIBCHAR_FOUR(x + i);
-    missing |= v != v;
+    missing |= !(v <= kLargestSample && v >= -kLargestSample);
   }
   bool any = (missing[0] | missing[1] | missing[2] | missing[3]) != 0;
-  for (std::size_t i = whole; i < n; ++i) any |= x[i] != x[i];
+  for (std::size_t i = whole; i < n; ++i) any |= !(std::fabs(x[i]) <= kLargestSample);
   return any;
 }
 
@@ -356,7 +360,7 @@ struct QualityMeter::State {
   DistinctValues distinct;
   CounterWatch counter;
   Extreme top{1}, bottom{-1};
-  std::uint64_t missing = 0, run = 0, longest_run = 0, repeated = 0;
+  std::uint64_t missing = 0, beyond = 0, run = 0, longest_run = 0, repeated = 0;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
   bool float32 = true;
@@ -385,7 +389,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
     // elsewhere. A missing sample makes its sum no number.
     if (n == kBlock && joined && x != samples.data()) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
-      if (!std::isnan(sums.sum)) {
+      if (!std::isnan(sums.sum) && sums.low >= -kLargestSample && sums.high <= kLargestSample) {
         runs(x, x - 1, n, sums.repeats);
         counter.block(x, x - 1, nullptr, n);
         process(x, sums, n, 0);
@@ -418,7 +422,8 @@ void QualityMeter::State::make_room(std::size_t n) {
 
 void QualityMeter::State::hold(const double* x, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
-    if (std::isnan(x[i])) {
+    if (!(std::fabs(x[i]) <= kLargestSample)) {
+      beyond += std::isnan(x[i]) ? 0 : 1;
       ++missing;
       joined = false;
       continue;
@@ -506,7 +511,12 @@ namespace {
 void suggest(ChannelQuality& q) {
   auto& s = q.suggestions;
   const double share = q.samples > 0 ? 1.0 / static_cast<double>(q.samples) : 0;
+  if (q.beyond > 0)
+    s.push_back(fmt::format("{} beyond {:g} in magnitude: no measurement, taken as missing",
+                            plural(q.beyond, "sample"),
+                            kLargestSample));
   if (q.samples == 0) {
+    if (q.beyond > 0) return;
     s.emplace_back("no value at all: check that the channel is switched on");
     return;
   }
@@ -556,11 +566,15 @@ ChannelQuality QualityMeter::finish() const {
   ChannelQuality q;
   q.samples = static_cast<std::uint64_t>(state.values.n);
   q.missing = state.missing;
+  q.beyond = state.beyond;
   if (q.samples > 0) {
     q.mean = state.values.origin + state.values.mean;
     if (q.samples > 1) q.standard_deviation = std::sqrt(state.values.m2 / (state.values.n - 1));
     q.minimum = state.minimum;
     q.maximum = state.maximum;
+    constexpr double kSquareFits = 1e-140;
+    if (q.maximum > q.minimum && q.maximum - q.minimum < kSquareFits)
+      q.standard_deviation = std::numeric_limits<double>::quiet_NaN();
   }
   q.distinct_values = state.distinct.values().size();
   q.longest_stuck = state.longest_run;

@@ -15,6 +15,8 @@ namespace libchar {
 struct ChannelQuality {
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;
+  std::uint64_t beyond = 0;  ///< of the missing ones: larger than `kLargestSample`, no measurement
+  /// the deviation is NaN where its square does not fit into a double
   double mean = 0, standard_deviation = 0, minimum = 0, maximum = 0;
   std::optional<double>
       resolution;  ///< least step between distinct values (LSB), when the values lie on a grid

@@ -74,6 +74,7 @@ LogInfo document_info(const std::string& path) {
 Json channel_json(const Channel& channel, const ChannelQuality& q) {
   Json out = {{"name", json_text(channel.name)}, {"unit", json_text(channel.unit)}};
   out["missing"] = q.missing;
+  out["beyond_range"] = q.beyond;
   out["samples"] = q.samples;
   out["integer"] = channel.integer;
   out["mean"] = json_number(q.mean);

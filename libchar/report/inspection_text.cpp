@@ -27,7 +27,7 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           std::to_string(q.missing),
           beside_noise(q.mean, noise),
           constant        ? "constant"
-          : q.samples < 2 ? "-"
+          : q.samples < 2 || std::isnan(noise) ? "-"
                           : significant(noise, 4),
           beside_noise(q.minimum, noise),
           beside_noise(q.maximum, noise),

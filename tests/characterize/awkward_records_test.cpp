@@ -139,3 +139,33 @@ TEST_CASE("more channels than fit into memory in the end are refused before they
   const std::string said = test::refusal(recording, {});
   CHECK(said == "E0707 5001 channels are more than are characterized at a time, 5000");
 }
+
+TEST_CASE("one wild sample of 1e300 is missing, counted and said, and nothing but such is no record") {
+  std::vector<double> y = white(20000, 8);
+  const double clean = *(*of(y).channels[0].fit)[Term::white].value;
+  y[7000] = 1e300;
+  const Characterization one = of(y);
+  REQUIRE(one.channels[0].fit);
+  CHECK(*(*one.channels[0].fit)[Term::white].value == Approx(clean).epsilon(1e-3));
+  CHECK(one.channels[0].quality.beyond == 1);
+  CHECK(one.channels[0].quality.missing == 1);
+  CHECK(one.channels[0].quality.standard_deviation == Approx(0.01).epsilon(0.05));
+  REQUIRE(one.channels[0].quality.suggestions.size() == 1);
+  CHECK_THAT(one.channels[0].quality.suggestions[0], Catch::Contains("1 sample beyond 1e+100"));
+  for (double& v : y) v *= 1e160;
+  const Characterization all = of(y);
+  CHECK_FALSE(all.channels[0].fit);
+  CHECK(all.channels[0].quality.beyond == 20000);
+}
+
+TEST_CASE("noise of 1e-200 or 1e-310 is refused with the reason, not fitted and not called zero") {
+  for (const double factor : {1e-198, 1e-308}) {
+    std::vector<double> y = white(20000, 9);
+    for (double& v : y) v *= factor;
+    const Characterization tiny = of(y);
+    CHECK_FALSE(tiny.channels[0].fit);
+    CHECK(tiny.channels[0].spectrum.value.empty());
+    CHECK(std::isnan(tiny.channels[0].quality.standard_deviation));
+    CHECK_THAT(tiny.channels[0].problems[0], Catch::Contains("do not fit into a double"));
+  }
+}

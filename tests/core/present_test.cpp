@@ -56,3 +56,16 @@ TEST_CASE("present: the mean of what is finite, at any offset, length and place"
     }
   }
 }
+
+TEST_CASE("present: samples beyond 1e100 are counted wherever they stand, missing ones are not") {
+  for (std::size_t at = 0; at < 19; ++at) {
+    std::vector<double> x(19, -1e100);
+    CHECK(count_beyond(x) == 0);
+    x[at] = 1.1e100;
+    CHECK(count_beyond(x) == 1);
+    x[at] = -std::numeric_limits<double>::infinity();
+    CHECK(count_beyond(x) == 1);
+    x[at] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(count_beyond(x) == 0);
+  }
+}

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -72,6 +75,13 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 }
 
 void ChannelStage::push(std::span<const double> samples) {
+  if (count_beyond(samples) > 0) {
+    usable_.assign(samples.begin(), samples.end());
+    for (double& x : usable_)
+      if (std::abs(x) > kLargestSample) x = std::numeric_limits<double>::quiet_NaN();
+    beyond_ += streams_ && streams_->cleaner ? 0 : count_beyond(samples);
+    samples = usable_;
+  }
   const bool second = streams_ && streams_->cleaner;
   if (!second) {
     quality_.push(samples);
@@ -429,6 +439,12 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
         "`rate_hz`)");
     return result;
   }
+  // Else the quality says so.
+  if (beyond_ > 0 && !options_->wanted.quality)
+    result.problems.push_back(
+        fmt::format("{} beyond {:g} in magnitude: no measurement, taken as missing",
+                    plural(beyond_, "sample"),
+                    kLargestSample));
   doubt_frequency(result);
   if (options_->data == SampleKind::phase) difference_kept(rate_hz);
   if (options_->data == SampleKind::frequency) noise_types_ = types_of_kept(rate_hz);

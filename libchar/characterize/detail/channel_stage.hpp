@@ -103,6 +103,8 @@ class ChannelStage {
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
   std::vector<double> fractional_;           // scratch of as_rate
+  std::vector<double> usable_;               // scratch of push
+  std::uint64_t beyond_ = 0;                 // samples that are no measurement
   std::vector<NoiseType> noise_types_;
   DespikedRecord despiked_;            // rate of the phase without its spikes, when it has some
   std::optional<EventSeries> series_;  // of what is kept, where the search for motion has made it

@@ -35,12 +35,13 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   constexpr double kLargestPower = 1e200, kSmallestPower = 1e-200;  // their products are numbers
   if (largest > 0 && !(largest > kSmallestPower && largest < kLargestPower))
-    throw Error({ErrorKind::numeric,
-                 "E0420",
-                 "",
-                 "the squares of the samples do not fit into a double",
-                 "",
-                 "give them in another unit: noise from 1e-100 to 1e100 can be fitted"});
+    throw Error(
+        {ErrorKind::numeric,
+         "E0420",
+         "",
+         "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)",
+         "",
+         "give them in another unit"});
   if (!(largest > 0)) {
     throw Error(
         {ErrorKind::numeric,

@@ -257,12 +257,13 @@ void Average::check_powers() const {
   double largest = 0;
   for (const double p : power_) largest = std::max(largest, std::isfinite(p) ? p : HUGE_VAL);
   if (std::isfinite(largest) && (largest >= kSmallest || moves_ || !moves_little_)) return;
-  throw Error({ErrorKind::numeric,
-               "E0420",
-               "",
-               "the squares of the samples do not fit into a double",
-               "",
-               "give them in another unit"});
+  throw Error(
+      {ErrorKind::numeric,
+       "E0420",
+       "",
+       "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)",
+       "",
+       "give them in another unit"});
 }
 
 Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) const {
