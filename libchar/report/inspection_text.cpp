@@ -26,9 +26,9 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           channel.unit.empty() ? "-" : printable(channel.unit, 20),
           std::to_string(q.missing),
           beside_noise(q.mean, noise),
-          constant        ? "constant"
+          constant                             ? "constant"
           : q.samples < 2 || std::isnan(noise) ? "-"
-                          : significant(noise, 4),
+                                               : significant(noise, 4),
           beside_noise(q.minimum, noise),
           beside_noise(q.maximum, noise),
           q.resolution ? significant(*q.resolution, 4) : "-",

@@ -140,7 +140,8 @@ TEST_CASE("more channels than fit into memory in the end are refused before they
   CHECK(said == "E0707 5001 channels are more than are characterized at a time, 5000");
 }
 
-TEST_CASE("one wild sample of 1e300 is missing, counted and said, and nothing but such is no record") {
+TEST_CASE(
+    "one wild sample of 1e300 is missing, counted and said, and nothing but such is no record") {
   std::vector<double> y = white(20000, 8);
   const double clean = *(*of(y).channels[0].fit)[Term::white].value;
   y[7000] = 1e300;

@@ -75,18 +75,16 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 }
 
 void ChannelStage::push(std::span<const double> samples) {
-  if (count_beyond(samples) > 0) {
+  const bool second = streams_ && streams_->cleaner;
+  if (!second) quality_.push(samples);
+  if (const std::size_t beyond = count_beyond(samples); beyond > 0) {
     usable_.assign(samples.begin(), samples.end());
     for (double& x : usable_)
       if (std::abs(x) > kLargestSample) x = std::numeric_limits<double>::quiet_NaN();
-    beyond_ += streams_ && streams_->cleaner ? 0 : count_beyond(samples);
+    beyond_ += second ? 0 : beyond;
     samples = usable_;
   }
-  const bool second = streams_ && streams_->cleaner;
-  if (!second) {
-    quality_.push(samples);
-    if (options_->wanted.quality) trace_.push(samples);
-  }
+  if (!second && options_->wanted.quality) trace_.push(samples);
   if (options_->data == SampleKind::frequency) {
     as_rate(samples);
     stream(fractional_);
