@@ -54,9 +54,19 @@ PivotedSolution pivoted_least_squares(const MatrixXd& a,
     if (!std::isfinite(s)) s = 1;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(a * scale.asDiagonal());
   if (threshold) qr.setThreshold(*threshold);
-  // Eigen's solve() divides by the pivots of a matrix that is zero throughout.
-  if (qr.rank() == 0) return {VectorXd::Zero(a.cols()), 0};
-  return {scale.cwiseProduct(qr.solve(b)), qr.rank()};
+  // By hand: Eigen's solve() goes by pivots that are not exactly zero, and what rounding leaves of a column twice is none of these.
+  const Eigen::Index rank = qr.rank();
+  const VectorXd rotated = qr.householderQ().setLength(rank).adjoint() * b;
+  const VectorXd solved = qr.matrixQR()
+                              .topLeftCorner(rank, rank)
+                              .triangularView<Eigen::Upper>()
+                              .solve(rotated.head(rank));
+  VectorXd x = VectorXd::Zero(a.cols());
+  for (Eigen::Index i = 0; i < rank; ++i) {
+    const Eigen::Index column = qr.colsPermutation().indices()[i];
+    x[column] = scale[column] * solved[i];
+  }
+  return {x, rank};
 }
 
 PivotedSolution shortest_least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
