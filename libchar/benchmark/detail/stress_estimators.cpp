@@ -257,13 +257,15 @@ std::vector<StressCell> stress_estimators(const StressBenchOptions& options, Pro
           subject.name, records[i].name, [&](StressCell& cell) { subject.run(records[i], cell); }));
     }
   if (options.quick) return out;
-  for (const auto& [offset, drift] : {std::pair{1e9, 0.0}, std::pair{0.0, 1e6}})
-    out.push_back(stress_cell("oadev, streamed",
-                              offset != 0 ? "1e8 samples, offset of 1e9 deviations"
-                                          : "1e8 samples, drift of 1e6 deviations",
-                              [&](StressCell& cell) {
-                                stress_long_stream(offset, drift, options.seed, progress, cell);
-                              }));
+  struct Long {
+    const char* name;
+    double offset, drift;
+  };
+  for (const Long& one : {Long{"1e8 samples, offset of 1e9 deviations", 1e9, 0},
+                          Long{"1e8 samples, drift of 1e6 deviations", 0, 1e6}})
+    out.push_back(stress_cell("oadev, streamed", one.name, [&](StressCell& cell) {
+      stress_long_stream(one.offset, one.drift, options.seed, progress, cell);
+    }));
   return out;
 }
 
