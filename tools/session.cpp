@@ -53,7 +53,9 @@ void report_warnings(Session& session, const libchar::LogInfo& info) {
 libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs) {
-  return libchar::document_head(format, session.command, inputs);
+  libchar::Json document = libchar::document_head(format, session.command, inputs);
+  document["measured"] = {{"work", libchar::work_json(session.work.done())}};
+  return document;
 }
 
 void print_summary(Session& session, const std::string& output, const std::string& text) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/core/json.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/log/recording.hpp"
 #include "terminal.hpp"
 
@@ -16,6 +17,7 @@ struct Session {
   Terminal terminal;
   bool wrote = false;                     ///< something has its name already, should the rest fail
   bool strict = false;                    ///< warnings end the run with exit code 3
+  libchar::WorkMeter work;                ///< from the beginning
   std::vector<std::string> warned_files;  ///< files that had warnings, in order
 };
 
@@ -23,7 +25,7 @@ struct Session {
 void report_warnings(Session& session, const libchar::LogInfo& info);
 
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],"warnings":[{code,message,
-/// count,where}…]}: the head of every --json document; the verb adds its own keys behind.
+/// count,where}…],"measured":{"work":{…}}}: the head of every --json document; the verb adds its own keys behind.
 libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);

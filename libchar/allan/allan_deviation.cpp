@@ -32,6 +32,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/core/thread_limit.hpp"
+#include "libchar/core/work.hpp"
 
 namespace libchar {
 namespace {
@@ -265,6 +266,7 @@ AllanCurve allan_deviation(std::span<const double> record,
   if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list)
     too_short(f, curve.samples);
   if (curve.points.empty()) none_fits(curve);
+  for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
   return curve;
 }
 

@@ -28,6 +28,7 @@
 #include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/pyramid_kernels.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/work.hpp"
 
 namespace libchar {
 namespace {
@@ -418,6 +419,7 @@ AllanCurve AllanPyramid::finish(double dt_s) && {
              std::to_string(curve.samples) + " of this record",
          "",
          ""});
+  for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
   return curve;
 }
 

@@ -25,20 +25,6 @@ double rank(const StressCell& cell) {
 
 }  // namespace
 
-std::string_view name_of(StressOutcome outcome) {
-  switch (outcome) {
-    case StressOutcome::digits:
-      return "digits";
-    case StressOutcome::held:
-      return "held";
-    case StressOutcome::refused:
-      return "refused";
-    case StressOutcome::wrong:
-      return "wrong";
-  }
-  return "";
-}
-
 std::size_t StressBench::count(StressOutcome outcome) const {
   return static_cast<std::size_t>(std::count_if(
       cells.begin(), cells.end(), [&](const StressCell& cell) { return cell.outcome == outcome; }));

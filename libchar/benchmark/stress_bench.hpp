@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "libchar/core/enum_table.hpp"
 #include "libchar/core/progress.hpp"
 
 namespace libchar {
@@ -23,6 +23,13 @@ enum class StressOutcome {
   refused,  ///< in a sentence
   wrong     ///< fewer digits than stated, or not held
 };
+
+template <>
+inline constexpr auto enum_table<StressOutcome> =
+    enum_words<StressOutcome>({{StressOutcome::digits, "digits"},
+                               {StressOutcome::held, "held"},
+                               {StressOutcome::refused, "refused"},
+                               {StressOutcome::wrong, "wrong"}});
 
 /// One subject on one input.
 struct StressCell {
@@ -40,9 +47,6 @@ struct StressBench {
   std::vector<StressCell> cells;  ///< worst first: wrong, then by digits beyond the stated ones
   std::size_t count(StressOutcome outcome) const;
 };
-
-/// "digits", "held", "refused", "wrong".
-std::string_view name_of(StressOutcome outcome);
 
 StressBench bench_stress(const StressBenchOptions& options, Progress& progress = no_progress());
 

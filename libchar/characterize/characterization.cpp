@@ -29,6 +29,7 @@ Characterization characterize_source(const Source& source,
                                      const CharacterizeOptions& options,
                                      Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  const WorkMeter work;
   CharacterizeWorkspace workspace;
   Characterization result;
   ChannelStages stages(options, workspace);
@@ -40,6 +41,7 @@ Characterization characterize_source(const Source& source,
   }
   result.channels = stages.finish(result.log, progress);
   result.temperature = stages.temperature();
+  result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -14,6 +14,7 @@
 #include "libchar/characterize/trace.hpp"
 #include "libchar/core/entry.hpp"
 #include "libchar/core/progress.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/fit/digital.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
@@ -118,6 +119,7 @@ struct Characterization {
   std::vector<std::string> command;  ///< as typed
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
   std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
+  WorkDone work{};                                       ///< that it took
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs, NaN: left out
 };
 

@@ -17,6 +17,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
@@ -247,6 +248,8 @@ LogInfo read_log(const std::string& path,
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());
   info.warnings = std::move(warnings);
+  count_work(WorkKind::passes, 1);
+  count_work(WorkKind::rows, info.rows);
   return info;
 }
 

@@ -11,6 +11,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/detail/alignment_stage.hpp"
@@ -595,7 +596,12 @@ ReplayResult replay(const Scene& scene,
                     Progress& progress,
                     const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
+  const WorkMeter work;
   ReplayResult out = Replay(scene, options, progress, workspace).run();
+  count_work(WorkKind::learnt_instants, out.work.learnt);
+  count_work(WorkKind::fused_instants, out.work.steps);
+  count_work(WorkKind::blind_instants, out.work.blind_steps);
+  out.counted = work.done();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.timing) forget_timing(out);
   return out;

@@ -9,6 +9,7 @@
 #include "libchar/core/entry.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/warnings.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/algorithm_result.hpp"
 #include "libchar/replay/fusion_file.hpp"
@@ -69,6 +70,7 @@ struct ReplayResult {
   LearntFusion learnt;  ///< of the array and of every algorithm that ran: what `fuse` applies
   Warnings warnings;
   ReplayWork work;
+  WorkDone counted{};  ///< all of it
   double seconds = 0;  ///< measured
 };
 

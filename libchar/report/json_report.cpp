@@ -221,7 +221,8 @@ Json json_report(const Characterization& result) {
 }
 
 void add_times(Json& document, const Characterization& result) {
-  if (std::isfinite(result.seconds)) document["measured"] = {{"seconds", result.seconds}};
+  if (std::isfinite(result.seconds))
+    document["measured"] = {{"seconds", result.seconds}, {"work", work_json(result.work)}};
 }
 
 }  // namespace libchar

@@ -449,7 +449,8 @@ Json replay_json(const ReplayView& view) {
                      {"passes", result.work.passes},
                      {"instants_learnt", result.work.learnt},
                      {"instants_fused", result.work.steps},
-                     {"instants_without_reference", result.work.blind_steps}};
+                     {"instants_without_reference", result.work.blind_steps},
+                     {"work", work_json(result.counted)}};
   return out;
 }
 

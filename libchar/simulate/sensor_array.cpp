@@ -15,6 +15,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/thread_limit.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
@@ -232,6 +233,8 @@ std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted
   }
   s.finish_truth(rows);
   s.done += rows;
+  count_work(WorkKind::simulated_samples, rows * s.chains.size());
+  if (s.done == s.spec.samples) count_work(WorkKind::passes, 1);
   for (const auto& column : s.sensor) s.columns.emplace_back(column);
   for (const auto& column : s.truth) s.columns.emplace_back(column);
   if (s.temperature) s.columns.emplace_back(s.coarse_temperature);

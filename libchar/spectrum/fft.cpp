@@ -10,6 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/spectrum/detail/fft_plan.hpp"
 
 namespace libchar {
@@ -331,6 +332,7 @@ std::span<const double> Dct::transform(std::span<const double> y) {
                  fmt::format("a cosine transform of {} values was given {}", n, y.size()),
                  "",
                  ""});
+  count_work(WorkKind::cosine_transforms, 1);
   const double centre = centre_of(y);
   state_->permute(y, centre);
   const auto v = state_->fft.transform();

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "libchar/core/silent_glog.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/fit/detail/bin_likelihood.hpp"
 #include "libchar/fit/detail/polish.hpp"
 #include "libchar/fit/detail/scoring.hpp"
@@ -154,6 +155,7 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
   ceres::Problem problem;
   problem.AddResidualBlock(new LowPassResiduals(bins, rate_hz, terms), nullptr, x.data());
   ceres::Solver::Summary summary;
+  count_work(WorkKind::descents, 1);
   ceres::Solve(exact_solver_options(200), &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::nullopt;
 

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "libchar/core/silent_glog.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/fit/detail/solver_settings.hpp"
 
 namespace libchar {
@@ -98,6 +99,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   ceres::Problem solver_problem;
   solver_problem.AddResidualBlock(new BinResiduals(problem, terms), nullptr, unknown.data());
   ceres::Solver::Summary summary;
+  count_work(WorkKind::descents, 1);
   ceres::Solve(exact_solver_options(50), &solver_problem, &summary);
   result.iterations = static_cast<int>(summary.iterations.size());
   ModelPoint polished;

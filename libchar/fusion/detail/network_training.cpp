@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "libchar/core/dense.hpp"
+#include "libchar/core/work.hpp"
 #include "libchar/fusion/detail/uniform.hpp"
 
 namespace libchar::fusion {
@@ -102,6 +103,7 @@ int descend(NetworkNormals& normals,
   int invalid = 0;
   bool taken = false;
   for (int iteration = 1; iteration <= static_cast<int>(plan.iterations); ++iteration) {
+    count_work(WorkKind::training_steps, 1);
     const auto step = damped_step(system, region.radius);
     if (!step) {
       if (++invalid > kMostInvalid || region.radius < TrustRegion::kSmallest) return iteration - 1;

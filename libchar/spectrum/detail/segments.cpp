@@ -18,6 +18,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/work.hpp"
 
 namespace libchar::welch_detail {
 namespace {
@@ -268,6 +269,7 @@ void Average::check_powers() const {
 
 Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) const {
   check_powers();
+  count_work(WorkKind::segments, used_ + dropped_);
   const std::size_t n = layout_.segment;
   const double count = static_cast<double>(used_);
   double amplitude = 0, energy = 0;
