@@ -8,7 +8,9 @@
 #include <cerrno>
 #include <cstddef>
 
-#if !defined(__SANITIZE_ADDRESS__) && defined(__GLIBC__)
+#include "libchar/core/sanitizer.hpp"
+
+#if LIBCHAR_SANITIZED_HEAP == 0 && defined(__GLIBC__)
 
 namespace {
 

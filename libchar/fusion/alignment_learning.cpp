@@ -180,6 +180,7 @@ void Learner::prepare() {
 
 void Learner::average_cross() {
   cross_.resize(m_, further_);
+  if (further_ == 0) return;  // an empty matrix has no rows to point at
   for (Index t = 0; t < m_; ++t) {
     const Eigen::VectorXd column = raw_.row(t).transpose();
     Eigen::VectorXd means;

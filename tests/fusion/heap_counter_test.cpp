@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
-#if !defined(TEST_HEAP_IS_SANITIZED)
+#if LIBCHAR_SANITIZED_HEAP == 0
 
 namespace {
 thread_local std::size_t trips = 0;
