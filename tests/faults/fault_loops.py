@@ -7,7 +7,8 @@ A verb runs over the results of an earlier run, with other inputs. After each fa
 files or the new ones and no others. After each kill: the old files, the new ones, or a journal that makes the new ones of what is there; and
 the next run ends well and leaves nothing else. Prints counts per verb and the commands of what is wrong; exit 1 where something is.
 
-A log that shrinks or grows under the reader, a limit of a file's size, and a disk that is full (where tmpfs may be mounted) are tried as well.
+A log that shrinks or grows under the reader, limits of a file's size and of the address space, and a disk that is full (where tmpfs may be
+mounted) are tried as well.
 
   --quick   a few places of each kind in four verbs, as ctest runs it
   --heap N  places in which memory is refused, of the hundreds of thousands there are (default: 600 a verb)
@@ -27,7 +28,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 KINDS = ["write", "open", "read", "fsync", "rename", "link", "close", "stat", "mmap", "unlink", "mkdir", "malloc", "thread", "kill", "shrink", "grow", "fsize",
-         "space"]
+         "space", "address"]
 CALLS = KINDS[:13]
 CODES = {0, 2, 3, 4, 5}
 JOURNAL = ".libchar-outputs.json"
@@ -100,6 +101,16 @@ class Bench:
         self.root = Path(tempfile.mkdtemp(prefix="libchar-faults-", dir=fast if os.access(fast, os.W_OK) else None))
         self.may_mount = self.try_mount()
 
+    def least_address_space(self):
+        """Bytes below which the program is not even loaded (to 1 MiB): what is refused there is the loader's word."""
+        few, enough = 1 << 20, 4 << 30
+        while enough - few > 1 << 20:
+            middle = (few + enough) // 2
+            loads = subprocess.run([self.program, "--version"], capture_output=True, env=dict(os.environ, LD_PRELOAD=str(self.shim)),
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (middle, middle))).returncode == 0
+            few, enough = (few, middle) if loads else (middle, enough)
+        return enough
+
     def try_mount(self):
         """Only an administrator may make small disks, and not in every container."""
         folder = self.root / "disk"
@@ -112,8 +123,9 @@ class Bench:
         log = Path(str(folder) + ".count")
         environment = dict(os.environ, LIBCHAR_FAULT=fault, LIBCHAR_FAULT_LOG=str(log), LD_PRELOAD=str(self.shim),
                            LIBCHAR_FAULT_FILE=next((word for word in words if word in inputs(1)), ""))
-        size = int(fault.split(":")[1]) if fault.startswith("fsize:") else None
-        limit = None if size is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        limited = {"fsize": resource.RLIMIT_FSIZE, "address": resource.RLIMIT_AS}.get(fault.split(":")[0])
+        size = int(fault.split(":")[1]) if limited is not None else 0
+        limit = None if limited is None else lambda: resource.setrlimit(limited, (size, size))
         try:
             ran = subprocess.run([self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
                                  preexec_fn=limit)
@@ -200,7 +212,7 @@ class Verb:
         return folder
 
     def places(self, kind):
-        if kind in ("fsize", "space"):
+        if kind in ("fsize", "space", "address"):
             return self.sizes(kind)
         count = self.counts.get(kind, 0)
         most = 1 if self.bench.quick else self.bench.heap if kind == "malloc" else count
@@ -213,9 +225,13 @@ class Verb:
         return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)} | {count * k // most for k in range(1, most)})
 
     def sizes(self, kind):
-        """Bytes a file may have, or pages that a full disk has left: from nothing to more than enough."""
+        """Bytes a file or the address space may have, or pages that a full disk has left: from nothing to more than enough."""
         if kind == "space" and (not self.bench.may_mount or self.name in ("inspect", "compare")):
             return []
+        if kind == "address":
+            # Stacks of threads take 8 MiB each: 160 MiB more than what is loaded is enough for every verb here.
+            loaded = self.bench.least_address_space()
+            return [loaded + (160 << 20) * k // (8 if self.bench.quick else 80) for k in range(9 if self.bench.quick else 81)]
         largest = max((len(text) for text in self.new.values()), default=1000)
         if kind == "space":
             pages = sum(2 + len(text) // 4096 for text in self.new.values()) + 4
