@@ -129,10 +129,11 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
   verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
-  verb.add_flag("--full-overlap",
-                a.options.full_overlap,
-                "use every term however long the record is (default: every (m/4)th term beyond 4 "
-                "million samples)");
+  verb.add_flag(
+      "--full-overlap",
+      a.options.full_overlap,
+      "use every term however long the record is (default: octaves and dense times take every "
+      "(m/4)th term beyond 4 million samples)");
 }
 
 void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s) {

@@ -25,6 +25,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
@@ -47,8 +48,10 @@ struct Starts {
 
 /// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
 /// it sums.
-Starts starts_in(const IndexRange& stretch, const DeviationRow& f, std::uint64_t m) {
-  const std::uint64_t stride = f.overlapping ? 1 : m;
+Starts starts_in(const IndexRange& stretch,
+                 const DeviationRow& f,
+                 std::uint64_t m,
+                 std::uint64_t stride) {
   const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
   const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
   return {(stretch.begin + stride - 1) / stride * stride, end, stride};
@@ -110,12 +113,13 @@ Totals total_over(const AnchoredPhase& phase,
 std::vector<Starts> ranges_of(const AnchoredPhase& phase,
                               const DeviationRow& f,
                               std::uint64_t m,
-                              std::uint64_t reach) {
+                              std::uint64_t reach,
+                              std::uint64_t stride) {
   if (f.reflected)  // centred on the inner points of the record within its continuation
     return {{reach + 1 - m, phase.points - reach - 1 - m, 1}};
   std::vector<Starts> ranges;
   for (const IndexRange& s : phase.stretches) {
-    const Starts r = starts_in(s, f, m);
+    const Starts r = starts_in(s, f, m, stride);
     if (r.count() > 0) ranges.push_back(r);
   }
   return ranges;
@@ -200,12 +204,15 @@ std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,
                                         std::uint64_t reach,
                                         const std::vector<std::uint64_t>& factors,
                                         DataKind kind,
-                                        double dt_s) {
+                                        const AllanCurve& curve) {
   std::vector<AllanPoint> points(factors.size());
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
-    const Totals total = total_over(phase, f, m, ranges_of(phase, f, m, reach));
-    if (total.terms > 0) points[k] = point_of(total, f, m, dt_s, phase.scale, kind);
+    AllanPoint asked;
+    asked.m = m;
+    const Totals total =
+        total_over(phase, f, m, ranges_of(phase, f, m, reach, stride_of(curve, asked)));
+    if (total.terms > 0) points[k] = point_of(total, f, m, curve.dt_s, phase.scale, kind);
   });
   return points;
 }
@@ -261,7 +268,8 @@ AllanCurve allan_deviation(std::span<const double> record,
     const AnchoredPhase phase =
         total ? anchored(continued(used, reach, options.data), options.data, false)
               : anchored(used, options.data, f.of_sum);
-    fill_points(points_of_phase(phase, f, reach, factors, options.data, dt_s), factors, curve);
+    if (f.overlapping && !total) curve.stride_divisor = options.stride_divisor;
+    fill_points(points_of_phase(phase, f, reach, factors, options.data, curve), factors, curve);
   });
   if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list)
     too_short(f, curve.samples);

@@ -42,7 +42,7 @@ struct AllanCurve {
   double dt_s = 1;
   std::uint64_t samples = 0;  ///< rate samples, missing ones included
   std::uint64_t missing = 0;
-  /// 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used
+  /// 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used (its whole part)
   std::uint64_t stride_divisor = 0;
   std::vector<AllanPoint> points;
   std::vector<std::string> notes;  ///< what was approximated or left out
@@ -56,10 +56,12 @@ struct AllanOptions {
   std::vector<double> taus_s;
   double tau_min_s = 0;  ///< 0 = dt
   double tau_max_s = 0;  ///< 0 = T/2 (each type's own limit is applied as well)
+  /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
+  std::uint64_t stride_divisor = 0;
   int threads = 0;       ///< 0 = all cores; the result does not depend on it
 };
 
-/// Deviations of a record with full overlap. NaN = missing: means are over what is present of a window, more than half
+/// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means are over what is present of a window, more than half
 /// (detail/missing_samples.cpp); phase drops every term that touches a missing one.
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples

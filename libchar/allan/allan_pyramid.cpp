@@ -402,7 +402,7 @@ AllanCurve AllanPyramid::finish(double dt_s) && {
   curve.dt_s = dt_s;
   curve.samples = state_->samples;
   curve.missing = state_->missing;
-  curve.stride_divisor = 4;
+  curve.stride_divisor = kPyramidStride;
   std::vector<std::uint64_t> without;
   MissingSamples missing;
   const auto& levels = state_->levels;

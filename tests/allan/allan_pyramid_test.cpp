@@ -11,6 +11,7 @@
 #include <random>
 #include <span>
 
+#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/pyramid_kernels.hpp"
 #include "libchar/core/error.hpp"
@@ -178,6 +179,56 @@ TEST_CASE("pyramid and full overlap share m = 1, 2, 4 and agree within their spr
   for (std::size_t k = 0; k < full.points.size(); ++k)
     CHECK(pyramid.points[k].deviation ==
           Approx(full.points[k].deviation).epsilon(k < 3 ? 1e-13 : 0.1));
+}
+
+TEST_CASE("dense times at stride m/4 are the pyramid's at octaves and the direct sum elsewhere") {
+  const auto y = noise(20000, 10, 1e6);
+  AllanOptions options;
+  options.grid = TauGrid::dense;
+  options.stride_divisor = kPyramidStride;
+  const AllanCurve dense = allan_deviation(y, 0.5, options), pyramid = pyramid_of(y);
+  CHECK(dense.stride_divisor == kPyramidStride);
+  std::size_t octaves = 0;
+  for (const AllanPoint& p : dense.points) {
+    CAPTURE(p.m);
+    const std::uint64_t step = std::max<std::uint64_t>(1, p.m / 4);
+    CHECK(p.terms == (y.size() - 2 * p.m) / step + 1);
+    CHECK(stride_of(dense, p) == step);
+    for (const AllanPoint& q : pyramid.points)
+      if (q.m == p.m) {
+        ++octaves;
+        CHECK(p.deviation == Approx(q.deviation).epsilon(1e-12));
+        CHECK(p.terms == q.terms);
+      }
+    if (p.m % 97 != 0) continue;
+    long double sum = 0;
+    std::uint64_t terms = 0;
+    for (std::uint64_t i = 0; i + 2 * p.m <= y.size(); i += step, ++terms) {
+      long double d = 0;
+      for (std::uint64_t j = 0; j < p.m; ++j)
+        d += static_cast<long double>(y[i + p.m + j]) - static_cast<long double>(y[i + j]);
+      sum += d * d;
+    }
+    const long double m = static_cast<long double>(p.m);
+    CHECK(p.deviation ==
+          Approx(static_cast<double>(std::sqrt(sum / static_cast<long double>(2 * terms)) / m))
+              .epsilon(1e-11));
+  }
+  CHECK(octaves == 10);  // above 1000 the dense ones are no powers of two
+}
+
+TEST_CASE("a stride is of overlapping terms between which nothing is missing") {
+  auto y = noise(3000, 11);
+  AllanOptions options;
+  options.stride_divisor = kPyramidStride;
+  for (const DeviationType type : {DeviationType::adev, DeviationType::totdev}) {
+    options.type = type;
+    CHECK(allan_deviation(y, 1, options).stride_divisor == 0);
+  }
+  options.type = DeviationType::mdev;
+  CHECK(allan_deviation(y, 1, options).stride_divisor == kPyramidStride);
+  y[100] = std::nan("");
+  CHECK(allan_deviation(y, 1, options).stride_divisor == 0);
 }
 
 TEST_CASE("pyramid can be asked before the end and refuses too short records") {

@@ -1,9 +1,12 @@
 // Every option of the analysis below and above the memory allowed: it changes the answer alike, or is refused with what would do.
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
 #include <random>
 
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
 
@@ -140,6 +143,26 @@ TEST_CASE(
     same_bits(enough[0].allan, kept[0].allan);
     CHECK(enough[0].fit->theta == kept[0].fit->theta);
     CHECK_FALSE(kept[0].allan.points.empty());
+  }
+}
+
+TEST_CASE("dense times of a long record take every (m/4)-th term, and every one on request") {
+  const auto dense = [](bool full) {
+    return run([=](auto& o) {
+      o.allan.grid = TauGrid::dense, o.allan.tau_max_s = 3, o.exact_samples = 1000;
+      o.full_overlap = full;
+    });
+  };
+  const auto few = dense(false), all = dense(true);
+  CHECK(few[0].allan.stride_divisor == kPyramidStride);
+  CHECK(all[0].allan.stride_divisor == 0);
+  REQUIRE(few[0].allan.points.size() == all[0].allan.points.size());
+  for (std::size_t k = 0; k < few[0].allan.points.size(); ++k) {
+    const AllanPoint &a = few[0].allan.points[k], &b = all[0].allan.points[k];
+    CAPTURE(a.m);
+    CHECK((a.m < 8 ? a.terms == b.terms : a.terms < b.terms));
+    CHECK(a.edf == Approx(b.edf).epsilon(0.07));
+    CHECK(std::fabs(a.deviation - b.deviation) < (a.ci68.high - a.ci68.low) / 2);
   }
 }
 

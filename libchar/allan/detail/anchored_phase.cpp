@@ -76,8 +76,13 @@ void sum_again(AnchoredPhase& phase) {
 /// Value of the polynomial part at local position j + t: c[0] + c[1] t + c[2] t^2.
 struct Polynomial {
   std::array<DoubleDouble, 3> c;
-  void add(double weight, const Polynomial& other) {
-    for (std::size_t k = 0; k < 3; ++k) c[k] = c[k] + other.c[k] * weight;
+  void add(double weight, const Polynomial& other, bool of_sum) {
+    for (std::size_t k = 0; k < (of_sum ? 3 : 2); ++k) c[k] = c[k] + times(other.c[k], weight);
+  }
+  /// By a power of two nothing is rounded.
+  static DoubleDouble times(DoubleDouble value, double weight) {
+    return std::fabs(weight) == 3 ? value * weight
+                                  : DoubleDouble{value.high * weight, value.low * weight};
   }
 };
 
@@ -195,7 +200,7 @@ double sum_of_squares(const AnchoredPhase& phase,
     std::uint64_t room = last - i;  // starts until one of the positions enters its next block
     for (int k = 0; k <= order; ++k) {
       const std::uint64_t position = i + static_cast<std::uint64_t>(k) * m;
-      p.add(kWeights[order - 2][k], polynomial(phase, position, of_sum));
+      p.add(kWeights[order - 2][k], polynomial(phase, position, of_sum), of_sum);
       run.at[k] = local.data() + position;
       room = std::min(room, kBlock - position % kBlock);
     }

@@ -173,8 +173,8 @@ AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
 }
 
 AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
-  const bool exact = kept_.size() <= options_->exact_samples || !options_->full_overlap;
-  if (octaves_only(options_->allan) && exact) {
+  const bool is_long = kept_.size() > options_->exact_samples;
+  if (octaves_only(options_->allan) && !(is_long && options_->full_overlap)) {
     AllanCurve curve = limited(octaves, options_->allan);
     if (options_->ten_a_decade)
       add_ten_a_decade(kept_, options_->allan, options_->exact_samples, curve);
@@ -182,6 +182,8 @@ AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_h
   }
   AllanOptions allan = options_->allan;
   allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+  if (allan.grid == TauGrid::dense && is_long && !options_->full_overlap)
+    allan.stride_divisor = kPyramidStride;
   return allan_deviation(kept_, 1 / rate_hz, allan);
 }
 
