@@ -112,6 +112,12 @@ void add_ten_a_decade(std::span<const double> record,
       add_points(record, length, in_means, options, octaves);
       continue;
     }
+    if (length <= kOfLong) {  // of the record itself, no second one beside it
+      const std::size_t first = length / 2;
+      const auto from = record.subspan(std::min(first, record.size()));
+      add_points(means_of(length, from).all(), length, in_means, options, octaves);
+      continue;
+    }
     while (2 * r < length) {
       const std::size_t step = std::min<std::size_t>(8, length / (2 * r));
       halves = means_of(step, r == 1 ? record : halves.all());

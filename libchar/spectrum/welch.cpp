@@ -136,11 +136,12 @@ Group sum_of_group(std::uint64_t index,
                    std::span<const double> record,
                    const Layout& layout,
                    Worker& worker) {
-  Group out{index, std::vector<double>(layout.segment / 2 + 1, 0.0), {}};
+  Group out{index, {}, {}};
   const std::uint64_t first = index * layout.group;
   const std::uint64_t last =
       std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
   if (!worker.halves) {
+    out.power.assign(layout.segment / 2 + 1, 0.0);
     for (std::uint64_t i = first; i < last; ++i)
       out.used.push_back(worker.periodogram->add(record.data() + i * layout.hop, out.power.data()));
     return out;
@@ -162,8 +163,8 @@ Group sum_of_group(std::uint64_t index,
   return out;
 }
 
-void take(const Group& group, Average& average) {
-  average.add_group(group.power);
+void take(Group&& group, Average& average) {
+  average.add_group(std::move(group.power));
   for (const char used : group.used) average.note_segment(used != 0);
 }
 
@@ -217,7 +218,7 @@ Spectrum welch(std::span<const double> record,
                                                            g, record, layout, *workers.local());
                                                      }) &
               tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
-                                            [&](const Group& group) { take(group, average); }));
+                                            [&](Group group) { take(std::move(group), average); }));
     });
   }
   average.note_samples(record);

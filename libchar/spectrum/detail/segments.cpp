@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
@@ -222,13 +223,22 @@ bool Periodogram::add(const double* x, double* power) {
 Average::Average(const WelchOptions& options, const Layout& layout)
     : options_(options), layout_(layout) {
   const std::size_t lags = (layout.segment - 1) / layout.hop;
-  power_.assign(layout.segment / 2 + 1, 0.0);
   recent_.assign(lags, 0);
   pairs_.assign(lags + 1, 0);
 }
 
 void Average::add_group(const std::vector<double>& power) {
-  add(power.data(), power.size(), power_.data());
+  if (power_.empty())
+    power_ = power;
+  else
+    add(power.data(), power.size(), power_.data());
+}
+
+void Average::add_group(std::vector<double>&& power) {
+  if (power_.empty())
+    power_ = std::move(power);
+  else
+    add_group(std::as_const(power));
 }
 
 void Average::note_segment(bool used) {

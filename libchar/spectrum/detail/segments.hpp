@@ -49,7 +49,8 @@ class Average {
  public:
   Average(const WelchOptions& options, const Layout& layout);
   void add_group(const std::vector<double>& power);
-  void note_segment(bool used);  ///< in the order of the segments
+  void add_group(std::vector<double>&& power);  ///< the first, of a long segment, without a copy
+  void note_segment(bool used);                 ///< in the order of the segments
   /// Looks until two of the samples differ by more than the root of the smallest power.
   void note_samples(std::span<const double> samples);
   std::uint64_t used() const { return used_; }
@@ -62,7 +63,7 @@ class Average {
   void check_powers() const;
   WelchOptions options_;
   Layout layout_;
-  std::vector<double> power_;
+  std::vector<double> power_;         // none before the first group
   std::vector<char> recent_;          // ring: was the segment used
   std::vector<std::uint64_t> pairs_;  // [lag]: pairs of used segments so many hops apart
   std::size_t next_ = 0;
