@@ -58,7 +58,7 @@ struct AllanOptions {
   double tau_max_s = 0;  ///< 0 = T/2 (each type's own limit is applied as well)
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
   std::uint64_t stride_divisor = 0;
-  int threads = 0;       ///< 0 = all cores; the result does not depend on it
+  int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };
 
 /// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means are over what is present of a window, more than half
