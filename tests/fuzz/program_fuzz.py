@@ -82,7 +82,7 @@ def wrong(code, out, err, outputs):
         return "hang"
     if code not in ALLOWED:
         return f"exit code {code}"
-    if re.search(r"internal error|terminate called|Assertion|what\(\)", text + out[:2000].decode(errors="replace")):
+    if re.search(r"sensorchar: internal error|terminate called|Assertion|what\(\)", text + out[:2000].decode(errors="replace")):
         return "internal error"
     if code in (2, 3, 4):
         errors = [line for line in text.splitlines() if "error" in line]
