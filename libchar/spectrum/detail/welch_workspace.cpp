@@ -5,6 +5,13 @@
 
 namespace libchar {
 
+namespace {
+
+// Halves from here on are of a record that has the memory for itself: 64 MB and more for each of seven arrays, wanted for its spectrum next.
+constexpr std::size_t kNotKept = std::size_t{1} << 23U;
+
+}  // namespace
+
 WelchWorkspace::State::Piece WelchWorkspace::State::take(std::size_t segment) {
   const std::lock_guard lock(mutex_);
   if (!idle_.empty() && 2 * idle_.back().halves.half() == segment) {
@@ -19,6 +26,7 @@ WelchWorkspace::State::Piece WelchWorkspace::State::take(std::size_t segment) {
 }
 
 void WelchWorkspace::State::give_back(Piece piece) {
+  if (piece.halves.half() >= kNotKept) return;
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(piece));
 }
