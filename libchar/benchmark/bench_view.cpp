@@ -176,6 +176,8 @@ BenchSection over_all(const FusionBench& bench) {
                     scene.pooled ? "" : " (another kind, not in the means over all)",
                     scene.yardstick));
   }
+  for (const FusionBenchLeftOut& scene : bench.left_out)
+    out.sentences.push_back(fmt::format("Left out: {}; {}.", scene.name, scene.why));
   for (const char* head : {"ns an instant", "B at most", "Front"}) out.heads.emplace_back(head);
   BenchChart chart{"processor time, ns an instant", "RMSE over the yardstick's", {}};
   for (const FusionBenchRow& row : bench.rows) {

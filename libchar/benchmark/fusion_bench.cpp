@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "libchar/benchmark/detail/bench_scene_texts.hpp"
 #include "libchar/benchmark/detail/pareto.hpp"
 #include "libchar/benchmark/turns.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/scene/scene_file.hpp"
@@ -167,6 +169,32 @@ void add_fronts(FusionBench& bench) {
   }
 }
 
+void run_scene(Scene scene,
+               const FusionBenchOptions& options,
+               HeapMeter* heap,
+               const std::function<void(double, const std::string&)>& progress,
+               FusionBench& out,
+               std::vector<SceneRuns>& runs) {
+  const std::vector<SceneAlgorithm> all = algorithms_of(scene, options);
+  for (std::size_t r = 0; r < options.seeds; ++r) {
+    progress(static_cast<double>(r) / static_cast<double>(options.seeds),
+             fmt::format("{}: run {} of {}", scene.name, r + 1, options.seeds));
+    if (scene.simulate) scene.simulate->seed = options.seed + r;
+    ReplayOptions run;
+    run.algorithms = in_turn(all, r);
+    run.allan = false;
+    ReplayWorkspace workspace;
+    workspace.heap = heap;
+    const ReplayResult result = replay(scene, run, no_progress(), workspace);
+    if (r == 0) {
+      out.scenes.push_back(described(scene, result, options.seeds));
+      runs.emplace_back();
+      runs.back().kind = scene.tilt ? "tilt" : std::to_string(result.inputs.size());
+    }
+    add(result, runs.back(), out.rows);
+  }
+}
+
 }  // namespace
 
 std::vector<Scene> bench_scenes() {
@@ -184,27 +212,17 @@ FusionBench bench_fusion(const std::vector<Scene>& scenes,
                          HeapMeter* heap) {
   FusionBench out;
   out.seed = options.seed;
-  std::vector<SceneRuns> runs(scenes.size());
+  std::vector<SceneRuns> runs;
   for (std::size_t s = 0; s < scenes.size(); ++s) {
-    Scene scene = scenes[s];
-    const std::vector<SceneAlgorithm> all = algorithms_of(scene, options);
-    for (std::size_t r = 0; r < options.seeds; ++r) {
-      const double done =
-          static_cast<double>(s) + static_cast<double>(r) / static_cast<double>(options.seeds);
-      progress.update(done / static_cast<double>(scenes.size()),
-                      fmt::format("{}: run {} of {}", scene.name, r + 1, options.seeds));
-      if (scene.simulate) scene.simulate->seed = options.seed + r;
-      ReplayOptions run;
-      run.algorithms = in_turn(all, r);
-      run.allan = false;
-      ReplayWorkspace workspace;
-      workspace.heap = heap;
-      const ReplayResult result = replay(scene, run, no_progress(), workspace);
-      if (r == 0) {
-        out.scenes.push_back(described(scene, result, options.seeds));
-        runs[s].kind = scene.tilt ? "tilt" : std::to_string(result.inputs.size());
-      }
-      add(result, runs[s], out.rows);
+    const auto part = [&](double done, const std::string& text) {
+      progress.update((static_cast<double>(s) + done) / static_cast<double>(scenes.size()), text);
+    };
+    try {
+      run_scene(scenes[s], options, heap, part, out, runs);
+    } catch (const Error& error) {
+      const bool last = s + 1 == scenes.size() && out.scenes.empty();
+      if (error.problem().code != "E0905" || last) throw;
+      out.left_out.push_back({scenes[s].name, scenes[s].file, error.problem().what});
     }
   }
   choose_pooled(runs);

@@ -56,13 +56,19 @@ struct FusionBenchScene {
   std::vector<double> front_gaps;  ///< one a row
 };
 
+/// A scene that feeds none of the algorithms asked for.
+struct FusionBenchLeftOut {
+  std::string name, file, why;
+};
+
 struct FusionBench {
   std::uint64_t seed = 1;
   std::vector<FusionBenchScene> scenes;
+  std::vector<FusionBenchLeftOut> left_out;
   std::vector<FusionBenchRow> rows;  ///< best first over the scenes, then by name
 };
 
-/// Throws what `replay` throws.
+/// Throws what `replay` throws; that no algorithm can run on a scene (E0905), only where none can on any.
 FusionBench bench_fusion(const std::vector<Scene>& scenes,
                          const FusionBenchOptions& options,
                          Progress& progress = no_progress(),

@@ -78,6 +78,10 @@ Json cell_json(const FusionBenchCell& cell) {
 
 Json fusion_json(const FusionBench& bench) {
   Json out = {{"seed", bench.seed}, {"scenes", Json::array()}, {"methods", Json::array()}};
+  for (const FusionBenchLeftOut& scene : bench.left_out)
+    out["left_out"].push_back({{"name", json_text(scene.name)},
+                               {"file", json_text(scene.file)},
+                               {"why", json_text(scene.why)}});
   for (const FusionBenchScene& scene : bench.scenes)
     out["scenes"].push_back({{"name", json_text(scene.name)},
                              {"file", json_text(scene.file)},

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/core/error.hpp"
 #include "libchar/scene/scene_file.hpp"
 
 using namespace libchar;
@@ -58,6 +59,30 @@ TEST_CASE("fusion bench: a sweep is a row a value, and the excess follows the op
   CHECK_FALSE(row(bench, "mean").swept);
   // Weights of ten instants scatter, those of a thousand do not.
   CHECK(fast.excess.value > slow.excess.value);
+}
+
+TEST_CASE(
+    "fusion bench: a scene that feeds none of the algorithms is left out and said; without any "
+    "other it is refused") {
+  FusionBenchOptions options;
+  options.seeds = 2;
+  options.algorithms = {"minque", "mean"};
+  Scene tilt;
+  for (const Scene& scene : bench_scenes())
+    if (scene.tilt) tilt = scene;
+  REQUIRE(tilt.tilt);
+  for (const bool first : {true, false}) {
+    const std::vector<Scene> scenes =
+        first ? std::vector{tilt, three_sensors()} : std::vector{three_sensors(), tilt};
+    const FusionBench bench = bench_fusion(scenes, options);
+    REQUIRE(bench.scenes.size() == 1);
+    CHECK(bench.scenes[0].name == "three");
+    REQUIRE(bench.left_out.size() == 1);
+    CHECK(bench.left_out[0].name == tilt.name);
+    CHECK_THAT(bench.left_out[0].why, Catch::Contains("no algorithm can run on this scene"));
+    for (const FusionBenchRow& r : bench.rows) CHECK(r.cells.size() == 1);
+  }
+  CHECK_THROWS_AS(bench_fusion({tilt, tilt}, options), Error);
 }
 
 TEST_CASE("the built-in scenes are read") {
