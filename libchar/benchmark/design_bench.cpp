@@ -82,6 +82,7 @@ SensorsNeeded sensors_needed(const BenchSignal& model,
   }
   // Degrees of freedom: about one a pair of averages; the records' own scatter says it better.
   std::vector<double> squares;
+  squares.reserve(deviations.size());
   for (const double d : deviations) squares.push_back(d * d);
   const Figure mean = mean_figure(squares);
   out.simulated = {std::sqrt(mean.value),

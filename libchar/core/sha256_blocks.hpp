@@ -66,7 +66,15 @@ class Sha256Lane {
       words = _mm_shuffle_epi8(_mm_loadu_si128(from), big_endian);
     } else {  // the message schedule
       const __m128i last = words_[(index + 3) % 4];
-      const __m128i seventh = _mm_alignr_epi8(last, words_[(index + 2) % 4], 4);
+      // What _mm_alignr_epi8 does, which GCC does not compile without optimization behind {fmt} (it leaves __OPTIMIZE__ defined).
+      using Words [[gnu::vector_size(16)]] = std::uint32_t;
+      const auto seventh = reinterpret_cast<__m128i>(
+          __builtin_shufflevector(reinterpret_cast<Words>(words_[(index + 2) % 4]),
+                                  reinterpret_cast<Words>(last),
+                                  1,
+                                  2,
+                                  3,
+                                  4));
       const __m128i sum =
           _mm_add_epi32(_mm_sha256msg1_epu32(words, words_[(index + 1) % 4]), seventh);
       words = _mm_sha256msg2_epu32(sum, last);

@@ -203,6 +203,45 @@ void run_bench(Session& session, BenchVerb& verb) {
   if (changes) refuse_worse(*changes, tolerance, verb.against);
 }
 
+void add_design_options(VerbOptions& options, BenchVerb& verb) {
+  options
+      .add_number(
+          "--target",
+          verb.target,
+          "design: Allan deviation that the fused sensors are to reach, in the models' unit",
+          1e-100,
+          1e100)
+      .value_name("DEVIATION");
+  options.add_duration("--at", verb.tau_s, "design: averaging time of that target (default: 1 s)");
+  options
+      .add_number("--within",
+                  verb.share,
+                  "design: percent of itself that a coefficient is to be known to (default: 10)",
+                  0.01,
+                  99)
+      .value_name("PERCENT");
+  options.add_rate("--instants-rate",
+                   verb.rate_hz,
+                   "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
+}
+
+void add_comparison_options(VerbOptions& options, BenchVerb& verb) {
+  options
+      .add_text(
+          "--against",
+          verb.against,
+          "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
+          "beyond both intervals")
+      .value_name("FILE");
+  options
+      .add_number("--tolerance",
+                  verb.tolerance,
+                  "percent that a figure may be worse by (default: 5)",
+                  0,
+                  1000)
+      .value_name("PERCENT");
+}
+
 std::function<void()> bench_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<BenchVerb>();
   options
@@ -246,39 +285,8 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
                  "FROM..TO; several make a grid")
       .one_value_each()
       .value_name("SWEEP");
-  options
-      .add_number(
-          "--target",
-          verb->target,
-          "design: Allan deviation that the fused sensors are to reach, in the models' unit",
-          1e-100,
-          1e100)
-      .value_name("DEVIATION");
-  options.add_duration("--at", verb->tau_s, "design: averaging time of that target (default: 1 s)");
-  options
-      .add_number("--within",
-                  verb->share,
-                  "design: percent of itself that a coefficient is to be known to (default: 10)",
-                  0.01,
-                  99)
-      .value_name("PERCENT");
-  options.add_rate("--instants-rate",
-                   verb->rate_hz,
-                   "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
-  options
-      .add_text(
-          "--against",
-          verb->against,
-          "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
-          "beyond both intervals")
-      .value_name("FILE");
-  options
-      .add_number("--tolerance",
-                  verb->tolerance,
-                  "percent that a figure may be worse by (default: 5)",
-                  0,
-                  1000)
-      .value_name("PERCENT");
+  add_design_options(options, *verb);
+  add_comparison_options(options, *verb);
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);

@@ -100,6 +100,7 @@ std::vector<Exact> exact_welch(std::span<const double> y, double rate_hz, std::s
 std::vector<Exact> exact_cosine_transform(std::span<const double> y) {
   const std::vector<Exact> x = without_mean(y);
   const std::size_t n = x.size();
+  if (n == 0) return {};
   std::vector<Exact> cosine(4 * n), out(n, 0);
   for (std::size_t j = 0; j < 4 * n; ++j)
     cosine[j] = std::cos(kPi * static_cast<Exact>(j) / static_cast<Exact>(2 * n));
