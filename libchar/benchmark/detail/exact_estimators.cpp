@@ -106,7 +106,7 @@ std::vector<Exact> exact_cosine_transform(std::span<const double> y) {
     cosine[j] = std::cos(kPi * static_cast<Exact>(j) / static_cast<Exact>(2 * n));
   const Exact scale = std::sqrt(2 / static_cast<Exact>(n));
   for (std::size_t k = 1; k < n; ++k) {
-    for (std::size_t t = 0; t < n; ++t) out[k] += x[t] * cosine[k * (2 * t + 1) % (4 * n)];
+    for (std::size_t t = 0; t < n; ++t) out[k] += x[t] * cosine[k * (2 * t + 1) % cosine.size()];
     out[k] *= scale;
   }
   return out;
