@@ -1,5 +1,6 @@
 #include "libchar/log/csv/chunk_pipeline.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <string>
@@ -53,6 +54,23 @@ TEST_CASE("a caller may stop at any chunk, and the hash is that of the whole fil
       CHECK(rows->sha256() == hash_of(text));
       CHECK_FALSE(rows->next(block, warnings));
     }
+}
+
+// Found by fuzzing: a thread that was reading took the stop back that came just then, and waited for ever for a chunk to be free.
+TEST_CASE("a caller may stop at any moment: the threads that read ahead end") {
+  const test::TemporaryFolder folder;
+  const std::string path = written(folder, many_rows(""));
+  ReadOptions options = small_chunks(3);
+  options.block_bytes = 16;
+  for (int turn = 0; turn < 1000; ++turn) {
+    options.hash = turn % 2 == 0;
+    const auto rows = find_format("csv")->open(path, options);
+    RowBlock block;
+    Warnings warnings;
+    for (int i = 0; i < turn % 7; ++i) REQUIRE(rows->next(block, warnings));
+    const volatile int waits = turn * 37 % 1000;
+    for (int i = 0; i < waits; ++i) std::atomic_signal_fence(std::memory_order_seq_cst);
+  }
 }
 
 TEST_CASE("a bad row far down is thrown in its turn, after every row before it") {

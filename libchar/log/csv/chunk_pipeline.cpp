@@ -87,7 +87,7 @@ ChunkPipeline::Item* ChunkPipeline::read() {
     item->failure = std::current_exception();
     item->last = true;
   }
-  stop_ = stop_ || item->last;
+  if (item->last) stop_ = true;  // never back to false: the caller sets it, too, at any time
   return item;
 }
 
