@@ -62,8 +62,8 @@ TEST_CASE("fusion bench: a sweep is a row a value, and the excess follows the op
 }
 
 TEST_CASE(
-    "fusion bench: a scene that feeds none of the algorithms is left out and said; without any "
-    "other it is refused") {
+    "fusion bench: a scene that feeds none of the algorithms is left out and said, and refused "
+    "where there is no other") {
   FusionBenchOptions options;
   options.seeds = 2;
   options.algorithms = {"minque", "mean"};
