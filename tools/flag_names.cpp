@@ -70,6 +70,7 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"time_unit", "--time-unit"},
                                {"to_s", "--to"},
                                {"topic", "--topic"},
+                               {"topic", "--topic"},
                                {"units", "--units"}};
 
 }  // namespace

@@ -11,6 +11,18 @@ namespace sensorchar {
 namespace {
 
 void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
+  verb.add_text("--topic",
+                options.topic,
+                "of a log that holds several streams (bags, flight logs, arrays), the one to read "
+                "(default: the only one)")
+      .value_name("NAME")
+      .group("Reading");
+  verb.add_choice("--time-source",
+                  options.time_source,
+                  {"auto", "header", "log", "publish"},
+                  "whose stamps, where messages have several: header (the sensor's), log (when "
+                  "recorded), publish (default: auto)")
+      .group("Reading");
   verb.add_duration("--from",
                     options.from_s,
                     "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
@@ -181,6 +193,8 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
     if (!items.empty())
       flags += fmt::format(" {} {}", flag, shell_word(fmt::format("{}", fmt::join(items, ","))));
   };
+  word("--topic", options.topic, usual.topic);
+  word("--time-source", options.time_source, usual.time_source);
   list("-c", options.channels);
   list("--names", options.names);
   list("--units", options.units);

@@ -6,6 +6,7 @@
 
 #include "libchar/core/text.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/topics/topic_rows.hpp"
 
 // The log formats, the most specific first. A line both declares the row that NAME's file exports and lists it:
 // Format NAME_format().
@@ -54,6 +55,13 @@ std::vector<const Format*> by_name() {
 }
 
 }  // namespace
+
+std::unique_ptr<RowSource> open_rows(const Format& format,
+                                     const std::string& path,
+                                     const ReadOptions& options) {
+  if (format.topics == nullptr) return format.open(path, options);
+  return open_topic_rows(format.topics(path, options), path, format.about.name, options);
+}
 
 const Format* find_format(std::string_view name) {
   for (const Format& format : formats())

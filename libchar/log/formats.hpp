@@ -22,6 +22,7 @@ struct LogFormat {
   bool writes_rate = false;  ///< … and its sampling rate
   bool writes_stamps =
       false;  ///< … and has a column of stamps, unless `WriteOptions::time_column` is off
+  bool topics = false;      ///< may hold several streams, each with a clock of its own
   bool from_pipes = false;  ///< can be read from standard input and named pipes
 };
 

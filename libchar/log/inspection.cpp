@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/decimal.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 
@@ -53,7 +54,9 @@ std::string small_time(double seconds) {
 
 }  // namespace
 
-Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress) {
+namespace {
+
+Inspection inspect_rows(const std::string& path, const ReadOptions& options, Progress& progress) {
   Meters meters(options.threads);
   Inspection inspection;
   inspection.info = read_log(path, options, meters, progress);
@@ -65,8 +68,34 @@ Inspection inspect(const std::string& path, const ReadOptions& options, Progress
   return inspection;
 }
 
+// What a log holds, where one of its topics has to be chosen before anything can be read.
+Inspection list_topics(const std::string& path, const ReadOptions& options) {
+  Inspection listing;
+  listing.info = log_listing(path, options);
+  return listing;
+}
+
+}  // namespace
+
+Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress) {
+  try {
+    return inspect_rows(path, options, progress);
+  } catch (const Error& error) {
+    if (error.problem().code != kTopicNotChosen) throw;
+  }
+  return list_topics(path, options);
+}
+
+bool is_listing(const LogInfo& info) {
+  return !info.topics.empty() && info.channels.empty();
+}
+
 std::string summary_line(const LogInfo& info) {
   const TimeBase& time = info.time;
+  if (is_listing(info))
+    return fmt::format("{}: {}, one of which has to be chosen",
+                       printable(info.file),
+                       plural(info.topics.size(), "topic"));
   std::string line =
       fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {

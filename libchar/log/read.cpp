@@ -50,8 +50,8 @@ std::string front_of(const std::string& path) {
   return bytes;
 }
 
-// The name decides before the content: a .csv that holds something else is told so by the CSV
-// reader.
+// A magic number decides before the name, and the name before what else the content looks like: a .csv that holds something else is
+// told so by the CSV reader.
 const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (options.format != "auto") {
     if (const Format* format = find_format(options.format)) return *format;
@@ -70,6 +70,8 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
       if (format.about.from_pipes) return format;
   }
   const std::string front = front_of(path);
+  for (const Format& format : formats())
+    if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;
   for (const Format& format : formats())
     if (format.sniff(path, front)) return format;
@@ -154,8 +156,23 @@ struct Watch final : BlockSink {
 }  // namespace
 
 LogInfo read_log_head(const std::string& path, const ReadOptions& options) {
-  LogInfo info = format_of(path, options).open(path, options)->info();
+  LogInfo info = open_rows(format_of(path, options), path, options)->info();
   name_channels(info.channels, options);
+  return info;
+}
+
+LogInfo log_listing(const std::string& path, const ReadOptions& options) {
+  const Format& format = format_of(path, options);
+  LogInfo info;
+  info.file = path;
+  info.format = format.about.name;
+  if (format.topics == nullptr) return info;
+  const auto reader = format.topics(path, options);
+  info.topics = reader->topics();
+  info.dialect = reader->dialect();
+  std::error_code none;
+  const auto bytes = std::filesystem::file_size(path, none);
+  info.bytes = none ? 0 : bytes;
   return info;
 }
 
@@ -222,7 +239,7 @@ LogInfo read_log(const std::string& path,
                  BlockSink& sink,
                  Progress& progress) {
   check_rate_option(options);
-  const auto source = format_of(path, options).open(path, options);
+  const auto source = open_rows(format_of(path, options), path, options);
   Warnings warnings;
   Watch watch(sink, options);
   TimeGrid grid(*source, options, watch, warnings);

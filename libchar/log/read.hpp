@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/core/progress.hpp"
@@ -15,6 +16,10 @@ namespace libchar {
 struct ReadOptions {
   std::vector<std::string>
       channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
+  std::string
+      topic;  ///< of a log with several streams, the one to read; "" = the one that `channels` name, or the only one
+  std::string time_source =
+      "auto";  ///< whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when recorded), "publish"
   std::vector<std::string>
       names;  ///< new names of the channels read, in order; empty = as in the log
   std::vector<std::string>
@@ -26,7 +31,7 @@ struct ReadOptions {
   std::string time_column =
       "auto";  ///< "auto", "none", a name, or c0-style position among all columns
   std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns"
-  std::string format = "auto";     ///< "auto", "csv", "npy", "raw"
+  std::string format = "auto";     ///< "auto" or a name of the table of formats
   std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character
   std::string decimal = "auto";    ///< "auto", "point", "comma"
   std::string header = "auto";     ///< "auto", "yes", "no"
@@ -64,6 +69,12 @@ LogInfo read_log(const std::string& path,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress = no_progress());
+
+/// The code of the Error for a log of several topics of which none was chosen.
+inline constexpr std::string_view kTopicNotChosen = "E0427";
+
+/// File, format and topics of a log, without reading its samples; no topics for formats of one table.
+LogInfo log_listing(const std::string& path, const ReadOptions& options);
 
 /// Standard input, a named pipe, a device: what was read is gone, and only CSV is read from it unless the format is given.
 bool read_once(const std::string& path);

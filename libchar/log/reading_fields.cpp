@@ -8,6 +8,7 @@ namespace {
 constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
 constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"utf-8"}, {"latin1"}};
+constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
 constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}};
 
 // auto and the names of the table of formats.
@@ -28,6 +29,13 @@ const Fields<ReadOptions>& reading_fields() {
   static const Fields<ReadOptions> rows = {
       field<&ReadOptions::channels>(
           "channels", {.meaning = "names or c0, c1… of those to read", .otherwise = "all"}),
+      field<&ReadOptions::topic>("topic",
+                                 {.meaning = "the stream to read of a log that holds several",
+                                  .otherwise = "the only one"}),
+      field<&ReadOptions::time_source>("time_source",
+                                       {.words = kTimeSources,
+                                        .meaning = "whose stamps, where messages have several",
+                                        .otherwise = "auto"}),
       field<&ReadOptions::rate_hz>(
           "rate_hz",
           {.unit = "Hz", .range = kRates, .meaning = "sampling rate of a log without stamps"}),

@@ -23,6 +23,18 @@ struct Channel {
   bool integer = false;  ///< every value is an integer written as one (counts)
 };
 
+/// One stream of messages, or one table, of a log that holds several: each has a clock of its own.
+struct LogTopic {
+  std::string name;        ///< "/imu0", "sensor_gyro_fifo 0", "run1/gyro"
+  std::string type;        ///< "sensor_msgs/msg/Imu"; "" when the log says none
+  std::uint64_t rows = 0;  ///< messages or rows, as far as the log says without being read whole
+  double rate_hz = 0;      ///< rows over their time, roughly; 0 when not known
+  std::vector<Channel> fields;  ///< the numbers of a row, among which channels are chosen
+  bool sensor = false;          ///< of a type that sensors write: taken when it is the only one
+  std::string
+      why_not;  ///< why no field can be read ("images", "encoding protobuf"); "" when they can
+};
+
 /// The time axis: sample k of the grid stands at t0 + k / rate.
 struct TimeBase {
   double rate_hz = 0;  ///< 0 when unknown (no stamps and no `rate_hz`)
@@ -43,7 +55,7 @@ struct TimeBase {
 /// Everything about a log but its samples.
 struct LogInfo {
   std::string file;
-  std::string format;  ///< "csv", "npy", "raw"
+  std::string format;  ///< as in the table of formats: "csv", "npy", "raw"…
   std::string sha256;  ///< of the whole file; "" when only part of a pipe was read
   std::uint64_t bytes = 0;
   std::uint64_t rows =
@@ -56,6 +68,8 @@ struct LogInfo {
   bool read_ahead = false;         ///< other threads read and parse while the caller works
   std::uint64_t first_line = 0;  ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
+  std::vector<LogTopic> topics;  ///< of a log that holds several streams; empty for one table
+  std::string topic;             ///< the one that was read; "" when there are none
   TimeBase time;
   /// what was used of the log, in seconds after its first stamp, where that is not all of it
   std::optional<Interval> stretch_s;

@@ -40,6 +40,18 @@ Json time_json(const TimeBase& time) {
           {"start_ns", start_json(time)}};
 }
 
+Json topic_json(const LogTopic& topic) {
+  Json out = {{"name", json_text(topic.name)},
+              {"type", json_text(topic.type)},
+              {"rows", topic.rows},
+              {"rate_hz", topic.rate_hz > 0 ? json_number(topic.rate_hz) : Json(nullptr)},
+              {"why_not", json_text(topic.why_not)},
+              {"fields", Json::array()}};
+  for (const Channel& field : topic.fields)
+    out["fields"].push_back({{"name", json_text(field.name)}, {"unit", json_text(field.unit)}});
+  return out;
+}
+
 }  // namespace
 
 Json document_head(std::string_view format,
@@ -124,6 +136,10 @@ Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& quali
   for (const Warning& w : log.warnings.list()) out["repairs"][w.code] = w.count;
   out["guesses"] = texts(log.guesses);
   out["dialect"] = texts(log.dialect);
+  if (log.topics.empty()) return out;
+  out["topic"] = json_text(log.topic);
+  out["topics"] = Json::array();
+  for (const LogTopic& topic : log.topics) out["topics"].push_back(topic_json(topic));
   return out;
 }
 

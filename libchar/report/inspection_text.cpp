@@ -52,6 +52,29 @@ std::string channel_table(const Inspection& inspection) {
   return text_table(rows);
 }
 
+// "angular_velocity.x, … and 34 more": enough to see what a topic is about.
+std::string some_fields(const LogTopic& topic) {
+  if (!topic.why_not.empty()) return "not read: " + topic.why_not;
+  std::string text;
+  constexpr std::size_t kShown = 4;
+  for (std::size_t i = 0; i < std::min(kShown, topic.fields.size()); ++i)
+    text += (i == 0 ? "" : ", ") + printable(topic.fields[i].name, 40);
+  if (topic.fields.size() > kShown)
+    text += fmt::format(" and {} more", topic.fields.size() - kShown);
+  return text;
+}
+
+std::string topic_table(const LogInfo& info) {
+  std::vector<std::vector<std::string>> rows = {{"topic", "type", "rows", "rate", "fields"}};
+  for (const LogTopic& topic : info.topics)
+    rows.push_back({printable(topic.name, 60),
+                    topic.type.empty() ? "-" : printable(topic.type, 40),
+                    std::to_string(topic.rows),
+                    topic.rate_hz > 0 ? significant(topic.rate_hz, 4) + " Hz" : "-",
+                    some_fields(topic)});
+  return text_table(rows, "  ", true);
+}
+
 }  // namespace
 
 std::string inspection_text(const Inspection& inspection) {
@@ -65,7 +88,7 @@ std::string inspection_text(const Inspection& inspection) {
   const std::string front = printable(info.file) + ": warning: ";
   for (const Warning& warning : info.warnings.list())
     text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
-  text += channel_table(inspection);
+  text += is_listing(info) ? topic_table(info) : channel_table(inspection);
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     for (const std::string& suggestion : inspection.quality[c].suggestions)
       text +=

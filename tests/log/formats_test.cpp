@@ -54,7 +54,8 @@ TEST_CASE(
     for (const std::string_view suffix : format.about.written_suffixes)
       CHECK(format_by_suffix("x" + std::string(suffix)) == &format);
     CHECK(format.sniff != nullptr);
-    CHECK(format.open != nullptr);
+    CHECK((format.open != nullptr) != (format.topics != nullptr));
+    CHECK(format.about.topics == (format.topics != nullptr));
     CHECK((format.write == nullptr) == format.about.written_suffixes.empty());
   }
   CHECK(std::count_if(formats().begin(), formats().end(), [](const Format& format) {

@@ -24,6 +24,13 @@ struct InspectVerb {
 std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {
   const std::string flags = reading_flags(verb.reading, info);
   const std::string log = shell_word(info.file);
+  if (libchar::is_listing(info)) {
+    for (const bool sensor : {true, false})
+      for (const libchar::LogTopic& topic : info.topics)
+        if (topic.why_not.empty() && topic.sensor == sensor && !topic.fields.empty())
+          return fmt::format(
+              "  next: sensorchar inspect {}{} --topic {}\n", log, flags, shell_word(topic.name));
+  }
   if (info.time.rate_hz <= 0 && !info.time.column.empty())
     return fmt::format("  next: {} with a time stamp {} no sampling rate; two rows would\n",
                        info.rows == 1 ? "one row" : fmt::format("{} rows", info.rows),

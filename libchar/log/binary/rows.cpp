@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <optional>
-#include <system_error>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/log/binary/file_hash.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/time/time_column.hpp"
@@ -57,7 +54,7 @@ class BinaryRows final : public RowSource {
         layout_(std::move(layout)),
         info_(std::move(info)),
         overflow_as_missing_(options.overflow_as_missing),
-        hash_(options.hash) {
+        hash_(*file_, options.hash) {
     info_.file = file_->path();
     const TableFront table = front();
     const auto time = find_time_column(table, options, info_);
@@ -88,11 +85,6 @@ class BinaryRows final : public RowSource {
     layout_.columns.clear();
   }
 
-  ~BinaryRows() override {
-    stop_ = true;  // an abandoned reading does not finish the hash of a large file
-    if (hashing_.valid()) hashing_.wait();
-  }
-
   const LogInfo& info() const override { return info_; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
   std::uint64_t bytes_total() const override {
@@ -102,7 +94,7 @@ class BinaryRows final : public RowSource {
   bool next(RowBlock& block, Warnings& warnings) override {
     if (next_row_ == 0) {
       warnings.merge(layout_.warnings);
-      start_hash();
+      hash_.start();
     }
     block.rows = static_cast<std::size_t>(
         std::min<std::uint64_t>(rows_per_block_, layout_.rows - next_row_));
@@ -138,12 +130,7 @@ class BinaryRows final : public RowSource {
         "row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
   }
 
-  std::string sha256() override {
-    if (!hash_) return "";
-    if (!hashing_.valid() && digest_.empty()) start_hash();
-    if (hashing_.valid()) digest_ = hashing_.get();
-    return digest_;
-  }
+  std::string sha256() override { return hash_.finish(); }
 
  private:
   std::uint64_t stride() const { return values_.front().column.stride; }
@@ -151,31 +138,6 @@ class BinaryRows final : public RowSource {
     std::uint64_t bytes = time_ ? size_of(time_->number.type) : 0;
     for (const Wanted& wanted : values_) bytes += size_of(wanted.column.number.type);
     return bytes;
-  }
-
-  // The digest is of the whole file in its own order, so it is taken beside the reading, from pages
-  // the system has cached.
-  void start_hash() {
-    if (!hash_ || hashing_.valid()) return;
-    const auto hash = [this] { return hash_of_file(); };
-    try {
-      hashing_ = std::async(std::launch::async, hash);
-    } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
-      hashing_ = std::async(std::launch::deferred, hash);
-    }
-  }
-
-  std::string hash_of_file() const {
-    Sha256 sha;
-    std::vector<std::byte> piece(std::size_t{1} << 20U);
-    for (std::uint64_t at = 0; at < file_->size() && !stop_;) {
-      const auto n =
-          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_->size() - at));
-      file_->read(at, std::span(piece).first(n));
-      sha.update({reinterpret_cast<const char*>(piece.data()), n});
-      at += n;
-    }
-    return sha.finish();
   }
 
   void read_interleaved(std::size_t rows) {
@@ -361,10 +323,8 @@ class BinaryRows final : public RowSource {
   std::vector<double> stamps_;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::string> missing_places_;
-  bool overflow_as_missing_ = false, hash_ = true;
-  std::atomic<bool> stop_ = false;
-  std::string digest_;
-  std::future<std::string> hashing_;
+  bool overflow_as_missing_ = false;
+  FileHash hash_;
 };
 
 }  // namespace

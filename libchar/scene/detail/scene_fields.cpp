@@ -411,7 +411,9 @@ std::string signal_kinds_table() {
 
 const Fields<ReadOptions>& scene_reading_fields() {
   static const Fields<ReadOptions> rows = selected(reading_fields(),
-                                                   {"rate_hz",
+                                                   {"topic",
+                                                    "time_source",
+                                                    "rate_hz",
                                                     "delimiter",
                                                     "decimal",
                                                     "header",

@@ -1,0 +1,29 @@
+#pragma once
+// Which stream of a log with several is meant: by its name, by the channels asked for, or because there is only one.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/log/read.hpp"
+#include "libchar/log/recording.hpp"
+
+namespace libchar {
+
+struct TopicChoice {
+  std::size_t topic = 0;
+  std::vector<std::string> channels;  ///< `options.channels` without the topic's name in front
+  std::string guess;                  ///< why this one was taken, when nobody said so
+};
+
+/// Nothing when there are several and nobody said which: `options` name none. Throws Error(usage) for a topic or a channel that is
+/// not there, for channels of several topics (they have several clocks), and for a topic without a number.
+std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
+                                        const ReadOptions& options,
+                                        const std::string& file);
+
+/// The sentence for a log whose topic has to be chosen first. Throws Error(usage).
+[[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,
+                                       const std::string& file);
+
+}  // namespace libchar

@@ -1,0 +1,222 @@
+// Which topic of a log with several is meant, and what is common to their rows, by a reader that holds its messages in memory.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/topics/topic_choice.hpp"
+#include "libchar/log/topics/topic_rows.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+
+namespace {
+
+std::vector<LogTopic> flight() {
+  LogTopic imu0{"/imu0", "sensor_msgs/Imu", 5, 100, {{"w.x", "rad/s"}, {"w.y", "rad/s"}}, true, ""};
+  LogTopic imu1 = imu0, camera, pose, nested;
+  imu1.name = "/imu1";
+  camera.name = "/camera";
+  camera.why_not = "images";
+  pose.name = "/pose";
+  pose.fields = {{"x", "m"}, {"t", "s"}};
+  nested.name = "/imu0/raw";
+  nested.fields = {{"adc", ""}};
+  return {imu0, imu1, camera, pose, nested};
+}
+
+ReadOptions asking(std::vector<std::string> channels, std::string topic = "") {
+  ReadOptions options;
+  options.channels = std::move(channels);
+  options.topic = std::move(topic);
+  return options;
+}
+
+// "/imu0: w.x w.y", "none", or the sentence that refuses.
+std::string choice(const std::vector<LogTopic>& topics, const ReadOptions& options) {
+  try {
+    const auto chosen = choose_topic(topics, options, "a.bag");
+    if (!chosen) return "none";
+    std::string text = topics[chosen->topic].name + ":";
+    for (const std::string& channel : chosen->channels) text += " " + channel;
+    return text;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+struct MemoryReader final : TopicReader {
+  std::vector<LogTopic> list = flight();
+  std::string own_stamps = "header.stamp";
+  std::vector<std::vector<double>> rows;  // of every topic alike
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<std::size_t> usual, wanted;
+  std::size_t at = 0, largest = 0;
+  std::optional<std::size_t> time;
+  std::int64_t unit = 0;
+
+  const std::vector<LogTopic>& topics() const override { return list; }
+  std::string stamps(std::size_t) const override { return own_stamps; }
+  std::vector<std::size_t> usual_fields(std::size_t topic) const override {
+    return usual.empty() ? TopicReader::usual_fields(topic) : usual;
+  }
+  FirstValues first_values(std::size_t, std::size_t field) override {
+    FirstValues first;
+    for (const auto& row : rows) first.values.push_back(row[field]);
+    first.integers = false;
+    return first;
+  }
+  void select(std::size_t,
+              const std::vector<std::size_t>& fields,
+              std::optional<std::size_t> time_field,
+              std::int64_t unit_ns) override {
+    wanted = fields;
+    time = time_field;
+    unit = unit_ns;
+  }
+  bool next(RowBlock& block, std::size_t most, Warnings&) override {
+    for (; at < rows.size() && block.rows < most; ++at, ++block.rows) {
+      for (std::size_t c = 0; c < wanted.size(); ++c)
+        block.columns[c].push_back(rows[at][wanted[c]]);
+      if (time)
+        block.time_ns.push_back(std::llround(rows[at][*time] * static_cast<double>(unit)));
+      else if (!own_stamps.empty())
+        block.time_ns.push_back(stamps_ns[at]);
+    }
+    largest = std::max(largest, block.rows);
+    return block.rows > 0;
+  }
+  std::uint64_t bytes_read() const override { return at; }
+};
+
+struct Opened {
+  test::TemporaryFolder folder;
+  std::unique_ptr<RowSource> rows;
+  std::vector<std::vector<double>> columns;
+  std::vector<std::int64_t> stamps;
+  Warnings warnings;
+
+  Opened(std::unique_ptr<TopicReader> reader, const ReadOptions& options) {
+    const std::string path = (folder / "a.bag").string();
+    std::ofstream(path, std::ios::binary) << "abc";
+    rows = open_topic_rows(std::move(reader), path, "bag", options);
+    RowBlock block;
+    while (rows->next(block, warnings)) {
+      columns.resize(block.columns.size());
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        columns[c].insert(columns[c].end(), block.columns[c].begin(), block.columns[c].end());
+      stamps.insert(stamps.end(), block.time_ns.begin(), block.time_ns.end());
+    }
+    rows->finish(warnings);
+  }
+  std::string names() const {
+    std::string all;
+    for (const Channel& channel : rows->info().channels) all += channel.name + " ";
+    return all;
+  }
+};
+
+std::unique_ptr<MemoryReader> pose_reader() {
+  auto reader = std::make_unique<MemoryReader>();
+  reader->rows = {{1, 0}, {2, 0.5}, {3, 1}, {4, 1.5}};
+  reader->stamps_ns = {10, 20, 30, 40};
+  return reader;
+}
+
+}  // namespace
+
+TEST_CASE("the topic is the one that is named, by itself or in front of a channel") {
+  const auto topics = flight();
+  CHECK(choice(topics, asking({}, "/pose")) == "/pose:");
+  CHECK(choice(topics, asking({}, "/po*")) == "/pose:");
+  CHECK(choice(topics, asking({"/imu1/w.x"})) == "/imu1: w.x");
+  CHECK(choice(topics, asking({"/imu1.w.y", "w.x"})) == "/imu1: w.y w.x");
+  CHECK(choice(topics, asking({"/imu0/raw/adc"})) == "/imu0/raw: adc");
+  CHECK(choice(topics, asking({"/imu1/*"})) == "/imu1: w.x w.y");
+  CHECK(choice(topics, asking({"x"})) == "/pose: x");
+  CHECK(choice(topics, asking({"w.*"}, "/imu1")) == "/imu1: w.x w.y");
+  CHECK(choice(topics, asking({"c1"}, "/imu1")) == "/imu1: c1");
+}
+
+TEST_CASE("the only topic with numbers, or the only sensor's, is taken; several are not") {
+  auto topics = flight();
+  CHECK(choice(topics, {}) == "none");
+  CHECK(choice({topics[2], topics[3]}, {}) == "/pose:");
+  CHECK(choice({topics[0], topics[2], topics[3]}, {}) == "/imu0:");
+  const auto chosen = choose_topic({topics[0], topics[3]}, {}, "a.bag");
+  REQUIRE(chosen);
+  CHECK(chosen->guess ==
+        "topic: /imu0, the only one of 2 that is a sensor's (`topic` takes another one)");
+  CHECK_THROWS_WITH(refuse_without_topic(topics, "a.bag"),
+                    Catch::Contains("E0427") && Catch::Contains("holds 4 topics") &&
+                        Catch::Contains("`topic` /imu0 chooses one"));
+  CHECK_THROWS_WITH(refuse_without_topic({topics[2]}, "a.bag"),
+                    Catch::Contains("E0426") && Catch::Contains("/camera: images"));
+  CHECK_THROWS_WITH(refuse_without_topic({}, "a.bag"), Catch::Contains("holds no messages"));
+}
+
+TEST_CASE("what names no topic, or several, is refused with the way out") {
+  const auto topics = flight();
+  CHECK_THAT(choice(topics, asking({}, "/imu2")),
+             Catch::Contains("E0425") && Catch::Contains("did you mean"));
+  CHECK_THAT(choice(topics, asking({}, "/imu*")), Catch::Contains("several topics match"));
+  CHECK_THAT(choice(topics, asking({}, "/camera")), Catch::Contains("cannot be read: images"));
+  CHECK_THAT(choice(topics, asking({"w.x"})),
+             Catch::Contains("several topics have this channel: /imu0, /imu1"));
+  CHECK_THAT(choice(topics, asking({"/imu0/w.x", "/imu1/w.x"})),
+             Catch::Contains("clock of its own"));
+  CHECK_THAT(choice(topics, asking({"nothing"})), Catch::Contains("no topic has a channel"));
+}
+
+TEST_CASE("rows of a topic: its stamps, in blocks of any size, with what is no sample taken out") {
+  auto reader = pose_reader();
+  reader->rows[1][0] = std::numeric_limits<double>::quiet_NaN();
+  reader->rows[2][0] = std::numeric_limits<double>::infinity();
+  MemoryReader* const memory = reader.get();
+  ReadOptions options = asking({}, "/pose");
+  options.block_bytes = 48;
+  const Opened log(std::move(reader), options);
+  CHECK(memory->largest == 2);
+  CHECK(log.names() == "x t ");
+  CHECK(log.stamps == std::vector<std::int64_t>{10, 20, 30, 40});
+  CHECK(log.columns[0][0] == 1);
+  CHECK(std::isnan(log.columns[0][1]));
+  CHECK(std::isnan(log.columns[0][2]));
+  CHECK(log.warnings.find("missing_cell")->places[0] == "row 1 of /pose, field x");
+  CHECK(log.warnings.find("infinite_value")->count == 1);
+  CHECK(log.rows->info().time.column == "header.stamp");
+  CHECK(log.rows->info().topic == "/pose");
+  CHECK(log.rows->sha256() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_CASE("a topic without stamps has them in a field, and a field can be asked for") {
+  auto reader = pose_reader();
+  reader->own_stamps = "";
+  const Opened log(std::move(reader), asking({}, "/pose"));
+  CHECK(log.names() == "x ");
+  CHECK(log.stamps == std::vector<std::int64_t>{0, 500000000, 1000000000, 1500000000});
+  CHECK(log.rows->info().time.column == "t");
+  ReadOptions by_name = asking({}, "/pose");
+  by_name.time_column = "t";
+  const Opened named(pose_reader(), by_name);
+  CHECK(named.stamps == log.stamps);
+  ReadOptions none = asking({}, "/pose");
+  none.time_column = "none";
+  const Opened without(pose_reader(), none);
+  CHECK(without.names() == "x t ");
+  CHECK(without.stamps.empty());
+}
+
+TEST_CASE("fields that no sensor measures are left out unless asked for, and that is said") {
+  auto reader = pose_reader();
+  reader->usual = {0};
+  const Opened log(std::move(reader), asking({}, "/pose"));
+  CHECK(log.names() == "x ");
+  CHECK_THAT(log.rows->info().dialect.back(),
+             Catch::Contains("1 field left out") && Catch::Contains("such as t"));
+  reader = pose_reader();
+  reader->usual = {0};
+  CHECK(Opened(std::move(reader), asking({"/pose/t"})).names() == "t ");
+}
