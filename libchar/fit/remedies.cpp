@@ -58,7 +58,7 @@ DespikedRecord without_spikes(std::span<const double> record, std::optional<doub
     keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
   keep(cleaner.finish());
   out.answer = spike_answer(kurtosis, alarm, cleaner.count());
-  if (!out.answer.remedy) out.samples = {};
+  if (!out.answer.remedy) out.samples = std::vector<double>();  // `{}` would keep the memory
   return out;
 }
 

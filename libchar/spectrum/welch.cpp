@@ -19,6 +19,7 @@
 #include "libchar/core/present.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
+#include "libchar/spectrum/detail/halves_in_place.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/detail/welch_workspace.hpp"
 
@@ -27,6 +28,9 @@ namespace libchar {
 using namespace welch_detail;
 
 namespace {
+
+// Samples of a segment from which on its transforms take as much memory as the record, and time that one thread would need alone.
+constexpr std::uint64_t kLongSegment = std::uint64_t{1} << 21U;
 
 struct Run {
   std::uint64_t begin = 0, end = 0;
@@ -174,6 +178,68 @@ std::uint64_t threads_of(const WelchOptions& options) {
   return static_cast<std::uint64_t>(options.threads > 0 ? std::min(options.threads, most) : most);
 }
 
+// How a record is cut into segments, and what is said of it.
+struct Cutting {
+  Layout layout;
+  WelchOptions options;  // with the segment
+  std::vector<std::string> notes;
+
+  Cutting(std::span<const double> record, const WelchOptions& asked) : options(asked) {
+    layout = layout_of(choose_segment(record, asked, notes), asked.overlap);
+    options.segment = layout.segment;
+  }
+};
+
+Spectrum finished(const Average& average,
+                  const std::vector<double>& window,
+                  Cutting&& cutting,
+                  double rate_hz) {
+  Spectrum spectrum = average.spectrum(window, rate_hz);
+  spectrum.notes = std::move(cutting.notes);
+  if (spectrum.dropped > 0)
+    spectrum.notes.push_back(
+        fmt::format("{} of {} segments touch a missing sample and were dropped",
+                    spectrum.dropped,
+                    spectrum.dropped + spectrum.segments));
+  return spectrum;
+}
+
+void add_groups(std::span<const double> record,
+                const Cutting& cutting,
+                const std::vector<double>& window,
+                WelchWorkspace& memory,
+                Average& average) {
+  const Layout& layout = cutting.layout;
+  const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
+  const int threads = static_cast<int>(std::min(groups, threads_of(cutting.options)));
+  if (threads <= 1) {
+    Worker worker(cutting.options, layout, window, memory);
+    for (std::uint64_t g = 0; g < groups; ++g)
+      take(sum_of_group(g, record, layout, worker), average);
+    return;
+  }
+  tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
+      [&] { return std::make_unique<Worker>(cutting.options, layout, window, memory); });
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    std::uint64_t next = 0;
+    tbb::parallel_pipeline(
+        2 * static_cast<std::size_t>(threads),
+        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
+                                              [&](tbb::flow_control& control) -> std::uint64_t {
+                                                if (next == groups) control.stop();
+                                                return next++;
+                                              }) &
+            tbb::make_filter<std::uint64_t, Group>(tbb::filter_mode::parallel,
+                                                   [&](std::uint64_t g) {
+                                                     return sum_of_group(
+                                                         g, record, layout, *workers.local());
+                                                   }) &
+            tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
+                                          [&](Group group) { take(std::move(group), average); }));
+  });
+}
+
 }  // namespace
 
 Spectrum welch(std::span<const double> record,
@@ -182,54 +248,40 @@ Spectrum welch(std::span<const double> record,
                WelchWorkspace* workspace) {
   check_options(options);
   check_rate(rate_hz);
-  std::vector<std::string> notes;
-  const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
-  WelchOptions chosen = options;
-  chosen.segment = layout.segment;
-  const std::vector<double> window = HalfSegments::suits(chosen)
+  Cutting cutting(record, options);
+  const std::vector<double> window = HalfSegments::suits(cutting.options)
                                          ? std::vector<double>()
-                                         : window_values(options.window, layout.segment);
-  const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
-  Average average(options, layout);
+                                         : window_values(options.window, cutting.layout.segment);
+  Average average(options, cutting.layout);
   WelchWorkspace own;
-  WelchWorkspace& memory = workspace != nullptr ? *workspace : own;
-
-  const int threads = static_cast<int>(std::min(groups, threads_of(options)));
-  if (threads <= 1) {
-    Worker worker(options, layout, window, memory);
-    for (std::uint64_t g = 0; g < groups; ++g)
-      take(sum_of_group(g, record, layout, worker), average);
-  } else {
-    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
-        [&] { return std::make_unique<Worker>(options, layout, window, memory); });
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-      std::uint64_t next = 0;
-      tbb::parallel_pipeline(
-          2 * static_cast<std::size_t>(threads),
-          tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
-                                                [&](tbb::flow_control& control) -> std::uint64_t {
-                                                  if (next == groups) control.stop();
-                                                  return next++;
-                                                }) &
-              tbb::make_filter<std::uint64_t, Group>(tbb::filter_mode::parallel,
-                                                     [&](std::uint64_t g) {
-                                                       return sum_of_group(
-                                                           g, record, layout, *workers.local());
-                                                     }) &
-              tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
-                                            [&](Group group) { take(std::move(group), average); }));
-    });
-  }
+  add_groups(record, cutting, window, workspace != nullptr ? *workspace : own, average);
   average.note_samples(record);
-  Spectrum spectrum = average.spectrum(window, rate_hz);
-  spectrum.notes = std::move(notes);
-  if (spectrum.dropped > 0)
-    spectrum.notes.push_back(
-        fmt::format("{} of {} segments touch a missing sample and were dropped",
-                    spectrum.dropped,
-                    spectrum.dropped + spectrum.segments));
-  return spectrum;
+  return finished(average, window, std::move(cutting), rate_hz);
+}
+
+Spectrum welch_using_up(std::vector<double> record,
+                        double rate_hz,
+                        const WelchOptions& options,
+                        WelchWorkspace* workspace) {
+  check_options(options);
+  check_rate(rate_hz);
+  Cutting cutting(record, options);
+  const Layout& layout = cutting.layout;
+  // What stands in the place of the samples is summed in one group, and short segments need little memory.
+  if (layout.segment < kLongSegment || layout.count(record.size()) > layout.group ||
+      !HalfSegments::suits(cutting.options))
+    return welch(record, rate_hz, options, workspace);
+  Average average(options, layout);
+  average.note_samples(record);
+  const int threads = static_cast<int>(threads_of(options));
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    HalvesInPlace halves(layout.hop, threads);
+    for (const char used : halves.add_all(record)) average.note_segment(used != 0);
+    record = std::vector<double>();  // `{}` would keep the memory
+    average.add_group(halves.power());
+  });
+  return finished(average, {}, std::move(cutting), rate_hz);
 }
 
 std::uint64_t segment_samples(double seconds, double rate_hz) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "libchar/spectrum/spectrum.hpp"
 
@@ -47,6 +48,12 @@ Spectrum welch(std::span<const double> record,
                double rate_hz,
                const WelchOptions& options = {},
                WelchWorkspace* workspace = nullptr);
+
+/// The same, in less memory and by all threads where the segments are long: the record is used up.
+Spectrum welch_using_up(std::vector<double> record,
+                        double rate_hz,
+                        const WelchOptions& options = {},
+                        WelchWorkspace* workspace = nullptr);
 
 /// Samples of a segment that lasts `seconds`. Throws Error(usage) when the rate is not known (0), or
 /// the segment would be shorter than 8 samples.

@@ -12,6 +12,7 @@
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/free_memory.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fit/motion.hpp"
@@ -26,6 +27,7 @@ namespace {
 constexpr std::size_t kPlottedBins =
     400;  // enough for a log–log plot, small enough for a page of many channels
 constexpr std::size_t kFewestForMotion = 2048;
+constexpr std::size_t kLongRecord = std::size_t{1} << 23U;  // whose spectrum may use it up
 constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
@@ -42,8 +44,8 @@ WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
 }
 
 void add_spectrum(ChannelResult& result, const Spectrum& spectrum, const Quantization& grid) {
-  result.lines = find_lines(spectrum, 1e-3, grid);
-  result.spectrum = log_binned(spectrum, kPlottedBins);
+  tbb::parallel_invoke([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
+                       [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
 }
 
 // Octaves of the overlapping deviation: what the streaming form gives.
@@ -139,7 +141,6 @@ void ChannelStage::stop_keeping() {
     streams_->blocks.emplace(shared, streams_->bins);
   }
   const std::vector<double> kept = std::move(kept_);
-  kept_ = {};
   samples_ = 0;
   stream(kept);
 }
@@ -318,36 +319,55 @@ void ChannelStage::find_digital(ChannelResult& result, double rate_hz) const {
   for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
 }
 
-// A thread that has no channel of its own left takes the spectrum of another's. Isolated: one that waits for it begins no other channel,
-// whose memory would come on top.
-void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
-  ChannelResult beside;
-  std::size_t before = 0;  // problems that come before those of the spectrum
-  const auto allan_and_fit = [&] {
-    AllanCurve octaves;
-    if (wants_fit())
-      attempt(result, "Allan deviation", [&] {
-        octaves = octaves_of_kept(rate_hz);
-        result.allan = wanted_of_kept(octaves, rate_hz);
-      });
-    before = result.problems.size();
-    fit_kept(octaves, rate_hz, result);
-  };
-  const auto spectrum = [&] {
-    attempt(beside, "spectrum", [&] {
-      add_spectrum(
-          beside, welch(kept_, rate_hz, options_->spectrum, &workspace_->welch), quantization());
+// Curve and fit side by side: both need the record and the octaves.
+void ChannelStage::curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
+  bool there = false;
+  if (wants_fit())
+    attempt(curve, "Allan deviation", [&] {
+      octaves = octaves_of_kept(rate_hz);
+      there = true;
     });
+  tbb::parallel_invoke(
+      [&] {
+        if (there)
+          attempt(
+              curve, "Allan deviation", [&] { curve.allan = wanted_of_kept(octaves, rate_hz); });
+      },
+      [&] { fit_kept(octaves, rate_hz, result); });
+}
+
+// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits for it begins no other channel,
+// whose memory would come on top. The spectrum of a long record comes last and uses it up: as much memory as half a record less.
+void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
+  ChannelResult curve, spectrum;
+  const std::size_t before = result.problems.size();
+  const bool is_long = kept_.size() >= kLongRecord;
+  const auto add = [&](const auto& by_welch) {
+    if (options_->wanted.spectrum)
+      attempt(spectrum, "spectrum", [&] { add_spectrum(spectrum, by_welch(), quantization()); });
   };
-  if (options_->wanted.spectrum)
-    tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(allan_and_fit, spectrum); });
-  else
-    allan_and_fit();
-  result.spectrum = std::move(beside.spectrum);
-  result.lines = std::move(beside.lines);
-  result.problems.insert(result.problems.begin() + static_cast<std::ptrdiff_t>(before),
-                         beside.problems.begin(),
-                         beside.problems.end());
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_invoke(
+        [&] { curve_and_fit(curve, result, rate_hz); },
+        [&] {
+          if (is_long) return;
+          add([&] { return welch(kept_, rate_hz, options_->spectrum, &workspace_->welch); });
+        });
+    if (!is_long) return;
+    give_back_free_memory();
+    add([&] {
+      return welch_using_up(std::move(kept_), rate_hz, options_->spectrum, &workspace_->welch);
+    });
+  });
+  result.allan = std::move(curve.allan);
+  result.spectrum = std::move(spectrum.spectrum);
+  result.lines = std::move(spectrum.lines);
+  auto at = result.problems.begin() + static_cast<std::ptrdiff_t>(before);
+  at = result.problems.insert(at, curve.problems.begin(), curve.problems.end());
+  result.problems.insert(at + static_cast<std::ptrdiff_t>(curve.problems.size()),
+                         spectrum.problems.begin(),
+                         spectrum.problems.end());
 }
 
 void ChannelStage::fit_kept(const AllanCurve& octaves, double rate_hz, ChannelResult& result) {
@@ -454,7 +474,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
     add_fit_intervals(result.allan, *result.fit);
   else
     add_intervals(result.allan, white_alone(result.allan));
-  kept_ = {};
+  drop();
   despiked_ = {};
   series_.reset();
   return result;

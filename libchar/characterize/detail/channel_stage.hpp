@@ -53,7 +53,7 @@ class ChannelStage {
   /// Moves what is kept into the streaming stages and keeps nothing from now on. Only where nothing needs all samples.
   void stop_keeping();
   /// Lets go of what is kept; nothing is computed any more.
-  void drop() { kept_ = {}; }
+  void drop() { kept_ = std::vector<double>(); }  // `{}` would keep the memory
   std::span<const double> kept() const { return kept_; }
   /// Before `finish`: what the temperature does is taken out of the record before its noise is fitted.
   void set_temperature(std::shared_ptr<const TemperatureRecord> temperature) {
@@ -90,6 +90,7 @@ class ChannelStage {
   void doubt_frequency(ChannelResult& result) const;
   bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s);
   void find_digital(ChannelResult& result, double rate_hz) const;
+  void curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz);
   void finish_kept(ChannelResult& result, double rate_hz);
   void fit_kept(const AllanCurve& octaves, double rate_hz, ChannelResult& result);
   void finish_streams(ChannelResult& result, double rate_hz);

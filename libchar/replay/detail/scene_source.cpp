@@ -48,7 +48,7 @@ struct FirstReading final : BlockSink {
   void keep(const SampleBlock& samples) {
     keeps = keeps && (samples.first + samples.rows) * samples.channels.size() <= kMostParsedOnce;
     if (!keeps) {
-      kept = {};
+      kept = decltype(kept)();  // `{}` would keep the memory
       return;
     }
     kept.resize(samples.channels.size());

@@ -27,6 +27,8 @@ struct FreedAligned {
 /// Doubles that begin a line of the cache.
 using AlignedDoubles = std::unique_ptr<double[], FreedAligned>;
 AlignedDoubles aligned_zeros(std::size_t n);
+/// The same, not written yet: who needs much of it lets all threads be the first to write.
+AlignedDoubles aligned_room(std::size_t n);
 
 /// exp(-i pi numerator / denominator)
 Complex turn(double numerator, double denominator);
@@ -47,18 +49,47 @@ struct RowTables {
   }
 };
 
-/// Memory and plans for one pair at a time.
+/// Sums by rows of bins, even ones and then odd ones, in the order of their frequencies; `top` is bin h.
+void natural_order(const RowTables& tables,
+                   const double* sums,
+                   double top,
+                   std::vector<double>& out);
+
+/// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand in the place of the samples they are
+/// made of, every step's columns half in `low` and half in `high`.
+struct RowsBetween {
+  double* low;
+  double* high;       ///< none: whole rows
+  std::size_t pitch;  ///< doubles from row to row
+
+  ColumnPlaces columns(std::size_t column, std::size_t count) const {
+    return high == nullptr ? ColumnPlaces{low + 2 * column, low + 2 * column + count, pitch}
+                           : ColumnPlaces{low + column, high + column, pitch};
+  }
+};
+
+/// Memory and plan of the first step, of `count` columns at a time.
+class ColumnScratch {
+ public:
+  explicit ColumnScratch(const RowTables& tables);
+  /// Of a pair, the columns from `column` on: into rows of even and of odd bins. These may stand where the samples of the columns do.
+  void transform(const HalfPair& pair,
+                 std::size_t column,
+                 const RowsBetween& even,
+                 const RowsBetween& odd);
+
+ private:
+  const RowTables& tables_;
+  ComplexFft columns_;
+  AlignedDoubles values_;
+};
+
+/// Memory and plan of the second step, of a row at a time, and of the rows of bins that follow.
 class RowScratch {
  public:
   explicit RowScratch(const RowTables& tables);
-  /// First step, of even and odd bins.
-  void transform_columns(const HalfPair& pair);
-  /// Second step, of one row: n2 interleaved values in one of two places, valid until the next
-  /// row for that place.
-  const double* row(std::size_t r, bool odd, std::size_t place);
-  const double* untransformed(std::size_t r, bool odd) const {
-    return row_values_[odd ? 1 : 0].get() + r * tables_.pitch;
-  }
+  /// n2 interleaved values of a row in one of two places, valid until the next row for that place.
+  const double* row(const RowsBetween& rows, std::size_t r, std::size_t place);
   /// Row 0 of the even bins moved by one, so that read from its end it is that row's mirror.
   const double* mirror_of(const double* first_row);
   /// Rows of X of two segments, the second one `second()` doubles behind the first.
@@ -70,23 +101,41 @@ class RowScratch {
 
  private:
   std::size_t bin_pitch() const { return 2 * second() + kPadding; }
+  const double* gathered(const RowsBetween& rows, std::size_t r);
 
   const RowTables& tables_;
-  ComplexFft columns_, row_;
-  AlignedDoubles column_values_, row_values_[2], rows_, moved_, bins_;
+  ComplexFft row_;
+  AlignedDoubles rows_, moved_, bins_;
+  AlignedDoubles gathered_;  // a row whose pieces stood apart; when first needed
+};
+
+/// Memory and plans for one pair at a time.
+class PairScratch {
+ public:
+  explicit PairScratch(const RowTables& tables);
+  void transform_columns(const HalfPair& pair);
+  RowsBetween even() const { return {values_[0].get(), nullptr, tables_.pitch}; }
+  RowsBetween odd() const { return {values_[1].get(), nullptr, tables_.pitch}; }
+  RowScratch& rows() { return rows_; }
+
+ private:
+  const RowTables& tables_;
+  ColumnScratch columns_;
+  RowScratch rows_;
+  AlignedDoubles values_[2];
 };
 
 /// What halves of one length share.
 class RowPool {
  public:
   explicit RowPool(std::size_t half) : tables(half) {}
-  std::unique_ptr<RowScratch> borrow();
-  void give_back(std::unique_ptr<RowScratch> scratch);
+  std::unique_ptr<PairScratch> borrow();
+  void give_back(std::unique_ptr<PairScratch> scratch);
   const RowTables tables;
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<RowScratch>> idle_;
+  std::vector<std::unique_ptr<PairScratch>> idle_;
 };
 
 /// One of each length in use.

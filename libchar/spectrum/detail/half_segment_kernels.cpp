@@ -45,14 +45,13 @@ LIBCHAR_WIDE_LANES void gather_columns(const HalfPair& pair,
 LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
                                         const ColumnStep& step,
                                         const ColumnTurns& turns,
-                                        double* to) {
+                                        ColumnPlaces to) {
   const std::size_t width = 2 * step.count, period = 2 * step.n1 * step.n2 / step.count,
                     block = step.column / step.count;
   const std::size_t stride = 2 * block % period;
   std::size_t at = turns.odd ? block % period : 0;
   const double* fine = turns.fine;
-  to += 2 * step.column;
-  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += width, fine += width, to += step.pitch) {
+  for (std::size_t m1 = 0; m1 < step.n1; ++m1, from += width, fine += width) {
     const double cosine = turns.coarse[2 * at], sine = turns.coarse[2 * at + 1];
     for (std::size_t i = 0; i < width; i += 8) {
       const Four fr = LIBCHAR_FOUR(fine + i), fi = LIBCHAR_FOUR(fine + i + 4);
@@ -60,9 +59,12 @@ LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
       const Four u = LIBCHAR_FOUR(from + i), v = LIBCHAR_FOUR(from + i + 4);
       const Four ur = EVEN_PLACES(u, v), ui = ODD_PLACES(u, v);  // columns 0 1 2 3 again
       const Four yr = ur * wr - ui * wi, yi = ur * wi + ui * wr;
-      LIBCHAR_FOUR_TO(to + i) = FIRST_TWO(yr, yi);
-      LIBCHAR_FOUR_TO(to + i + 4) = LAST_TWO(yr, yi);
+      double* const out = i < step.count ? to.low + i : to.high + (i - step.count);
+      LIBCHAR_FOUR_TO(out) = FIRST_TWO(yr, yi);
+      LIBCHAR_FOUR_TO(out + 4) = LAST_TWO(yr, yi);
     }
+    to.low += to.pitch;
+    to.high += to.pitch;
     at += stride;
     if (at >= period) at -= period;
   }

@@ -35,8 +35,8 @@ struct HalfPair {
 };
 
 struct ColumnStep {
-  std::size_t n1, n2, pitch, count, column;  // count: columns at once, a multiple of 4
-  const double* shift;                       // [n1] exp(-i pi t1 / n1), interleaved: half a bin
+  std::size_t n1, n2, count, column;  // count: columns at once, a multiple of 8
+  const double* shift;                // [n1] exp(-i pi t1 / n1), interleaved: half a bin
 };
 
 /// `count` columns of u = a + i b less the means, as they are (for the even bins) and turned by
@@ -50,11 +50,17 @@ struct ColumnTurns {
   bool odd;              // bins
 };
 
+/// Where the columns of a step go: `count` doubles of each row to `low` and as many to `high`.
+struct ColumnPlaces {
+  double *low, *high;
+  std::size_t pitch;  // doubles from row to row
+};
+
 /// Turns the transformed columns and puts them back as columns of the rows to come.
 void scatter_columns(const double* from,
                      const ColumnStep& step,
                      const ColumnTurns& turns,
-                     double* to);
+                     ColumnPlaces to);
 
 /// A row of bins of both halves: from the transform of a + i b, and of the half P before, to X of
 /// the two segments that the pair ends.
