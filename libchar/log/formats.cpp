@@ -11,6 +11,8 @@
 // The log formats, the most specific first. A line both declares the row that NAME's file exports and lists it:
 // Format NAME_format().
 #define LIBCHAR_LOG_FORMATS(FORMAT) \
+  FORMAT(ulog)                      \
+  FORMAT(dataflash)                 \
   FORMAT(npy)                       \
   FORMAT(raw)                       \
   FORMAT(csv)

@@ -18,10 +18,13 @@ namespace {
 
 // As docs/formats.md has it.
 std::string row_of(const LogFormat& format) {
-  return fmt::format("| {} | `{}`{} | {} | {} | {} | {} | yes | {} |\n",
+  std::string files =
+      format.suffixes.empty() ? "" : fmt::format("`{}`", fmt::join(format.suffixes, " "));
+  if (!format.otherwise.empty())
+    files += fmt::format("{}{}", files.empty() ? "" : ", ", format.otherwise);
+  return fmt::format("| {} | {} | {} | {} | {} | {} | yes | {} |\n",
                      format.title,
-                     fmt::join(format.suffixes, " "),
-                     format.otherwise.empty() ? "" : fmt::format(", {}", format.otherwise),
+                     files,
                      format.names,
                      format.units,
                      format.rate,
@@ -64,9 +67,10 @@ TEST_CASE(
 }
 
 TEST_CASE("words and suffixes for options come from the table") {
-  CHECK(format_words() == std::vector<std::string>{"auto", "csv", "npy", "raw"});
-  CHECK(written_format_words() == format_words());
-  CHECK(readable_files() == ".csv, .npy, raw with sidecar");
+  CHECK(format_words() ==
+        std::vector<std::string>{"auto", "csv", "dataflash", "npy", "raw", "ulog"});
+  CHECK(written_format_words() == std::vector<std::string>{"auto", "csv", "npy", "raw"});
+  CHECK(readable_files() == ".csv, DataFlash .bin, .npy, raw with sidecar, .ulg");
   CHECK(written_suffixes() == ".csv, .npy, .f64, .f32, .bin, .raw");
   CHECK(format_to_write("LOG.CSV", {}).name == "csv");
   CHECK_THROWS_WITH(format_to_write("log.tsv", {}), Catch::Contains("end the name in one of .csv"));

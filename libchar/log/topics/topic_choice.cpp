@@ -96,19 +96,30 @@ TopicChoice choice_of(const std::vector<LogTopic>& topics,
   return choice;
 }
 
+// "sensor_gyro 0" and "GYR 1" are streams of one name, which is enough where there is one.
+bool is_instance_of(const std::string& name, const std::string& wanted) {
+  const std::size_t front = wanted.size() + 1;
+  return name.size() > front && name.starts_with(wanted) && name[wanted.size()] == ' ' &&
+         name.find_first_not_of("0123456789", front) == std::string::npos;
+}
+
 std::size_t named_topic(const std::vector<LogTopic>& topics,
                         const std::string& wanted,
                         const std::string& file) {
   std::vector<std::size_t> found;
   for (std::size_t t = 0; t < topics.size(); ++t) {
     if (topics[t].name == wanted) return t;
-    if (is_pattern(wanted) && readable(topics[t]) && matches(wanted, topics[t].name))
-      found.push_back(t);
+    const bool fits = is_pattern(wanted) ? matches(wanted, topics[t].name)
+                                         : is_instance_of(topics[t].name, wanted);
+    if (fits && readable(topics[t])) found.push_back(t);
   }
   if (found.size() == 1) return found[0];
   const std::vector<std::string> names = readable_names(topics);
   if (found.size() > 1)
-    refuse(file, "several topics match this pattern, one is read at a time", wanted, "name one");
+    refuse(file,
+           "several topics match this name, one is read at a time",
+           wanted,
+           fmt::format("`topic` {} chooses one", topics[found.front()].name));
   refuse(file,
          "there is no topic of this name",
          wanted,

@@ -1,0 +1,65 @@
+#pragma once
+// Formats of ULog messages: "name:type field;type[n] field;…", nested in each other, as flat lists of numbers at their bytes.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/log/binary/number_type.hpp"
+
+namespace libchar {
+
+struct UlogField {
+  std::string name;  ///< "x", "delta_angle[2]", "esc[0].rpm"
+  NumberType type = NumberType::u8;
+  std::uint32_t byte = 0;  ///< where it stands in a message of data, behind the message's id
+};
+
+struct UlogLayout {
+  std::vector<UlogField> fields;  ///< the numbers, without padding and text
+  std::uint32_t bytes = 0;        ///< of a whole message
+  std::uint32_t least_bytes = 0;  ///< without the padding at its end, which writers leave out
+  std::string why_not;            ///< why the format cannot be used; "" when it can
+};
+
+class UlogFormats {
+ public:
+  /// Takes the text of one definition. One that contradicts an earlier one of its name makes that name unusable.
+  void add(std::string_view text);
+
+  /// The fields of a message of this format, at most `most_fields` of them.
+  UlogLayout layout(const std::string& name, std::size_t most_fields) const;
+
+  /// Was a name defined twice, and not alike?
+  bool contradicted() const { return contradicted_; }
+
+ private:
+  struct Member {
+    std::string type, name;
+    std::uint32_t count = 1;
+    bool array = false;
+  };
+  struct Definition {
+    std::string text;
+    std::vector<Member> members;
+    std::string why_not;
+  };
+  struct Flattening;
+
+  static bool parse_member(std::string_view text, Member& member);
+  std::string flatten(const std::string& format,
+                      const std::string& prefix,
+                      int depth,
+                      Flattening& out) const;
+  std::string flatten_member(const Member& member,
+                             const std::string& prefix,
+                             int depth,
+                             Flattening& out) const;
+
+  std::map<std::string, Definition, std::less<>> definitions_;
+  bool contradicted_ = false;
+};
+
+}  // namespace libchar
