@@ -140,7 +140,19 @@ TEST_CASE("the topic is the one that is named, by itself or in front of a channe
   CHECK(choice(topics, asking({"c1"}, "/imu1")) == "/imu1: c1");
 }
 
-TEST_CASE("the only topic with numbers, or the only sensor's, is taken; several are not") {
+TEST_CASE("the number of an instance may be left out where there is one") {
+  std::vector<LogTopic> topics = flight();
+  topics[0].name = "gyro 0";
+  topics[1].name = "accel 0";
+  topics[3].name = "accel 1";
+  topics[4].name = "accel x";
+  CHECK(choice(topics, asking({}, "gyro")) == "gyro 0:");
+  CHECK(choice(topics, asking({}, "accel 1")) == "accel 1:");
+  CHECK_THAT(choice(topics, asking({}, "accel")), Catch::Contains("several topics match"));
+  CHECK_THAT(choice(topics, asking({}, "gyr")), Catch::Contains("no topic of this name"));
+}
+
+TEST_CASE("the only topic with numbers, or the only sensor's, is taken, of several none") {
   auto topics = flight();
   CHECK(choice(topics, {}) == "none");
   CHECK(choice({topics[2], topics[3]}, {}) == "/pose:");
