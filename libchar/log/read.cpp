@@ -170,6 +170,7 @@ LogInfo log_listing(const std::string& path, const ReadOptions& options) {
   const auto reader = format.topics(path, options);
   info.topics = reader->topics();
   info.dialect = reader->dialect();
+  if (!info.topics.empty()) reader->finish(info.warnings);
   std::error_code none;
   const auto bytes = std::filesystem::file_size(path, none);
   info.bytes = none ? 0 : bytes;

@@ -89,6 +89,13 @@ def seeds(program):
         data = path.with_suffix("")
         for piece in cut(data.read_bytes() if data.exists() else b"", generator):
             yield "raw", b"\1" + path.read_bytes()[:LARGEST // 2] + b"\0" + piece[:LARGEST // 2]
+    for target, suffix in (("ulog", ".ulg"), ("dataflash", ".bin")):
+        for path in files(ROOT / "fixtures" / "flight", suffix):
+            data = path.read_bytes()
+            for piece in cut(data, generator):
+                yield target, bytes([generator.randrange(256)]) + piece
+            # Definitions are long: the end of a log behind its beginning, as if what lies between had been lost.
+            yield target, b"\3" + data[:LARGEST // 2] + data[-LARGEST // 2:]
     documents = files(ROOT / "fixtures", ".yaml") + files(KNOWN / "json", ".json") + files(KNOWN, ".yaml")
     for path in documents:
         first = b"\1" if path.suffix == ".json" else b"\0"

@@ -293,11 +293,26 @@ TEST_CASE("ULog: a topic whose definition cannot be used says why") {
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;"), "a").empty());
 }
 
+TEST_CASE("ULog: topics without a message are not listed, losses are said with the list") {
+  const std::string log = ulog_start() + ulog_message('F', "a:uint64_t timestamp;uint8_t x;") +
+                          ulog_message('A', std::string("\0\1\0", 3) + "a") +
+                          ulog_message('A', std::string("\1\2\0", 3) + "a") +
+                          ulog_message('D', std::string("\2\0", 2) + std::string(9, 'a')) +
+                          ulog_message('O', std::string("\5\0", 2)) + std::string(2, 'x');
+  const test::MemoryLog file(log);
+  const LogInfo listed = log_listing(file.path(), {});
+  REQUIRE(listed.topics.size() == 1);
+  CHECK(listed.topics[0].name == "a 1");
+  CHECK(count_of(listed, "dropout") == 1);
+  CHECK(count_of(listed, "cut_message") == 1);
+}
+
 TEST_CASE("ULog: one number for two topics makes neither readable") {
   const std::string log = ulog_start() + ulog_message('F', "a:uint64_t timestamp;uint8_t x;") +
                           ulog_message('A', std::string("\0\1\0", 3) + "a") +
                           ulog_message('D', std::string("\1\0", 2) + std::string(9, 'a')) +
-                          ulog_message('A', std::string("\1\1\0", 3) + "a");
+                          ulog_message('A', std::string("\1\1\0", 3) + "a") +
+                          ulog_message('D', std::string("\1\0", 2) + std::string(9, 'a'));
   const test::MemoryLog file(log);
   for (const LogTopic& topic : log_listing(file.path(), {}).topics)
     CHECK(topic.why_not == "its number 1 is that of another topic too");

@@ -94,7 +94,9 @@ class Lister {
     if (!info.value.empty()) listing_->info.emplace(std::move(info.key), std::move(info.value));
   }
 
+  /// Of topics that have messages: vehicles announce many that never come.
   void describe_topics() {
+    drop_empty_topics();
     for (std::size_t topic = 0; topic < listing_->topics.size(); ++topic) describe_topic(topic);
   }
 
@@ -102,6 +104,7 @@ class Lister {
   void subscribe(Data body);
   void note_data(const UlogMessage& message);
   void note_dropout(const UlogMessage& message);
+  void drop_empty_topics();
   void describe_topic(std::size_t topic);
 
   UlogListing* listing_;
@@ -189,6 +192,22 @@ void Lister::note_dropout(const UlogMessage& message) {
         fmt::format("{} ms at {:.3f} s", ms, static_cast<double>(last_stamp_) * 1e-6));
 }
 
+void Lister::drop_empty_topics() {
+  std::vector<LogTopic> topics;
+  std::vector<UlogTopic> contents;
+  std::vector<std::optional<std::size_t>> kept(listing_->topics.size());
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    if (listing_->contents[t].messages == 0) continue;
+    kept[t] = topics.size();
+    topics.push_back(std::move(listing_->topics[t]));
+    contents.push_back(std::move(listing_->contents[t]));
+  }
+  listing_->topics = std::move(topics);
+  listing_->contents = std::move(contents);
+  for (std::optional<std::size_t>& topic : listing_->topic_of_id)
+    if (topic) topic = kept[*topic];
+}
+
 void Lister::describe_topic(std::size_t topic) {
   const UlogTopic& content = listing_->contents[topic];
   LogTopic& about = listing_->topics[topic];
@@ -199,7 +218,6 @@ void Lister::describe_topic(std::size_t topic) {
   if (about.why_not.empty() && formats_.contradicted())
     about.why_not = formats_.layout(content.message, kMostFieldsInAll).why_not;
   if (!about.why_not.empty()) return;
-  if (content.messages == 0) about.why_not = "the log has no message of it";
   about.fields = fields_of(content);
   const UlogStamps& stamps = ulog_stamps(content, by_publication_);
   if (stamps.last > stamps.first)

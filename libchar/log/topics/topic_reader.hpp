@@ -61,7 +61,7 @@ class TopicReader {
   /// What is lost of the file (a cut end, a broken chunk, a dropout) is counted in `warnings`, never an end without a word.
   virtual bool next(RowBlock& block, std::size_t most, Warnings& warnings) = 0;
 
-  /// Warnings that need totals.
+  /// Warnings that need totals, and what was found lost while topics were listed: asked for after a listing too, without a `select`.
   virtual void finish(Warnings& warnings) { static_cast<void>(warnings); }
 
   /// Bytes of the file consumed so far, for progress.
