@@ -61,8 +61,7 @@ inline void read_any_topics(const char* format_name, const std::string& path, st
     const auto topics = format.topics(path, options)->topics();
     for (std::size_t t = 0; t < topics.size() && t < 16; ++t) {
       if (!topics[t].why_not.empty() || topics[t].fields.empty()) continue;
-      if (!(read_topic(format, path, t, 100000) == read_topic(format, path, t, most)))
-        std::abort();
+      if (!(read_topic(format, path, t, 100000) == read_topic(format, path, t, most))) std::abort();
     }
   } catch (const libchar::Error&) {
   }
