@@ -14,6 +14,9 @@
   FORMAT(ulog)                      \
   FORMAT(dataflash)                 \
   FORMAT(npy)                       \
+  FORMAT(mcap)                      \
+  FORMAT(bag)                       \
+  FORMAT(db3)                       \
   FORMAT(raw)                       \
   FORMAT(csv)
 

@@ -3,9 +3,11 @@
 
 A folder a target in FOLDER, with the bytes before a file that its target takes for choices. Real files come whole and cut, tables in every
 dialect, stamps at the ends of 64 bits. With PROGRAM (sensorchar) there are reports and a fusion.yaml of its own making, shortened."""
+import bz2
 import json
 import pathlib
 import random
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -48,6 +50,66 @@ def stamps():
             yield (f"t[{unit}],a\n" + "".join(f"{stamp},{i}\n" for i, stamp in enumerate(chosen))).encode()
     for step in (1, 2**61, 2**62):
         yield ("t[ns],a\n" + "".join(f"{-2**63 + i * step},{i}\n" for i in range(4))).encode()
+
+
+def ros_files():
+    """(target, bytes) of small logs of ROS messages: every way to pack a chunk, with and without an index."""
+    text = lambda t: struct.pack("<I", len(t)) + t
+    record = lambda op, content: bytes([op]) + struct.pack("<Q", len(content)) + content
+    definition = b"float64 x\nint16[2] n\nstring s\nC[] cs\n" + b"=" * 80 + b"\nMSG: a/C\nfloat32 y\n"
+    body = struct.pack("<d2h", 1.5, 2, -3)
+    cdr = b"\0\1\0\0" + body + struct.pack("<I", 3) + b"ab\0\0" + struct.pack("<If", 1, 0.5)
+    ros1 = body + text(b"ab") + struct.pack("<If", 1, 0.5)
+    for encoding, data, schema in ((b"cdr", cdr, b"ros2msg"), (b"ros1", ros1, b"ros1msg"), (b"json", b'{"x": 1.5, "a": [1, 2], "stamp": {"sec": 3, "nsec": 4}}', b"jsonschema")):
+        front = (record(3, struct.pack("<H", 1) + text(b"a/B") + text(schema) + text(definition)) +
+                 record(4, struct.pack("<HH", 0, 1) + text(b"/t") + text(encoding) + struct.pack("<I", 0)))
+        messages = b"".join(record(5, struct.pack("<HIQQ", 0, i, 10**18 + i * 10**7, 0) + data) for i in range(4))
+        begin = b"\x89MCAP0\r\n" + record(1, text(b"ros2") + text(b""))
+        chunks = [("", front + messages)]
+        for program in ("lz4", "zstd"):
+            try:
+                chunks.append((program, subprocess.run([program, "-c", "-q"], input=front + messages, capture_output=True, check=True).stdout))
+            except (OSError, subprocess.CalledProcessError):
+                pass  # not installed: one seed less
+        for packed, content in [(None, front + messages)] + chunks:
+            if packed is not None:
+                content = record(6, struct.pack("<QQQI", 0, 0, len(front + messages), 0) + text(packed.encode()) + struct.pack("<Q", len(content)) + content)
+            content = begin + content
+            place = struct.pack("<QQQQI", 0, 10, len(begin), 0, 0) + text(b"") + struct.pack("<QQ", 0, 0)
+            statistics = struct.pack("<QHIIIIQQI", 4, 1, 1, 0, 0, 1, 10**18, 10**18 + 3 * 10**7, 10) + struct.pack("<HQ", 0, 4)
+            end = record(15, bytes(4))
+            summary = front + (record(8, place) if packed is not None else b"") + record(11, statistics)
+            yield "mcap", content
+            yield "mcap", content + end + summary + record(2, struct.pack("<QQI", len(content) + len(end), 0, 0)) + b"\x89MCAP0\r\n"
+    fields = lambda *pairs: text(b"".join(text(name + b"=" + value) for name, value in pairs))
+    connection = (fields((b"op", b"\7"), (b"conn", bytes(4)), (b"topic", b"/t")) +
+                  fields((b"type", b"a/B"), (b"md5sum", b"*"), (b"message_definition", definition)))
+    messages = b"".join(fields((b"op", b"\2"), (b"conn", bytes(4)), (b"time", struct.pack("<II", 10**9, i * 10**7))) + text(ros1) for i in range(4))
+    for compression, content in ((b"none", connection + messages), (b"bz2", bz2.compress(connection + messages))):
+        chunk = fields((b"op", b"\5"), (b"compression", compression), (b"size", struct.pack("<I", len(connection + messages)))) + text(content)
+        header = lambda at: fields((b"op", b"\3"), (b"index_pos", struct.pack("<Q", at)), (b"conn_count", struct.pack("<I", 1)),
+                                   (b"chunk_count", struct.pack("<I", 1))) + text(b" " * 8)
+        begin = b"#ROSBAG V2.0\n" + header(0)
+        info = fields((b"op", b"\6"), (b"ver", struct.pack("<I", 1)), (b"chunk_pos", struct.pack("<Q", len(begin))), (b"start_time", bytes(8)),
+                      (b"end_time", bytes(8)), (b"count", struct.pack("<I", 1))) + text(struct.pack("<II", 0, 4))
+        yield "bag", begin + chunk
+        yield "bag", b"#ROSBAG V2.0\n" + header(len(begin + chunk)) + chunk + connection + info
+    with tempfile.TemporaryDirectory() as folder:
+        for version in (3, 4):
+            path = pathlib.Path(folder) / f"{version}.db3"
+            base = sqlite3.connect(path)
+            base.execute("PRAGMA page_size=512")
+            base.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT)")
+            base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)")
+            base.execute("INSERT INTO topics VALUES (1, '/t', ?, 'cdr')", ("std_msgs/msg/Float64" if version == 3 else "a/msg/B",))
+            if version == 4:
+                base.execute("CREATE TABLE message_definitions(topic_type TEXT, encoding TEXT, encoded_message_definition TEXT)")
+                base.execute("INSERT INTO message_definitions VALUES ('a/msg/B', 'ros2msg', ?)", (definition.decode(),))
+            base.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES (1, ?, ?)",
+                             [(10**18 + i * 10**7, b"\0\1\0\0" + struct.pack("<d", i) if version == 3 else cdr) for i in range(4)])
+            base.commit()
+            base.close()
+            yield "db3", path.read_bytes()
 
 
 def shortened(value):
@@ -117,6 +179,11 @@ def seeds(program):
         yield "stream", bytes([choice, generator.randrange(256), generator.randrange(256)]) + generator.randbytes(600)
     for stamp in EXTREMES:
         yield "stamps", b"\7\x80" + struct.pack("<Q", stamp % 2**64) + bytes(range(40)) + b"\xff" + struct.pack("<Q", 2**62) + bytes(20)
+    for target, data in ros_files():
+        for piece in cut(data, generator):
+            yield target, bytes([generator.randrange(256)]) + piece
+    for path in files(ROOT / "fixtures" / "ros", ".mcap", ".bag"):
+        yield path.suffix[1:], b"\3" + path.read_bytes()[:LARGEST]
     if program:
         for target, first, text in made_by(program):
             for piece in cut(text.encode(), generator):

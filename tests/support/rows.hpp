@@ -25,7 +25,7 @@ inline Rows read_rows(const std::string& format,
   const libchar::Format* const row = libchar::find_format(format);
   if (row == nullptr) throw std::runtime_error("no such format");
   Rows all;
-  const auto source = row->open(path.string(), options);
+  const auto source = libchar::open_rows(*row, path.string(), options);
   libchar::RowBlock block;
   while (source->next(block, all.warnings)) {
     ++all.blocks;
@@ -34,6 +34,7 @@ inline Rows read_rows(const std::string& format,
       all.columns[c].insert(all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
     all.time_ns.insert(all.time_ns.end(), block.time_ns.begin(), block.time_ns.end());
   }
+  source->finish(all.warnings);
   all.info = source->info();
   all.sha256 = source->sha256();
   return all;

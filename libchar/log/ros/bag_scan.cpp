@@ -1,0 +1,304 @@
+#include "libchar/log/ros/bag_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/ros/byte_reader.hpp"
+#include "libchar/log/ros/decompress.hpp"
+
+namespace libchar {
+namespace {
+
+enum class BagOp { none = 0, message = 2, header = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
+
+constexpr std::uint32_t kLongestHeader = 1U << 20U;  // of a record; the largest is a topic's name
+constexpr const char* kBrokenBagChunk = "chunks that are broken (cannot be unpacked, or no records) were left out";
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// The value of a field of a header; "" when it has none of this name.
+std::string_view field(std::string_view header, std::string_view name) {
+  while (header.size() >= 4) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, header.data(), sizeof length);
+    header.remove_prefix(4);
+    if (length > header.size()) return "";
+    const std::string_view one = header.substr(0, length);
+    if (one.size() > name.size() && one.starts_with(name) && one[name.size()] == '=')
+      return one.substr(name.size() + 1);
+    header.remove_prefix(length);
+  }
+  return "";
+}
+
+template <typename T>
+std::optional<T> number(std::string_view value) {
+  T result{};
+  if (value.size() != sizeof result) return std::nullopt;
+  std::memcpy(&result, value.data(), sizeof result);
+  return result;
+}
+
+template <typename T>
+std::optional<T> number_field(std::string_view header, std::string_view name) {
+  return number<T>(field(header, name));
+}
+
+BagOp op_of(std::string_view header) {
+  return static_cast<BagOp>(number_field<std::uint8_t>(header, "op").value_or(0));
+}
+
+// u32 seconds, u32 nanoseconds.
+std::int64_t time_of_field(std::string_view value) {
+  const auto both = number<std::uint64_t>(value).value_or(0);
+  return static_cast<std::int64_t>(both & 0xffffffffU) * 1000000000 +
+         static_cast<std::int64_t>(both >> 32U);
+}
+
+std::optional<StreamId> connection_of(std::string_view header) {
+  const auto id = number_field<std::uint32_t>(header, "conn");
+  if (!id || *id > 0xffff) return std::nullopt;
+  return static_cast<StreamId>(*id);
+}
+
+void add_connection(std::string_view header, std::string_view data, BagCatalog& catalog) {
+  const auto id = connection_of(header);
+  if (!id) return;
+  BagConnection connection;
+  connection.topic = field(header, "topic");
+  connection.type = field(data, "type");
+  connection.definition = field(data, "message_definition");
+  catalog.connections.try_emplace(*id, std::move(connection));
+}
+
+// Where a record of a file stands; nothing when it is not whole.
+struct FileRecord {
+  std::uint64_t header_at = 0, data_at = 0, end = 0;
+  std::uint32_t header = 0, data = 0;
+  bool whole = false;  // its data too
+};
+
+std::optional<FileRecord> find_record(FileWindow& file, std::uint64_t at, std::uint64_t end) {
+  FileRecord record;
+  if (at > end || end - at < 4) return std::nullopt;
+  record.header = ByteReader(file.view(at, 4)).number<std::uint32_t>();
+  record.header_at = at + 4;
+  if (record.header > kLongestHeader || end - record.header_at < std::uint64_t{record.header} + 4)
+    return std::nullopt;
+  const std::uint64_t size_at = record.header_at + record.header;
+  record.data = ByteReader(file.view(size_at, 4)).number<std::uint32_t>();
+  record.data_at = size_at + 4;
+  record.whole = end - record.data_at >= record.data;
+  record.end = record.data_at + record.data;
+  return record;
+}
+
+std::string header_of(FileWindow& file, const FileRecord& record) {
+  return std::string(text_of(file.view(record.header_at, record.header)));
+}
+
+// Times and counts of a chunk: {u32 connection, u32 count} repeated.
+void add_chunk_info(std::string_view header, std::span<const std::byte> data, BagIndex& index) {
+  const auto at = number_field<std::uint64_t>(header, "chunk_pos");
+  if (!at) return;
+  const std::int64_t first = time_of_field(field(header, "start_time")),
+                     last = time_of_field(field(header, "end_time"));
+  ChunkPlace place;
+  place.at = *at;
+  ByteReader in(data);
+  while (in.left() >= 8) {
+    const auto id = in.number<std::uint32_t>();
+    const auto rows = in.number<std::uint32_t>();
+    if (id > 0xffff) continue;
+    place.streams.push_back(static_cast<StreamId>(id));
+    StreamCount& count = index.counts[static_cast<StreamId>(id)];
+    count.first_ns = count.rows == 0 ? first : std::min(count.first_ns, first);
+    count.last_ns = count.rows == 0 ? last : std::max(count.last_ns, last);
+    count.rows += rows;
+  }
+  index.chunks.push_back(std::move(place));
+}
+
+}  // namespace
+
+void check_bag(FileWindow& file) {
+  const auto head =
+      text_of(file.view(0, static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 13))));
+  const auto fail = [&](std::string what, const std::string& got, std::string hint) {
+    throw Error(
+        {ErrorKind::input, "E0444", file.path() + " (byte 0)", std::move(what), got, std::move(hint)});
+  };
+  if (!head.starts_with(kBagMagic))
+    fail("does not begin like a bag", std::string(head), "`format` auto finds out what it is");
+  if (head != "#ROSBAG V2.0\n")
+    fail("is a bag of another version than 2.0",
+         std::string(head),
+         "rosbag fix writes it again as 2.0");
+  const auto record = find_record(file, kFirstBagRecord, file.size());
+  if (!record) return;
+  const std::string header = header_of(file, *record);
+  const std::string_view encryptor = field(header, "encryptor");
+  if (!encryptor.empty() && encryptor != "rosbag/NoEncryptor")
+    fail("is encrypted", std::string(encryptor), "rosbag decrypt writes it again in the clear");
+}
+
+std::optional<BagIndex> read_bag_index(FileWindow& file) {
+  const auto first = find_record(file, kFirstBagRecord, file.size());
+  if (!first || !first->whole) return std::nullopt;
+  const std::string header = header_of(file, *first);
+  const std::uint64_t at = number_field<std::uint64_t>(header, "index_pos").value_or(0);
+  if (op_of(header) != BagOp::header || at < first->end || at > file.size()) return std::nullopt;
+  BagIndex index;
+  index.at = at;
+  for (std::uint64_t here = at; here < file.size();) {
+    const auto record = find_record(file, here, file.size());
+    if (!record || !record->whole || record->data > kLargestChunk) return std::nullopt;
+    const std::string fields = header_of(file, *record);
+    const auto data = file.view(record->data_at, record->data);
+    if (op_of(fields) == BagOp::connection) add_connection(fields, text_of(data), index.catalog);
+    if (op_of(fields) == BagOp::chunk_info) add_chunk_info(fields, data, index);
+    here = record->end;
+  }
+  if (index.chunks.size() != number_field<std::uint32_t>(header, "chunk_count").value_or(0) ||
+      index.catalog.connections.size() !=
+          number_field<std::uint32_t>(header, "conn_count").value_or(0))
+    return std::nullopt;
+  return index;
+}
+
+void BagScan::begin_at(std::uint64_t at) {
+  at_ = at;
+  chunk_ = {};
+  single_ = ended_ = false;
+}
+
+void BagScan::only(std::vector<bool> streams, std::vector<std::uint64_t> skip) {
+  streams_ = std::move(streams);
+  skip_ = std::move(skip);
+}
+
+bool BagScan::next(RawMessage& message, StreamId& connection, Warnings& warnings) {
+  for (;;) {
+    while (!chunk_.empty())
+      if (chunk_record(message, connection, warnings)) return true;
+    if (ended_) return false;
+    const Step step = file_record(message, connection, warnings);
+    if (step == Step::message) return true;
+    if (step == Step::end) ended_ = true;
+  }
+}
+
+BagScan::Step BagScan::cut(Warnings& warnings) {
+  const std::uint64_t bytes = file_.left(at_);
+  warnings.add("cut_end",
+               fmt::format("the bag has no index at its end (a recording that was not closed, or a "
+                           "copy that was cut): what is whole was read{}",
+                           bytes > 0 ? fmt::format(" ({} bytes at the end are no whole record)", bytes)
+                                     : ""),
+               fmt::format("byte {}", at_));
+  return Step::end;
+}
+
+BagScan::Step BagScan::file_record(RawMessage& message, StreamId& connection, Warnings& warnings) {
+  if (at_ >= end_) return closed_ ? Step::end : cut(warnings);
+  const auto record = find_record(file_, at_, end_);
+  if (!record) return cut(warnings);
+  const std::string header = header_of(file_, *record);
+  const BagOp op = op_of(header);
+  if (op == BagOp::chunk)
+    enter_chunk(header,
+                record->data_at,
+                std::min<std::uint64_t>(record->data, end_ - record->data_at),
+                at_,
+                warnings);
+  if (!record->whole) return cut(warnings);
+  at_ = record->end;
+  if (op == BagOp::chunk) return single_ ? Step::end : Step::other;
+  if (record->data > kLargestChunk) return Step::other;
+  if (op == BagOp::connection)
+    add_connection(header, text_of(file_.view(record->data_at, record->data)), catalog_);
+  if (op != BagOp::message) return Step::other;
+  message.at = record->header_at - 4;
+  return take_message(header, file_.view(record->data_at, record->data), message, connection)
+             ? Step::message
+             : Step::other;
+}
+
+bool BagScan::take_message(std::string_view header,
+                           std::span<const std::byte> data,
+                           RawMessage& message,
+                           StreamId& connection) const {
+  const auto id = connection_of(header);
+  if (!id || (!streams_.empty() && !streams_[*id])) return false;
+  connection = *id;
+  message.data = data;
+  message.log_ns = message.publish_ns = time_of_field(field(header, "time"));
+  return true;
+}
+
+// One record of the chunk in memory: is it a message that is wanted?
+bool BagScan::chunk_record(RawMessage& message, StreamId& connection, Warnings& warnings) {
+  ByteReader in(chunk_);
+  const auto header = text_of(in.take(in.number<std::uint32_t>()));
+  const auto data = in.take(in.number<std::uint32_t>());
+  if (!in.good()) {
+    if (!chunk_cut_)
+      warnings.add("broken_chunk", kBrokenBagChunk, fmt::format("byte {}", chunk_at_));
+    chunk_ = {};
+    return false;
+  }
+  chunk_ = chunk_.subspan(in.at());
+  const BagOp op = op_of(header);
+  if (op == BagOp::connection) add_connection(header, text_of(data), catalog_);
+  message.at = chunk_at_;
+  return op == BagOp::message && take_message(header, data, message, connection);
+}
+
+void BagScan::enter_chunk(std::string_view header,
+                          std::uint64_t data_at,
+                          std::uint64_t length,
+                          std::uint64_t here,
+                          Warnings& warnings) {
+  chunk_at_ = here;
+  if (std::binary_search(skip_.begin(), skip_.end(), here)) return;
+  const std::string method = printable(field(header, "compression"), 40);
+  const std::uint64_t size = number_field<std::uint32_t>(header, "size").value_or(0);
+  if (packed_with_.find(method) == std::string::npos)
+    packed_with_ += (packed_with_.empty() ? "" : ", ") + method;
+  const std::string place = fmt::format("{} (byte {})", file_.path(), here);
+  if (std::max(size, length) > kLargestChunk)
+    throw Error({ErrorKind::input,
+                 "E0443",
+                 place,
+                 fmt::format("a chunk of {} bytes, more than the limit of {}",
+                             std::max(size, length),
+                             kLargestChunk),
+                 "",
+                 "write it again with smaller chunks (rosbag filter IN OUT True)"});
+  if (const std::string why = why_not_packed(method); !why.empty())
+    throw Error({ErrorKind::input,
+                 "E0442",
+                 place,
+                 why,
+                 "",
+                 "write it again without (rosbag decompress)"});
+  const auto packed = file_.view(data_at, static_cast<std::size_t>(length));
+  chunk_ = packed;
+  chunk_cut_ = data_at + length >= file_.size() && !closed_;
+  if (method != "none" && !method.empty()) {
+    const std::string problem = unpack(method, packed, size, unpacked_);
+    chunk_ = unpacked_;
+    if (!problem.empty() && !chunk_cut_) {
+      warnings.add("broken_chunk", kBrokenBagChunk, fmt::format("byte {}: {}", here, problem));
+      chunk_ = {};
+    }
+  }
+}
+
+}  // namespace libchar

@@ -1,0 +1,334 @@
+#include "libchar/log/ros/mcap_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/ros/byte_reader.hpp"
+#include "libchar/log/ros/decompress.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kFirstRecord = 8;  // behind the magic
+constexpr const char* kCutEnd =
+    "the file ends before its end mark (a recording that was not closed, or a copy that was cut): "
+    "what is whole was read";
+constexpr const char* kBrokenChunk =
+    "chunks that are broken (cannot be unpacked, or not what their checksum says) were left out";
+
+struct RecordFront {
+  McapOp op{};
+  std::uint64_t length = 0;
+};
+
+RecordFront read_front(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  RecordFront front;
+  front.op = static_cast<McapOp>(in.number<std::uint8_t>());
+  front.length = in.number<std::uint64_t>();
+  return front;
+}
+
+void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Warnings& warnings) {
+  auto read = read_mcap_schema(content);
+  if (!read) return;
+  const auto [at, added] = catalog.schemas.try_emplace(read->first, std::move(read->second));
+  if (added) return;
+  const McapSchema& known = at->second;
+  if (known.name != read->second.name || known.text != read->second.text)
+    warnings.add("definition_changed",
+                 "a schema or channel stands twice and differs: the first is used",
+                 printable(known.name));
+}
+
+void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Warnings& warnings) {
+  auto read = read_mcap_channel(content);
+  if (!read) return;
+  const std::uint16_t id = read->first;
+  const auto [at, added] = catalog.channels.try_emplace(id, std::move(read->second));
+  if (added) return catalog.order.push_back(id);
+  if (at->second.topic != read->second.topic || at->second.schema != read->second.schema)
+    warnings.add("definition_changed",
+                 "a schema or channel stands twice and differs: the first is used",
+                 printable(at->second.topic));
+}
+
+// The summary's records; nothing when one of them is broken.
+std::optional<McapSummary> summary_records(FileWindow& file,
+                                           std::uint64_t at,
+                                           std::uint64_t end,
+                                           Warnings& warnings) {
+  McapSummary summary;
+  bool counted = false;
+  while (at < end) {
+    if (end - at < kMcapFront) return std::nullopt;
+    const RecordFront front = read_front(file.view(at, kMcapFront));
+    at += kMcapFront;
+    if (front.length > end - at) return std::nullopt;
+    const bool looked_at = front.op == McapOp::schema || front.op == McapOp::channel ||
+                           front.op == McapOp::chunk_index || front.op == McapOp::statistics;
+    if (looked_at && front.length <= kLargestChunk) {
+      const auto content = file.view(at, static_cast<std::size_t>(front.length));
+      if (front.op == McapOp::schema) add_schema(content, summary.catalog, warnings);
+      if (front.op == McapOp::channel) add_channel(content, summary.catalog, warnings);
+      if (front.op == McapOp::chunk_index)
+        if (auto index = read_mcap_chunk_index(content)) summary.chunks.push_back(std::move(*index));
+      if (front.op == McapOp::statistics)
+        if (auto statistics = read_mcap_statistics(content)) {
+          summary.statistics = std::move(*statistics);
+          counted = true;
+        }
+    }
+    at += front.length;
+  }
+  if (!counted || summary.catalog.channels.empty()) return std::nullopt;
+  // Counts of channels that it does not describe say that channels are not repeated here.
+  for (const auto& [id, count] : summary.statistics.messages)
+    if (count > 0 && !summary.catalog.channels.contains(id)) return std::nullopt;
+  return summary;
+}
+
+}  // namespace
+
+void check_mcap_magic(FileWindow& file) {
+  const std::size_t size = std::min<std::uint64_t>(file.size(), kMcapMagic.size());
+  const auto bytes = file.view(0, size);
+  const std::string_view found(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (found == kMcapMagic) return;
+  throw Error({ErrorKind::input,
+               "E0441",
+               file.path() + " (byte 0)",
+               "does not begin like an MCAP file",
+               std::string(found),
+               "`format` auto finds out what it is"});
+}
+
+std::optional<McapSummary> read_mcap_summary(FileWindow& file, Warnings& warnings) {
+  constexpr std::uint64_t kEnd = kMcapFront + kMcapFooter + 8;
+  if (file.size() < kFirstRecord + kEnd) return std::nullopt;
+  const std::uint64_t footer_at = file.size() - kEnd;
+  const auto bytes = file.view(footer_at, kEnd);
+  const auto tail = bytes.subspan(kMcapFront + kMcapFooter);
+  const RecordFront front = read_front(bytes);
+  if (std::string_view(reinterpret_cast<const char*>(tail.data()), tail.size()) != kMcapMagic ||
+      front.op != McapOp::footer || front.length != kMcapFooter)
+    return std::nullopt;
+  const auto footer = read_mcap_footer(bytes.subspan(kMcapFront, kMcapFooter));
+  if (!footer || footer->summary_at < kFirstRecord || footer->summary_at > footer_at)
+    return std::nullopt;
+  std::uint32_t crc = 0;
+  const std::uint64_t crc_end = footer_at + kMcapFront + kMcapFooter - sizeof crc;
+  for (std::uint64_t at = footer->summary_at; footer->crc != 0 && at < crc_end;) {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(crc_end - at, 1U << 20U));
+    crc = crc32_of(file.view(at, count), crc);
+    at += count;
+  }
+  auto summary =
+      crc == footer->crc || footer->crc == 0
+          ? summary_records(file, footer->summary_at, footer_at, warnings)
+          : std::nullopt;
+  if (crc != footer->crc && footer->crc != 0)
+    warnings.add("broken_index",
+                 "the summary is not what its checksum says: the file was read whole instead",
+                 fmt::format("byte {}", footer->summary_at));
+  return summary;
+}
+
+void McapScan::begin_at(std::uint64_t at) {
+  at_ = at;
+  chunk_ = {};
+  single_ = ended_ = false;
+  crc_ = crc32_of(file_.view(0, kMcapMagic.size()));
+  crc_covers_ = at == kFirstRecord;
+}
+
+void McapScan::only(std::vector<bool> streams, std::vector<std::uint64_t> skip) {
+  streams_ = std::move(streams);
+  skip_ = std::move(skip);
+}
+
+bool McapScan::next(RawMessage& message, StreamId& channel, Warnings& warnings) {
+  for (;;) {
+    while (!chunk_.empty())
+      if (chunk_record(message, channel, warnings)) return true;
+    if (ended_) return false;
+    const Step step = file_record(message, channel, warnings);
+    if (step == Step::message) return true;
+    if (step == Step::end) ended_ = true;
+  }
+}
+
+McapScan::Step McapScan::cut(Warnings& warnings, std::uint64_t bytes) {
+  warnings.add("cut_end",
+               bytes > 0 ? fmt::format("{} ({} bytes at the end are no whole record)", kCutEnd, bytes)
+                         : std::string(kCutEnd),
+               fmt::format("byte {}", file_.size() - bytes));
+  return Step::end;
+}
+
+McapScan::Step McapScan::file_record(RawMessage& message,
+                                     StreamId& channel,
+                                     Warnings& warnings) {
+  const std::uint64_t left = file_.left(at_);
+  if (left < kMcapFront) return cut(warnings, left);
+  const RecordFront front = read_front(file_.view(at_, kMcapFront));
+  const std::uint64_t content_at = at_ + kMcapFront, behind = left - kMcapFront;
+  if (front.op == McapOp::chunk) {
+    enter_chunk(content_at, std::min(front.length, behind), warnings);
+    crc_covers_ = false;
+    if (front.length > behind) return cut(warnings, left);
+    at_ = content_at + front.length;
+    return single_ ? Step::end : Step::other;
+  }
+  if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0)
+    return cut(warnings, left);
+  if (front.op != McapOp::data_end) note_crc(kMcapFront + front.length);
+  at_ = content_at + front.length;
+  const auto size = static_cast<std::size_t>(std::min(front.length, kLargestChunk + 1));
+  switch (front.op) {
+    case McapOp::schema:
+    case McapOp::channel:
+      if (size <= kLargestChunk) note_catalog(front.op, file_.view(content_at, size), warnings);
+      return Step::other;
+    case McapOp::message: {
+      if (size < kMcapMessageFront) break;
+      const auto head = read_mcap_message(file_.view(content_at, kMcapMessageFront));
+      channel = head->channel;
+      if (!wanted(channel)) return Step::other;
+      if (size > kLargestChunk) break;
+      message = {file_.view(content_at, size).subspan(kMcapMessageFront),
+                 head->log_ns,
+                 head->publish_ns,
+                 content_at};
+      return Step::message;
+    }
+    case McapOp::data_end:
+      if (size >= 4) check_crc(file_.view(content_at, 4), warnings);
+      return ends_well() ? Step::end : cut(warnings, 0);
+    case McapOp::footer:
+      return Step::end;
+    default:
+      return Step::other;
+  }
+  warnings.add("broken_message",
+               "messages that are too short or too long to be any were left out",
+               fmt::format("byte {}", content_at));
+  return Step::other;
+}
+
+bool McapScan::ends_well() {
+  const std::size_t size = kMcapMagic.size();
+  if (file_.left(at_) < kMcapFront + kMcapFooter + size) return false;
+  const auto tail = file_.view(file_.size() - size, size);
+  return std::string_view(reinterpret_cast<const char*>(tail.data()), tail.size()) == kMcapMagic;
+}
+
+// One record of the chunk in memory: is it a message that is wanted?
+bool McapScan::chunk_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
+  const auto lose_rest = [&] {
+    warnings.add("broken_chunk", kBrokenChunk, fmt::format("byte {}", chunk_at_));
+    chunk_ = {};
+    return false;
+  };
+  if (chunk_.size() < kMcapFront) return lose_rest();
+  const RecordFront front = read_front(chunk_);
+  if (front.length > chunk_.size() - kMcapFront) return lose_rest();
+  const auto content = chunk_.subspan(kMcapFront, static_cast<std::size_t>(front.length));
+  chunk_ = chunk_.subspan(kMcapFront + content.size());
+  if (front.op != McapOp::message) {
+    note_catalog(front.op, content, warnings);
+    return false;
+  }
+  const auto head = read_mcap_message(content);
+  if (!head) return lose_rest();
+  channel = head->channel;
+  if (!wanted(channel)) return false;
+  message = {content.subspan(kMcapMessageFront), head->log_ns, head->publish_ns, chunk_at_};
+  return true;
+}
+
+void McapScan::note_catalog(McapOp op, std::span<const std::byte> content, Warnings& warnings) {
+  if (op == McapOp::schema) add_schema(content, catalog_, warnings);
+  if (op == McapOp::channel) add_channel(content, catalog_, warnings);
+}
+
+void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Warnings& warnings) {
+  chunk_at_ = content_at - kMcapFront;
+  if (std::binary_search(skip_.begin(), skip_.end(), chunk_at_)) return;
+  const auto head = read_mcap_chunk(
+      file_.view(content_at, static_cast<std::size_t>(std::min<std::uint64_t>(length, 256))));
+  if (!head) return;  // cut off in the front
+  const std::uint64_t packed_here = std::min(head->packed, length - head->bytes);
+  const std::string method = head->compression.empty() ? "none" : printable(head->compression, 40);
+  if (packed_with_.find(method) == std::string::npos)
+    packed_with_ += (packed_with_.empty() ? "" : ", ") + method;
+  if (std::max(head->unpacked, head->packed) > kLargestChunk)
+    throw Error({ErrorKind::input,
+                 "E0443",
+                 fmt::format("{} (byte {})", file_.path(), chunk_at_),
+                 fmt::format("a chunk of {} bytes, more than the limit of {}",
+                             std::max(head->unpacked, head->packed),
+                             kLargestChunk),
+                 "",
+                 "write it again with smaller chunks (mcap filter --chunk-size)"});
+  if (const std::string why = why_not_packed(head->compression); !why.empty())
+    throw Error({ErrorKind::input,
+                 "E0442",
+                 fmt::format("{} (byte {})", file_.path(), chunk_at_),
+                 why,
+                 "",
+                 "write it again without (mcap compress --compression none)"});
+  const auto packed =
+      file_.view(content_at + head->bytes, static_cast<std::size_t>(packed_here));
+  unpack_chunk(*head, packed, packed_here == head->packed, warnings);
+}
+
+void McapScan::unpack_chunk(const McapChunkFront& front,
+                            std::span<const std::byte> packed,
+                            bool whole,
+                            Warnings& warnings) {
+  const auto broken = [&](const std::string& why) {
+    warnings.add("broken_chunk", kBrokenChunk, fmt::format("byte {}: {}", chunk_at_, why));
+    chunk_ = {};
+  };
+  chunk_ = packed;
+  if (!front.compression.empty() && front.compression != "none") {
+    const std::string problem = unpack(front.compression, packed, front.unpacked, unpacked_);
+    if (whole && !problem.empty()) return broken(problem);
+    chunk_ = unpacked_;
+  }
+  if (whole && chunk_.size() != front.unpacked)
+    return broken(fmt::format("{} bytes instead of {}", chunk_.size(), front.unpacked));
+  if (whole && front.crc != 0 && crc32_of(chunk_) != front.crc) return broken("checksum");
+  if (whole) return;
+  // The whole records in front of the cut.
+  std::size_t used = 0;
+  while (chunk_.size() - used >= kMcapFront) {
+    const RecordFront record = read_front(chunk_.subspan(used));
+    if (record.length > chunk_.size() - used - kMcapFront) break;
+    used += kMcapFront + static_cast<std::size_t>(record.length);
+  }
+  chunk_ = chunk_.first(used);
+}
+
+// The checksum of the data covers every byte in front of DataEnd.
+void McapScan::note_crc(std::uint64_t bytes) {
+  for (std::uint64_t done = 0; crc_covers_ && done < bytes;) {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(bytes - done, 1U << 18U));
+    crc_ = crc32_of(file_.view(at_ + done, count), crc_);
+    done += count;
+  }
+}
+
+void McapScan::check_crc(std::span<const std::byte> content, Warnings& warnings) const {
+  const auto said = ByteReader(content).number<std::uint32_t>();
+  if (!crc_covers_ || said == 0 || said == crc_) return;
+  warnings.add("checksum",
+               "the data are not what their checksum says: something has changed since they were "
+               "written");
+}
+
+}  // namespace libchar

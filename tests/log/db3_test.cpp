@@ -1,0 +1,76 @@
+// Databases laid out as rosbag2's, by Python's sqlite3 (fixtures/ros/make_db3.py).
+
+#include <catch2/catch.hpp>
+
+#include "tests/log/ros_values.hpp"
+
+using namespace libchar;
+
+TEST_CASE("db3: an IMU of Humble by the definitions that the program brings") {
+  const test::Rows rows =
+      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/imu0/data"));
+  test::check_imu(rows, 200);
+  CHECK(rows.info.topic == "/imu0/data");
+  CHECK(rows.warnings.empty());
+  const test::Rows joints =
+      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/joints"));
+  CHECK(joints.columns[2][19] == -0.3 * 19);
+  const test::Rows level =
+      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/level"));
+  CHECK(level.columns[0][39] == 39.0 * 39 / 64);
+  CHECK(level.time_ns[39] == test::kRosStart + 975000000 + 1000000);
+}
+
+TEST_CASE("db3: a type that nobody defines is said; since Iron the file defines it") {
+  const LogInfo humble = log_listing(test::ros("humble.db3").string(), {});
+  REQUIRE(humble.topics.size() == 4);
+  for (const LogTopic& topic : humble.topics) {
+    INFO(topic.name);
+    if (topic.name == "/odd") CHECK(topic.why_not == "the log has no definition of this type");
+    if (topic.name == "/imu0/data") {
+      CHECK(topic.rows == 200);
+      CHECK(topic.rate_hz == Approx(200).epsilon(0.01));
+    }
+  }
+  const test::Rows odd = test::read_rows("db3", test::ros("jazzy.db3"), test::of_topic("/odd"));
+  REQUIRE(odd.time_ns.size() == 20);
+  CHECK(odd.columns.back()[19] == 19.0 / 8);
+  const test::Rows mag = test::read_rows("db3", test::ros("jazzy.db3"));
+  CHECK(mag.info.topic == "/mag");
+  CHECK(mag.columns[0][49] == 2e-5 + 49 * 1e-9);
+}
+
+TEST_CASE("db3: cut anywhere, what is in front of the cut is read or the file refused") {
+  const std::string bytes = test::slurp(test::ros("humble.db3"));
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "cut.db3";
+  std::size_t read = 0;
+  for (std::size_t cut = 0; cut < bytes.size(); cut += 1000) {
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes.substr(0, cut);
+    INFO(cut);
+    try {
+      const test::Rows rows = test::read_rows("db3", path, test::of_topic("/level"));
+      CHECK(rows.warnings.find("cut_end") != nullptr);
+      for (std::size_t i = 0; i < rows.time_ns.size(); ++i)
+        CHECK(rows.columns[0][i] == static_cast<double>(i * i) / 64);
+      ++read;
+    } catch (const Error& error) {
+      CHECK(error.problem().code.starts_with("E04"));
+    }
+  }
+  CHECK(read > 10);
+}
+
+TEST_CASE("db3: another database, and a recording that was not closed, are told") {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "a b?#%.db3";
+  std::ofstream(path, std::ios::binary) << test::slurp(test::ros("humble.db3"));
+  std::ofstream(path.string() + "-wal") << "not yet written";
+  const test::Rows rows = test::read_rows("db3", path, test::of_topic("/imu0/data"));
+  test::check_imu(rows, 200);
+  CHECK(rows.warnings.find("open_recording") != nullptr);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder / "."), {}) == 2);
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      << std::string("SQLite format 3\0", 16) + std::string(84, '\1');
+  CHECK_THAT(test::refusal("db3", path), Catch::Contains("E0446"));
+}
