@@ -51,8 +51,8 @@ TEST_CASE("bag: topics are listed by the index, or by a look at everything") {
     }
     CHECK(listing.dialect.front() == (indexed ? "bag 2.0, chunks packed with none"
                                               : "bag 2.0, chunks packed with none, no index"));
-    const test::Rows rows = test::read_rows(
-        "bag", changed_bag(folder, changed), test::of_topic("/imu/data_raw"));
+    const test::Rows rows =
+        test::read_rows("bag", changed_bag(folder, changed), test::of_topic("/imu/data_raw"));
     test::check_imu(rows, 100);
     CHECK((rows.warnings.find("cut_end") != nullptr) == !indexed);
   }
@@ -72,8 +72,7 @@ TEST_CASE("bag: any message by its definition; stamps of 0 give way to the time 
     CHECK(load.columns[3][k] == i / 4);
     CHECK(load.columns[5][k] == -i);
     CHECK(load.columns[6][k] == i / 8);
-    CHECK(load.time_ns[k] ==
-          test::kRosStart + static_cast<std::int64_t>(k) * 20000000 + 1000000);
+    CHECK(load.time_ns[k] == test::kRosStart + static_cast<std::int64_t>(k) * 20000000 + 1000000);
   }
   const test::Rows pressure =
       test::read_rows("bag", test::ros("ros1_bz2.bag"), test::of_topic("/pressure"));
@@ -108,9 +107,9 @@ TEST_CASE("bag: a broken chunk is left out and said; other versions are refused"
   CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROSBAG V1.2\n")),
              Catch::Contains("E0444") && Catch::Contains("2.0"));
   CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROS")), Catch::Contains("E0444"));
-  CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROSBAG V2.0\n")),
-             Catch::Contains("E0426"));
+  CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROSBAG V2.0\n")), Catch::Contains("E0426"));
   // A header of 2^31 bytes, data of 2^32: nothing is asked for.
-  CHECK_THAT(test::refusal("bag", changed_bag(folder, std::string("#ROSBAG V2.0\n\0\0\0\x80zzzz", 21))),
-             Catch::Contains("E0426"));
+  CHECK_THAT(
+      test::refusal("bag", changed_bag(folder, std::string("#ROSBAG V2.0\n\0\0\0\x80zzzz", 21))),
+      Catch::Contains("E0426"));
 }

@@ -68,9 +68,11 @@ TEST_CASE(
 
 TEST_CASE("words and suffixes for options come from the table") {
   CHECK(format_words() ==
-        std::vector<std::string>{"auto", "csv", "dataflash", "npy", "raw", "ulog"});
+        std::vector<std::string>{
+            "auto", "bag", "csv", "dataflash", "db3", "mcap", "npy", "raw", "ulog"});
   CHECK(written_format_words() == std::vector<std::string>{"auto", "csv", "npy", "raw"});
-  CHECK(readable_files() == ".csv, DataFlash .bin, .npy, raw with sidecar, .ulg");
+  CHECK(readable_files() ==
+        ".bag, .csv, DataFlash .bin, .db3, .mcap, .npy, raw with sidecar, .ulg");
   CHECK(written_suffixes() == ".csv, .npy, .f64, .f32, .bin, .raw");
   CHECK(format_to_write("LOG.CSV", {}).name == "csv");
   CHECK_THROWS_WITH(format_to_write("log.tsv", {}), Catch::Contains("end the name in one of .csv"));

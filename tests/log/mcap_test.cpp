@@ -81,11 +81,11 @@ TEST_CASE("MCAP: topics are listed with types, counts, rates and fields, or why 
 }
 
 TEST_CASE("MCAP: any message by its embedded definition") {
-  const test::Rows odd = test::read_rows(
-      "mcap", test::ros("ros2.mcap"), test::of_topic("/odd"));
-  CHECK(test::channel_names(odd.info) ==
-        "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state "
-        "cells[1].volts cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
+  const test::Rows odd = test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/odd"));
+  CHECK(
+      test::channel_names(odd.info) ==
+      "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state "
+      "cells[1].volts cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
   REQUIRE(odd.columns.size() == 18);
   for (std::size_t k = 0; k < 20; ++k) {
     const auto i = static_cast<double>(k);
@@ -126,7 +126,8 @@ TEST_CASE("MCAP: any message by its embedded definition") {
   CHECK(odd.warnings.find("rounded_integer")->count == 1);
 }
 
-TEST_CASE("MCAP: only the fields that are asked for, joints by their place, JSON by its first message") {
+TEST_CASE(
+    "MCAP: only the fields that are asked for, joints by their place, JSON by its first message") {
   const test::Rows one = test::read_rows(
       "mcap", test::ros("ros2_lz4.mcap"), test::of_topic("/odd", {"cells[1].state", "gains[1]"}));
   REQUIRE(one.columns.size() == 2);
@@ -164,8 +165,7 @@ TEST_CASE("MCAP: whose stamps count can be said") {
 }
 
 TEST_CASE("MCAP: cut at every 1000th byte, whole messages are read and the loss is said") {
-  for (const char* name :
-       {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap", "ros2_unchunked.mcap"})
+  for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap", "ros2_unchunked.mcap"})
     test::check_cuts("mcap", name, "/imu0/data");
 }
 
@@ -182,8 +182,8 @@ TEST_CASE("MCAP: of a cut file every whole message in front of the cut is read")
   REQUIRE(ends.size() > 80);
   const test::TemporaryFolder folder;
   for (std::size_t cut = ends[2]; cut < ends.back(); cut += 1237) {
-    const auto whole = static_cast<std::size_t>(
-        std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin());
+    const auto whole =
+        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin());
     const test::Rows rows = test::read_rows(
         "mcap", changed_mcap(folder, bytes.substr(0, cut)), test::of_topic("/imu0/data"));
     CHECK(rows.time_ns.size() == whole);

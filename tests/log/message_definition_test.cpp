@@ -99,7 +99,8 @@ TEST_CASE("definitions that cannot be used have a reason") {
   CHECK_THAT(why(doubling + bar() + "MSG: a/T20\nfloat64 x\n"), Catch::Contains("too large"));
 }
 
-TEST_CASE("CDR: every value is aligned to its size behind the encapsulation, in either byte order") {
+TEST_CASE(
+    "CDR: every value is aligned to its size behind the encapsulation, in either byte order") {
   // bool, then a double at 8, i16 at 16, a text at 20, f32 at 28.
   for (const bool big : {false, true}) {
     std::string text = big ? std::string("\0\0\0\0", 4) : std::string("\0\1\0\0", 4);
@@ -137,14 +138,12 @@ TEST_CASE("CDR version 2 aligns to 4, and an empty array of doubles aligns nothi
   std::string text("\0\7\0\0", 4);
   put(text, std::int32_t{7});
   put(text, 2.5);  // at 4
-  const DecoderOrReason two =
-      make_decoder(format_of("int32 n\nfloat64 x\n", text, "cdr"));
+  const DecoderOrReason two = make_decoder(format_of("int32 n\nfloat64 x\n", text, "cdr"));
   REQUIRE(two.decoder);
   std::string empty("\0\1\0\0", 4);
   put(empty, std::uint32_t{0});
   put(empty, std::int32_t{9});
-  const DecoderOrReason none =
-      make_decoder(format_of("float64[] many\nint32 n\n", empty, "cdr"));
+  const DecoderOrReason none = make_decoder(format_of("float64[] many\nint32 n\n", empty, "cdr"));
   REQUIRE(none.decoder);
   none.decoder->select({0}, std::nullopt);
   std::vector<double> row(1);
@@ -186,25 +185,44 @@ TEST_CASE("arrays of messages with lengths of their own: the first elements are 
 }
 
 TEST_CASE("every type that the program knows can be compiled, and knows its parts") {
-  for (const char* type :
-       {"sensor_msgs/Imu", "sensor_msgs/MagneticField", "sensor_msgs/Temperature",
-        "sensor_msgs/FluidPressure", "sensor_msgs/RelativeHumidity", "sensor_msgs/Range",
-        "sensor_msgs/NavSatFix", "sensor_msgs/Illuminance", "sensor_msgs/JointState",
-        "sensor_msgs/BatteryState", "sensor_msgs/LaserScan", "sensor_msgs/TimeReference",
-        "geometry_msgs/Vector3", "geometry_msgs/Vector3Stamped", "geometry_msgs/Twist",
-        "geometry_msgs/TwistStamped", "geometry_msgs/AccelStamped", "geometry_msgs/WrenchStamped",
-        "geometry_msgs/QuaternionStamped", "geometry_msgs/PoseStamped", "geometry_msgs/Accel",
-        "geometry_msgs/TransformStamped", "tf2_msgs/TFMessage", "nav_msgs/Odometry",
-        "std_msgs/Float32", "std_msgs/Float64", "std_msgs/Int64", "std_msgs/UInt8",
-        "std_msgs/Float64MultiArray", "std_msgs/Bool"}) {
+  for (const char* type : {"sensor_msgs/Imu",
+                           "sensor_msgs/MagneticField",
+                           "sensor_msgs/Temperature",
+                           "sensor_msgs/FluidPressure",
+                           "sensor_msgs/RelativeHumidity",
+                           "sensor_msgs/Range",
+                           "sensor_msgs/NavSatFix",
+                           "sensor_msgs/Illuminance",
+                           "sensor_msgs/JointState",
+                           "sensor_msgs/BatteryState",
+                           "sensor_msgs/LaserScan",
+                           "sensor_msgs/TimeReference",
+                           "geometry_msgs/Vector3",
+                           "geometry_msgs/Vector3Stamped",
+                           "geometry_msgs/Twist",
+                           "geometry_msgs/TwistStamped",
+                           "geometry_msgs/AccelStamped",
+                           "geometry_msgs/WrenchStamped",
+                           "geometry_msgs/QuaternionStamped",
+                           "geometry_msgs/PoseStamped",
+                           "geometry_msgs/Accel",
+                           "geometry_msgs/TransformStamped",
+                           "tf2_msgs/TFMessage",
+                           "nav_msgs/Odometry",
+                           "std_msgs/Float32",
+                           "std_msgs/Float64",
+                           "std_msgs/Int64",
+                           "std_msgs/UInt8",
+                           "std_msgs/Float64MultiArray",
+                           "std_msgs/Bool"}) {
     INFO(type);
     const auto versions = known_definitions(type);
     REQUIRE_FALSE(versions.empty());
     for (const MessageTypes& types : versions) {
       const CompiledMessage compiled = compile_message(types, type, {});
       CHECK(compiled.problem == "");
-      const bool only_lists = std::string(type).ends_with("TFMessage") ||
-                              std::string(type).ends_with("MultiArray");
+      const bool only_lists =
+          std::string(type).ends_with("TFMessage") || std::string(type).ends_with("MultiArray");
       CHECK((!compiled.fields.empty() || only_lists));
     }
   }

@@ -89,10 +89,9 @@ inline void check_cuts(const std::string& format,
       longest = n;
       CHECK(std::equal(rows.time_ns.begin(), rows.time_ns.end(), whole.time_ns.begin()));
       for (std::size_t c = 0; c < whole.columns.size(); ++c)
-        CHECK(std::equal(
-            rows.columns[c].begin(), rows.columns[c].end(), whole.columns[c].begin()));
-      const bool loss =
-          rows.warnings.find("cut_end") != nullptr || rows.warnings.find("lost_messages") != nullptr;
+        CHECK(std::equal(rows.columns[c].begin(), rows.columns[c].end(), whole.columns[c].begin()));
+      const bool loss = rows.warnings.find("cut_end") != nullptr ||
+                        rows.warnings.find("lost_messages") != nullptr;
       CHECK(loss);
       said += loss ? 1 : 0;
     } catch (const libchar::Error& error) {

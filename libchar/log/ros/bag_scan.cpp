@@ -13,10 +13,19 @@
 namespace libchar {
 namespace {
 
-enum class BagOp { none = 0, message = 2, header = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
+enum class BagOp {
+  none = 0,
+  message = 2,
+  header = 3,
+  index = 4,
+  chunk = 5,
+  chunk_info = 6,
+  connection = 7
+};
 
 constexpr std::uint32_t kLongestHeader = 1U << 20U;  // of a record; the largest is a topic's name
-constexpr const char* kBrokenBagChunk = "chunks that are broken (cannot be unpacked, or no records) were left out";
+constexpr const char* kBrokenBagChunk =
+    "chunks that are broken (cannot be unpacked, or no records) were left out";
 
 std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -131,8 +140,12 @@ void check_bag(FileWindow& file) {
   const auto head =
       text_of(file.view(0, static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 13))));
   const auto fail = [&](std::string what, const std::string& got, std::string hint) {
-    throw Error(
-        {ErrorKind::input, "E0444", file.path() + " (byte 0)", std::move(what), got, std::move(hint)});
+    throw Error({ErrorKind::input,
+                 "E0444",
+                 file.path() + " (byte 0)",
+                 std::move(what),
+                 got,
+                 std::move(hint)});
   };
   if (!head.starts_with(kBagMagic))
     fail("does not begin like a bag", std::string(head), "`format` auto finds out what it is");
@@ -196,12 +209,13 @@ bool BagScan::next(RawMessage& message, StreamId& connection, Warnings& warnings
 
 BagScan::Step BagScan::cut(Warnings& warnings) {
   const std::uint64_t bytes = file_.left(at_);
-  warnings.add("cut_end",
-               fmt::format("the bag has no index at its end (a recording that was not closed, or a "
-                           "copy that was cut): what is whole was read{}",
-                           bytes > 0 ? fmt::format(" ({} bytes at the end are no whole record)", bytes)
-                                     : ""),
-               fmt::format("byte {}", at_));
+  warnings.add(
+      "cut_end",
+      fmt::format(
+          "the bag has no index at its end (a recording that was not closed, or a "
+          "copy that was cut): what is whole was read{}",
+          bytes > 0 ? fmt::format(" ({} bytes at the end are no whole record)", bytes) : ""),
+      fmt::format("byte {}", at_));
   return Step::end;
 }
 
@@ -282,12 +296,8 @@ void BagScan::enter_chunk(std::string_view header,
                  "",
                  "write it again with smaller chunks (rosbag filter IN OUT True)"});
   if (const std::string why = why_not_packed(method); !why.empty())
-    throw Error({ErrorKind::input,
-                 "E0442",
-                 place,
-                 why,
-                 "",
-                 "write it again without (rosbag decompress)"});
+    throw Error(
+        {ErrorKind::input, "E0442", place, why, "", "write it again without (rosbag decompress)"});
   const auto packed = file_.view(data_at, static_cast<std::size_t>(length));
   chunk_ = packed;
   chunk_cut_ = data_at + length >= file_.size() && !closed_;

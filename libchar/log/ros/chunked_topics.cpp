@@ -17,9 +17,8 @@ constexpr std::uint64_t kExampleBytes = std::uint64_t{32}
 double rate_seen(const StreamCount& count) {
   const double seconds =
       (static_cast<double>(count.last_seen_ns) - static_cast<double>(count.first_seen_ns)) * 1e-9;
-  return count.seen >= kEnoughForRate && seconds > 0
-             ? static_cast<double>(count.seen - 1) / seconds
-             : 0;
+  return count.seen >= kEnoughForRate && seconds > 0 ? static_cast<double>(count.seen - 1) / seconds
+                                                     : 0;
 }
 
 }  // namespace
@@ -59,9 +58,8 @@ void ChunkedTopics::find_examples() {
   RawMessage message;
   StreamId stream = 0;
   for (const ChunkPlace& chunk : chunks_) {
-    const bool looked_for = std::any_of(chunk.streams.begin(),
-                                        chunk.streams.end(),
-                                        [&](StreamId id) { return lacks_example(id); });
+    const bool looked_for = std::any_of(
+        chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return lacks_example(id); });
     if (!looked_for || chunk.at < first_record()) continue;
     scan().begin_at(chunk.at);
     scan().stop_behind_chunk();
@@ -106,9 +104,9 @@ void ChunkedTopics::start(std::size_t topic) {
   for (const StreamId id : streams_[topic]) wanted[id] = true;
   std::vector<std::uint64_t> skip;
   for (const ChunkPlace& chunk : chunks_)
-    if (!chunk.streams.empty() && std::none_of(chunk.streams.begin(),
-                                               chunk.streams.end(),
-                                               [&](StreamId id) { return wanted[id]; }))
+    if (!chunk.streams.empty() &&
+        std::none_of(
+            chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return wanted[id]; }))
       skip.push_back(chunk.at);
   std::sort(skip.begin(), skip.end());
   scan().only(std::move(wanted), std::move(skip));

@@ -15,6 +15,7 @@
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/message_topics.hpp"
+#include "libchar/log/ros/sqlite_file.hpp"
 #include "libchar_have.hpp"
 #if LIBCHAR_HAVE_SQLITE
 #include <sqlite3.h>
@@ -30,46 +31,24 @@ constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
 constexpr const char* kDamaged =
     "the database is cut or damaged: messages in front of the damage were read";
 
-// A path as a part of a URI.
-std::string uri_of(const std::string& path) {
-  std::string uri = "file:";
-  for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       std::string_view("/._-").find(c) != std::string_view::npos;
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  // Nothing beside the file is read or made: no journal, no lock.
-  return uri + "?immutable=1&mode=ro";
-}
-
 class Database {
  public:
-  explicit Database(const std::string& path) : path_(path) {
-    const int code = sqlite3_open_v2(
-        uri_of(path).c_str(), &handle_, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
-    if (code != SQLITE_OK) {
-      const std::string why = sqlite3_errstr(code);
-      sqlite3_close(handle_);
-      throw Error({ErrorKind::input, "E0101", path, "cannot be opened: " + why, "", ""});
-    }
+  explicit Database(const std::string& path) : handle_(open_sqlite(path)) {
     // A file of unknown origin: its schema runs nothing, and no value is larger than what is read of other logs.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH, static_cast<int>(kLargestChunk));
     sqlite3_exec(handle_, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
-    // Nothing is written to a file that is opened like this; without it a file that was cut is refused as a whole.
+    // Nothing can be written (sqlite_file.hpp); without it a file that was cut is refused as a whole.
     sqlite3_exec(handle_, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
   }
   ~Database() { sqlite3_close(handle_); }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
   sqlite3* handle() const { return handle_; }
-  const std::string& path() const { return path_; }
-
   bool has_table(const char* name) const;
 
  private:
-  std::string path_;
-  sqlite3* handle_ = nullptr;
+  sqlite3* handle_;
 };
 
 class Query {
@@ -143,9 +122,9 @@ class Db3Reader final : public MessageTopics {
   }
 
   std::vector<std::string> dialect() const override {
-    return {fmt::format("rosbag2 database, {}",
-                        definitions_.empty() ? "no definitions in it: those of common types"
-                                             : "with definitions")};
+    return {fmt::format(
+        "rosbag2 database, {}",
+        definitions_.empty() ? "no definitions in it: those of common types" : "with definitions")};
   }
 
   std::uint64_t bytes_read() const override {
@@ -173,9 +152,7 @@ class Db3Reader final : public MessageTopics {
       return true;
     }
     if (query_->damaged())
-      warnings.add("cut_end",
-                   kDamaged,
-                   fmt::format("behind row {}: {}", seen_, query_->why()));
+      warnings.add("cut_end", kDamaged, fmt::format("behind row {}: {}", seen_, query_->why()));
     ended_ = true;
     return false;
   }
@@ -209,9 +186,10 @@ class Db3Reader final : public MessageTopics {
       std::error_code none;
       const auto bytes = std::filesystem::file_size(path + end, none);
       if (!none && bytes > 0)
-        found_early().add("open_recording",
-                          "the recording was not closed: what stands in the file beside it is not read",
-                          path + end);
+        found_early().add(
+            "open_recording",
+            "the recording was not closed: what stands in the file beside it is not read",
+            path + end);
     }
   }
 
@@ -292,7 +270,6 @@ class Db3Reader final : public MessageTopics {
 };
 
 std::unique_ptr<TopicReader> open_db3(const std::string& path, const ReadOptions& options) {
-  const BinaryFile readable(path);  // what is no file is told as in every format
   return std::make_unique<Db3Reader>(path, options);
 }
 

@@ -137,10 +137,11 @@ std::string why_not_packed(std::string_view method) {
                      (method == "zstd" && LIBCHAR_HAVE_ZSTD) ||
                      (method == "bz2" && LIBCHAR_HAVE_BZIP2);
   if (built) return "";
-  return known ? fmt::format("its chunks are packed with {0}, and this program is built without {0}",
-                             method)
-               : fmt::format("its chunks are packed with \"{}\"; none, lz4, zstd and bz2 are read",
-                             printable(method, 40));
+  return known
+             ? fmt::format("its chunks are packed with {0}, and this program is built without {0}",
+                           method)
+             : fmt::format("its chunks are packed with \"{}\"; none, lz4, zstd and bz2 are read",
+                           printable(method, 40));
 }
 
 std::string unpack(std::string_view method,

@@ -18,8 +18,7 @@ std::span<const std::byte> FileWindow::view(std::uint64_t at, std::size_t count)
     begin_ = at;
     filled_ = wanted;
   }
-  return std::span<const std::byte>(buffer_)
-      .subspan(static_cast<std::size_t>(at - begin_), count);
+  return std::span<const std::byte>(buffer_).subspan(static_cast<std::size_t>(at - begin_), count);
 }
 
 }  // namespace libchar

@@ -135,19 +135,17 @@ class JsonDecoder final : public MessageDecoder {
                  std::uint64_t&) override {
     std::fill(row.begin(), row.end(), kMissing);
     double seconds = kMissing, nanoseconds = 0;
-    const bool well =
-        go_through(message, [&](const std::string& name, double value) {
-          if (const auto found = slots_.find(name); found != slots_.end())
-            row[found->second] = value;
-          if (name == seconds_) seconds = value;
-          if (name == nanoseconds_) nanoseconds = value;
-        });
+    const bool well = go_through(message, [&](const std::string& name, double value) {
+      if (const auto found = slots_.find(name); found != slots_.end()) row[found->second] = value;
+      if (name == seconds_) seconds = value;
+      if (name == nanoseconds_) nanoseconds = value;
+    });
     if (!well) return Decoded::misfit;
     if (seconds_.empty()) return Decoded::well;
     if (!(std::abs(seconds) < 9e9) || !(std::abs(nanoseconds) < 9e18)) return Decoded::misfit;
     const double whole = std::trunc(seconds);
-    stamp = static_cast<std::int64_t>(whole) * 1000000000 +
-            std::llround((seconds - whole) * 1e9) + static_cast<std::int64_t>(nanoseconds);
+    stamp = static_cast<std::int64_t>(whole) * 1000000000 + std::llround((seconds - whole) * 1e9) +
+            static_cast<std::int64_t>(nanoseconds);
     return Decoded::well;
   }
 
@@ -155,8 +153,7 @@ class JsonDecoder final : public MessageDecoder {
   void drop_long_arrays(const std::map<std::string, std::size_t>& lengths) {
     std::erase_if(fields_, [&](const NumberField& field) {
       const auto found = lengths.find(field.name.substr(0, field.name.rfind('[')));
-      return field.name.ends_with(']') && found != lengths.end() &&
-             found->second > kListedElements;
+      return field.name.ends_with(']') && found != lengths.end() && found->second > kListedElements;
     });
   }
 

@@ -27,8 +27,8 @@ enum class McapOp : std::uint8_t {
   data_end = 15
 };
 
-inline constexpr std::size_t kMcapFront = 9;           // opcode and length
-inline constexpr std::size_t kMcapMessageFront = 22;   // of a message, in front of its data
+inline constexpr std::size_t kMcapFront = 9;          // opcode and length
+inline constexpr std::size_t kMcapMessageFront = 22;  // of a message, in front of its data
 inline constexpr std::size_t kMcapFooter = 20;
 
 struct McapSchema {

@@ -75,7 +75,8 @@ std::optional<McapSummary> summary_records(FileWindow& file,
       if (front.op == McapOp::schema) add_schema(content, summary.catalog, warnings);
       if (front.op == McapOp::channel) add_channel(content, summary.catalog, warnings);
       if (front.op == McapOp::chunk_index)
-        if (auto index = read_mcap_chunk_index(content)) summary.chunks.push_back(std::move(*index));
+        if (auto index = read_mcap_chunk_index(content))
+          summary.chunks.push_back(std::move(*index));
       if (front.op == McapOp::statistics)
         if (auto statistics = read_mcap_statistics(content)) {
           summary.statistics = std::move(*statistics);
@@ -126,10 +127,9 @@ std::optional<McapSummary> read_mcap_summary(FileWindow& file, Warnings& warning
     crc = crc32_of(file.view(at, count), crc);
     at += count;
   }
-  auto summary =
-      crc == footer->crc || footer->crc == 0
-          ? summary_records(file, footer->summary_at, footer_at, warnings)
-          : std::nullopt;
+  auto summary = crc == footer->crc || footer->crc == 0
+                     ? summary_records(file, footer->summary_at, footer_at, warnings)
+                     : std::nullopt;
   if (crc != footer->crc && footer->crc != 0)
     warnings.add("broken_index",
                  "the summary is not what its checksum says: the file was read whole instead",
@@ -163,15 +163,14 @@ bool McapScan::next(RawMessage& message, StreamId& channel, Warnings& warnings) 
 
 McapScan::Step McapScan::cut(Warnings& warnings, std::uint64_t bytes) {
   warnings.add("cut_end",
-               bytes > 0 ? fmt::format("{} ({} bytes at the end are no whole record)", kCutEnd, bytes)
-                         : std::string(kCutEnd),
+               bytes > 0
+                   ? fmt::format("{} ({} bytes at the end are no whole record)", kCutEnd, bytes)
+                   : std::string(kCutEnd),
                fmt::format("byte {}", file_.size() - bytes));
   return Step::end;
 }
 
-McapScan::Step McapScan::file_record(RawMessage& message,
-                                     StreamId& channel,
-                                     Warnings& warnings) {
+McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
   const std::uint64_t left = file_.left(at_);
   if (left < kMcapFront) return cut(warnings, left);
   const RecordFront front = read_front(file_.view(at_, kMcapFront));
@@ -183,8 +182,7 @@ McapScan::Step McapScan::file_record(RawMessage& message,
     at_ = content_at + front.length;
     return single_ ? Step::end : Step::other;
   }
-  if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0)
-    return cut(warnings, left);
+  if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0) return cut(warnings, left);
   if (front.op != McapOp::data_end) note_crc(kMcapFront + front.length);
   at_ = content_at + front.length;
   const auto size = static_cast<std::size_t>(std::min(front.length, kLargestChunk + 1));
@@ -273,16 +271,15 @@ void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Warni
                              std::max(head->unpacked, head->packed),
                              kLargestChunk),
                  "",
-                 "write it again with smaller chunks (mcap filter --chunk-size)"});
+                 "write it again with smaller chunks (mcap filter)"});
   if (const std::string why = why_not_packed(head->compression); !why.empty())
     throw Error({ErrorKind::input,
                  "E0442",
                  fmt::format("{} (byte {})", file_.path(), chunk_at_),
                  why,
                  "",
-                 "write it again without (mcap compress --compression none)"});
-  const auto packed =
-      file_.view(content_at + head->bytes, static_cast<std::size_t>(packed_here));
+                 "write it again without (mcap decompress)"});
+  const auto packed = file_.view(content_at + head->bytes, static_cast<std::size_t>(packed_here));
   unpack_chunk(*head, packed, packed_here == head->packed, warnings);
 }
 

@@ -57,9 +57,7 @@ class McapScan final : public MessageScan {
                     Warnings& warnings);
   Step cut(Warnings& warnings, std::uint64_t bytes);
   bool ends_well();
-  bool wanted(std::uint16_t channel) const {
-    return streams_.empty() || streams_[channel];
-  }
+  bool wanted(std::uint16_t channel) const { return streams_.empty() || streams_[channel]; }
   void note_catalog(McapOp op, std::span<const std::byte> content, Warnings& warnings);
   void note_crc(std::uint64_t bytes);
   void check_crc(std::span<const std::byte> content, Warnings& warnings) const;

@@ -98,8 +98,8 @@ DecoderOrReason decoder_of_versions(const std::vector<MessageTypes>& versions,
 
 DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
   const bool ros1 = wire == Wire::ros1;
-  const bool readable = ros1 ? format.definition_encoding == "ros1msg"
-                             : format.definition_encoding == "ros2msg";
+  const bool readable =
+      ros1 ? format.definition_encoding == "ros1msg" : format.definition_encoding == "ros2msg";
   const bool said = !format.definition_encoding.empty() && !format.definition.empty();
   if (said && !readable)
     return {nullptr,
@@ -111,7 +111,8 @@ DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
     complete_types(types);
     return decoder_of_versions({types}, format, wire);
   }
-  const auto versions = ros1 ? std::vector<MessageTypes>{} : known_definitions(plain_type_name(format.type));
+  const auto versions =
+      ros1 ? std::vector<MessageTypes>{} : known_definitions(plain_type_name(format.type));
   if (versions.empty()) return {nullptr, "the log has no definition of this type"};
   return decoder_of_versions(versions, format, wire);
 }

@@ -12,8 +12,8 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostFields = 100000;            // of all types of a text
-constexpr std::uint64_t kLongestArray = 1000000000;    // of a fixed array
+constexpr std::size_t kMostFields = 100000;          // of all types of a text
+constexpr std::uint64_t kLongestArray = 1000000000;  // of a fixed array
 
 struct PrimitiveName {
   std::string_view name;
@@ -65,10 +65,9 @@ void read_type(std::string_view word, std::string_view package, bool ros1, Messa
     field.kind = word == "time" ? Primitive::time1 : Primitive::duration1;
     return;
   }
-  field.type = word == "Header" ? "std_msgs/Header"
-               : word.find('/') == std::string_view::npos
-                   ? fmt::format("{}/{}", package, word)
-                   : plain_type_name(word);
+  field.type = word == "Header"                           ? "std_msgs/Header"
+               : word.find('/') == std::string_view::npos ? fmt::format("{}/{}", package, word)
+                                                          : plain_type_name(word);
   const bool stamp =
       field.type == "builtin_interfaces/Time" || field.type == "builtin_interfaces/Duration";
   field.kind = stamp ? Primitive::time : Primitive::message;
@@ -105,7 +104,8 @@ std::string_view package_of(std::string_view type) {
 }
 
 bool parting_line(std::string_view line) {
-  return line.size() >= 20 && std::all_of(line.begin(), line.end(), [](char c) { return c == '='; });
+  return line.size() >= 20 &&
+         std::all_of(line.begin(), line.end(), [](char c) { return c == '='; });
 }
 
 }  // namespace
@@ -141,7 +141,8 @@ std::string add_message_types(std::string_view type,
     }
     if (!read_line(line, package_of(found.back().name), ros1, found.back()))
       return fmt::format("its definition cannot be read (\"{}\")", printable(line, 40));
-    if (++fields > kMostFields) return fmt::format("a definition of more than {} lines", kMostFields);
+    if (++fields > kMostFields)
+      return fmt::format("a definition of more than {} lines", kMostFields);
   }
   for (MessageType& one : found) {
     std::string name = one.name;

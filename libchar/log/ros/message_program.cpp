@@ -388,8 +388,8 @@ class Compiler {
                          field.kind == Primitive::duration1;
     for (std::uint64_t i = 0; i < count; ++i) {
       NumberField number;
-      number.name = field.repeat == Repeat::once ? place.prefix
-                                                 : fmt::format("{}[{}]", place.prefix, i);
+      number.name =
+          field.repeat == Repeat::once ? place.prefix : fmt::format("{}[{}]", place.prefix, i);
       number.unit = seconds ? "s" : place.unit;
       number.kind = field.kind;
       number.usual = place.usual;
@@ -439,7 +439,9 @@ class Compiler {
     }
     add_elements(field, place, count, step);
     draft.program.least_bytes += step.counted ? 4 : step.rest.empty() ? 0 : 1;
-    const auto any = [&](auto what) { return std::any_of(step.elements.begin(), step.elements.end(), what); };
+    const auto any = [&](auto what) {
+      return std::any_of(step.elements.begin(), step.elements.end(), what);
+    };
     const bool wanted = any([](const MessageProgram& p) { return p.wanted; });
     draft.program.lists |=
         (wanted && step.counted) || any([](const MessageProgram& p) { return p.lists; });

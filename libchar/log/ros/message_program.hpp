@@ -40,7 +40,7 @@ struct MessageProgram {
   std::vector<ProgramStep> steps;
   std::uint64_t least_bytes = 0;  ///< of a message, without what aligns it
   bool wanted = false;            ///< some number is taken
-  bool lists = false;             ///< some of them out of arrays of variable length, which may be shorter
+  bool lists = false;  ///< some of them out of arrays of variable length, which may be shorter
 };
 
 /// One number to take: its distance from the beginning of its stretch.
@@ -58,11 +58,11 @@ struct Stretch {
 struct ProgramStep {
   enum class Kind : std::uint8_t { stretch, texts, numbers, messages };
   Kind kind = Kind::stretch;
-  bool counted = false;     ///< a count stands in front (variable arrays)
-  std::uint64_t count = 1;  ///< where none does
-  std::array<Stretch, 8> stretch;        ///< by the position in front, modulo 8; of ROS 1 the first only
-  Primitive number = Primitive::f64;     ///< of `numbers`
-  std::vector<std::uint32_t> slots;      ///< of the first elements of `numbers`; kNoSlot = not wanted
+  bool counted = false;            ///< a count stands in front (variable arrays)
+  std::uint64_t count = 1;         ///< where none does
+  std::array<Stretch, 8> stretch;  ///< by the position in front, modulo 8; of ROS 1 the first only
+  Primitive number = Primitive::f64;  ///< of `numbers`
+  std::vector<std::uint32_t> slots;   ///< of the first elements of `numbers`; kNoSlot = not wanted
   std::vector<MessageProgram> elements;  ///< of the first elements of `messages`
   std::vector<MessageProgram> rest;      ///< of all others: one, or none for what has no bytes
 };
@@ -74,14 +74,15 @@ struct CompiledMessage {
   std::vector<NumberField> fields;
   std::size_t stamp = kNoSlot;  ///< field that is the sensor's own stamp
   MessageProgram program;
-  std::string problem;  ///< why it cannot be compiled; "" when it can
+  std::string problem;     ///< why it cannot be compiled; "" when it can
   bool oversized = false;  ///< arrays or fields were left out because there are too many
 };
 
 struct CompileOptions {
   Wire wire = Wire::cdr;
-  std::vector<std::uint32_t> slots;       ///< by field; those behind its end are not wanted
-  std::span<const std::byte> example;     ///< a message of the type, for the lengths of variable arrays; may be empty
+  std::vector<std::uint32_t> slots;  ///< by field; those behind its end are not wanted
+  std::span<const std::byte>
+      example;  ///< a message of the type, for the lengths of variable arrays; may be empty
 };
 
 /// Compiles `type` of `types`. Arrays of up to kListedElements have fields; variable ones as many as in the example.

@@ -18,7 +18,9 @@ bool whole_number(Primitive kind) {
 }
 
 // Fields whose covariance begins with -1 are not measured, says sensor_msgs.
-bool not_measured(const MessageDecoder& decoder, const std::vector<double>& example, std::size_t i) {
+bool not_measured(const MessageDecoder& decoder,
+                  const std::vector<double>& example,
+                  std::size_t i) {
   const std::string& name = decoder.fields()[i].name;
   const std::string front = name.substr(0, name.find('.')) + "_covariance[0]";
   for (std::size_t k = 0; k < decoder.fields().size(); ++k)
@@ -40,8 +42,7 @@ std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic) {
         a.definition != b.definition)
       continue;
     if (topic.rows > 0) {
-      known.first_ns =
-          known.rows == 0 ? topic.first_ns : std::min(known.first_ns, topic.first_ns);
+      known.first_ns = known.rows == 0 ? topic.first_ns : std::min(known.first_ns, topic.first_ns);
       known.last_ns = known.rows == 0 ? topic.last_ns : std::max(known.last_ns, topic.last_ns);
     }
     known.rows += topic.rows;
@@ -77,8 +78,8 @@ void MessageTopics::add_topic(RawTopic& raw) {
   topic.sensor = sensor_type(plain_type_name(raw.format.type));
   Topic mine;
   const std::vector<std::byte> example = raw.format.example;
-  DecoderOrReason made = raw.rows > 0 ? make_decoder(raw.format)
-                                      : DecoderOrReason{nullptr, "no messages"};
+  DecoderOrReason made =
+      raw.rows > 0 ? make_decoder(raw.format) : DecoderOrReason{nullptr, "no messages"};
   topic.why_not = made.why_not;
   mine.decoder = std::move(made.decoder);
   if (mine.decoder) {
@@ -89,12 +90,13 @@ void MessageTopics::add_topic(RawTopic& raw) {
     std::vector<std::size_t> all(fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) all[i] = i;
     mine.decoder->select(all, mine.decoder->stamp());
-    const bool seen = !example.empty() &&
-                      mine.decoder->decode(example, row, stamp, rounded) != Decoded::misfit;
+    const bool seen =
+        !example.empty() && mine.decoder->decode(example, row, stamp, rounded) != Decoded::misfit;
     mine.stamped = mine.decoder->stamp() && (!seen || stamp != 0);
     for (std::size_t i = 0; i < fields.size(); ++i) {
       topic.fields.push_back({fields[i].name, fields[i].unit, whole_number(fields[i].kind)});
-      if (fields[i].usual && !(seen && not_measured(*mine.decoder, row, i))) mine.usual.push_back(i);
+      if (fields[i].usual && !(seen && not_measured(*mine.decoder, row, i)))
+        mine.usual.push_back(i);
     }
   }
   topics_.push_back(std::move(topic));
@@ -149,7 +151,8 @@ void MessageTopics::select(std::size_t topic,
   unit_ns_ = unit_ns;
   if (time && !time_field_) source_ = Source::header;
   if (!time && source_ == Source::log && time_source_ == "auto" && decoder.stamp())
-    early_.add("zero_stamp", "stamps of messages that are 0: the time of recording is taken instead");
+    early_.add("zero_stamp",
+               "stamps of messages that are 0: the time of recording is taken instead");
   std::vector<std::size_t> slots = fields;
   if (time_field_) slots.push_back(*time);
   row_.assign(slots.size(), kMissing);

@@ -18,8 +18,9 @@ struct RawTopic {
   std::string name;
   MessageFormat format;
   std::uint64_t rows = 0;
-  std::int64_t first_ns = 0, last_ns = 0;  ///< of its messages, when they were recorded; equal = not known
-  double rate_hz = 0;  ///< where it is known better than by these
+  std::int64_t first_ns = 0,
+               last_ns = 0;  ///< of its messages, when they were recorded; equal = not known
+  double rate_hz = 0;        ///< where it is known better than by these
 };
 
 /// Adds `topic` to `topics`, to one of the same name and type where there is one; returns its place. Of one name with another type
