@@ -67,9 +67,9 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"taus_s", "--taus"},
                                {"temperature", "--temperature"},
                                {"time_column", "--time-column"},
+                               {"time_source", "--time-source"},
                                {"time_unit", "--time-unit"},
                                {"to_s", "--to"},
-                               {"topic", "--topic"},
                                {"topic", "--topic"},
                                {"units", "--units"}};
 

@@ -81,7 +81,7 @@ inline void check_cuts(const std::string& format,
     INFO(name << " cut at " << cut);
     ++cuts;
     try {
-      const Rows rows = read_rows(format, path, of_topic(topic));
+      const Rows rows = read_rows(format, path, of_topic(topic), true);
       REQUIRE(rows.columns.size() == whole.columns.size());
       const std::size_t n = rows.time_ns.size();
       REQUIRE(n <= whole.time_ns.size());

@@ -21,7 +21,8 @@ struct Rows {
 
 inline Rows read_rows(const std::string& format,
                       const std::filesystem::path& path,
-                      const libchar::ReadOptions& options = {}) {
+                      const libchar::ReadOptions& options = {},
+                      bool to_end = false) {  // warnings that need totals too
   const libchar::Format* const row = libchar::find_format(format);
   if (row == nullptr) throw std::runtime_error("no such format");
   Rows all;
@@ -34,7 +35,7 @@ inline Rows read_rows(const std::string& format,
       all.columns[c].insert(all.columns[c].end(), block.columns[c].begin(), block.columns[c].end());
     all.time_ns.insert(all.time_ns.end(), block.time_ns.begin(), block.time_ns.end());
   }
-  source->finish(all.warnings);
+  if (to_end) source->finish(all.warnings);
   all.info = source->info();
   all.sha256 = source->sha256();
   return all;
