@@ -73,7 +73,7 @@ void drop_temperature(Characterization& result) {
   std::erase_if(result.log.channels, is_temperature);
 }
 
-void check_columns(const Recording& recording) {
+void check_columns(const RecordingView& recording) {
   const auto refuse = [](const std::string& what) {
     throw Error({ErrorKind::usage, "E0706", "", what, "", ""});
   };
@@ -86,7 +86,7 @@ void check_columns(const Recording& recording) {
       refuse("the columns of a recording have different lengths");
 }
 
-LogInfo push_recording(const Recording& recording, BlockSink& sink, Progress& progress) {
+LogInfo push_recording(const RecordingView& recording, BlockSink& sink, Progress& progress) {
   LogInfo log = recording.info;
   log.samples = recording.samples.empty() ? 0 : recording.samples[0].size();
   log.read_ahead = false;
@@ -148,19 +148,19 @@ void note_stretch(Stretch stretch, Characterization& result) {
 }
 
 /// Samples of a recording between two times.
-Recording between(const Recording& recording, const Stretch& stretch) {
-  Recording part{recording.info, {}};
+RecordingView between(const RecordingView& recording, const Stretch& stretch) {
+  RecordingView part{recording.info, {}};
   const double rate_hz = recording.info.time.rate_hz;
   if (!(rate_hz > 0))
     throw Error(
         {ErrorKind::usage, "E0704", "", "the rate is not known: there are no times", "", ""});
   for (const auto& column : recording.samples) {
     const auto at = [&](double time_s) {
-      return column.begin() +
-             static_cast<std::ptrdiff_t>(
-                 std::min(static_cast<double>(column.size()), std::round(time_s * rate_hz)));
+      return static_cast<std::size_t>(
+          std::min(static_cast<double>(column.size()), std::round(time_s * rate_hz)));
     };
-    part.samples.emplace_back(at(stretch.from_s), at(stretch.to_s));
+    const std::size_t first = at(stretch.from_s);
+    part.samples.push_back(column.subspan(first, std::max(first, at(stretch.to_s)) - first));
   }
   return part;
 }
@@ -208,14 +208,20 @@ Characterization characterize(const std::string& path,
 Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options,
                               Progress& progress) {
+  return characterize(view_of(recording), options, progress);
+}
+
+Characterization characterize(const RecordingView& recording,
+                              const CharacterizeOptions& options,
+                              Progress& progress) {
   check_columns(recording);
   check_still(options.still, {});
   std::optional<Stretch> stretch;
   if (wants_still(options.still))
     stretch = still_stretch(
         options, [&](BlockSink& sink) { return push_recording(recording, sink, progress); });
-  const Recording part = stretch ? between(recording, *stretch) : Recording{};
-  const Recording& used = stretch ? part : recording;
+  const RecordingView part = stretch ? between(recording, *stretch) : RecordingView{};
+  const RecordingView& used = stretch ? part : recording;
   Source source;
   source.read = [&](BlockSink& sink) { return push_recording(used, sink, progress); };
   source.read_again = [&](BlockSink& sink) { push_recording(used, sink, progress); };

@@ -21,6 +21,7 @@
 #include "libchar/fit/motion.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
+#include "libchar/log/recording_view.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
@@ -130,9 +131,12 @@ Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
-/// The same of samples in memory: a recording that was read, or one made by the caller, who names
-/// `info.channels` and `info.time.rate_hz` and leaves the rest as it is. Of `options.reading` only the
+/// The same of samples in memory: a recording that was read, or arrays of the caller's
+/// (recording_view.hpp), which are not copied. Of `options.reading` only the
 /// threads count. Throws Error(usage) unless each channel has a column, and all are of one length.
+Characterization characterize(const RecordingView& recording,
+                              const CharacterizeOptions& options = {},
+                              Progress& progress = no_progress());
 Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());

@@ -83,23 +83,24 @@ LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, P
   return result;
 }
 
-LogSpectra spectra_of(const Recording& recording, const WelchOptions& welch_options) {
+LogSpectra spectra_of(const RecordingView& recording, const WelchOptions& welch_options) {
   LogSpectra result;
   result.log = recording.info;
   WelchWorkspace workspace;
   for (std::size_t c = 0; c < recording.samples.size(); ++c)
     try_channel(result, recording.info.channels[c], [&] {
-      return welch(recording.channel(c), recording.info.time.rate_hz, welch_options, &workspace);
+      return welch(recording.samples[c], recording.info.time.rate_hz, welch_options, &workspace);
     });
   return result;
 }
 
 // Segments of a quarter of the record: the record has to be there first. Where one channel needs
 // shorter segments than another, all get the shortest, so that they share one frequency axis.
-LogSpectra whole(const std::string& path, const LogSpectraOptions& options, Progress& progress) {
-  const Recording recording = read_recording(path, options.reading, progress);
+LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& options) {
   check_rate_known(recording.info);
   WelchOptions welch = welch_options(options);
+  if (options.segment_s > 0)
+    welch.segment = segment_samples(options.segment_s, recording.info.time.rate_hz);
   LogSpectra result = spectra_of(recording, welch);
   const auto [shortest, longest] = std::minmax_element(
       result.channels.begin(), result.channels.end(), [](const auto& a, const auto& b) {
@@ -115,18 +116,12 @@ LogSpectra whole(const std::string& path, const LogSpectraOptions& options, Prog
   return result;
 }
 
-}  // namespace
-
-LogSpectra log_spectra(const std::string& path,
-                       const LogSpectraOptions& options,
-                       Progress& progress) {
-  LogSpectra result =
-      segment_given(options) ? streamed(path, options, progress) : whole(path, options, progress);
+LogSpectra finished(LogSpectra result, const LogSpectraOptions& options) {
   if (result.channels.empty())
     throw Error(
         {ErrorKind::numeric,
          "E0715",
-         path,
+         result.log.file,
          "no channel gives a spectrum" + (result.notes.empty() ? "" : ": " + result.notes.front()),
          "",
          segment_given(options) ? "try a shorter `segment`" : ""});
@@ -135,6 +130,20 @@ LogSpectra log_spectra(const std::string& path,
     if (options.bins > 0) c.spectrum = log_binned(c.spectrum, options.bins);
   }
   return result;
+}
+
+}  // namespace
+
+LogSpectra log_spectra(const std::string& path,
+                       const LogSpectraOptions& options,
+                       Progress& progress) {
+  if (segment_given(options)) return finished(streamed(path, options, progress), options);
+  const Recording recording = read_recording(path, options.reading, progress);
+  return finished(whole(view_of(recording), options), options);
+}
+
+LogSpectra log_spectra(const RecordingView& recording, const LogSpectraOptions& options) {
+  return finished(whole(recording, options), options);
 }
 
 }  // namespace libchar

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/log/read.hpp"
+#include "libchar/log/recording_view.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/welch.hpp"
 
@@ -37,5 +38,8 @@ struct LogSpectra {
 LogSpectra log_spectra(const std::string& path,
                        const LogSpectraOptions& options = {},
                        Progress& progress = no_progress());
+
+/// The same of samples in memory; of `options.reading` only the threads count.
+LogSpectra log_spectra(const RecordingView& recording, const LogSpectraOptions& options = {});
 
 }  // namespace libchar
