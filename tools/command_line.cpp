@@ -6,12 +6,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <sstream>
 
+#include "colour.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/version.hpp"
+#include "usage.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -87,6 +91,49 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
   throw Error({ErrorKind::usage, "E0203", app.get_name(), "unknown verb", command[1], hint});
 }
 
+/// What a value's name says of it: "SCENE|LOG" is a file, "DIR" a folder, "SENSOR=FILE" neither.
+ValueKind kind_of_name(const std::string& name) {
+  static constexpr std::array<std::string_view, 9> kFiles = {
+      "LOG", "FILE", "MODEL", "SCENE", "CURVE", "RUN", "REPORT", "A", "B"};
+  if (name.find('=') != std::string::npos) return ValueKind::text;
+  ValueKind kind = ValueKind::text;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t end = std::min(name.find('|', at), name.size());
+    const std::string_view word = std::string_view(name).substr(at, end - at);
+    const std::string_view letters =
+        word.substr(0, word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
+    if (std::find(kFiles.begin(), kFiles.end(), letters) != kFiles.end()) return ValueKind::file;
+    if (letters == "DIR" || letters == "FOLDER") kind = ValueKind::folder;
+    at = end + 1;
+  }
+  return kind;
+}
+
+OptionUsage usage_of_option(const CLI::Option& option, const KnownWords& words) {
+  OptionUsage usage;
+  for (const std::string& flag : option.get_snames()) usage.flags.push_back("-" + flag);
+  for (const std::string& flag : option.get_lnames()) usage.flags.push_back("--" + flag);
+  const bool value = option.get_expected_max() > 0;
+  if (value) {
+    usage.name = option.get_type_name();
+    if (usage.flags.empty() && usage.name == "TEXT") usage.name = option.get_name(true);
+    usage.kind = kind_of_name(usage.name);
+  }
+  if (const auto known = words.find(&option); known != words.end()) {
+    usage.words = known->second;
+    usage.kind = ValueKind::words;
+  }
+  usage.comma_list = option.get_delimiter() == ',';
+  usage.required = option.get_required();
+  usage.repeatable = option.get_expected_max() > 1 ||
+                     option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  usage.group = option.get_group() == "Options" ? "" : option.get_group();
+  usage.help = option.get_description();
+  for (const CLI::Option* other : option.get_excludes())
+    usage.excludes.push_back("--" + other->get_lnames().front());
+  return usage;
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -119,20 +166,25 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
+Option& Option::known_words(std::vector<std::string> words) {
+  (*words_)[option_] = std::move(words);
+  return *this;
+}
+
 Option VerbOptions::add_flag(const std::string& names, bool& value, const std::string& help) {
-  return Option(app_->add_flag(names, value, help));
+  return added(app_->add_flag(names, value, help));
 }
 
 Option VerbOptions::add_text(const std::string& names,
                              std::string& value,
                              const std::string& help) {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 
 Option VerbOptions::add_texts(const std::string& names,
                               std::vector<std::string>& values,
                               const std::string& help) {
-  return Option(app_->add_option(names, values, help));
+  return added(app_->add_option(names, values, help));
 }
 
 Option VerbOptions::add_parsed(const std::string& names,
@@ -150,7 +202,7 @@ Option VerbOptions::add_parsed(const std::string& names,
     }
   };
   CLI::Option* option = app_->add_option_function<std::string>(names, named, help);
-  return Option(option->type_name(value_name));
+  return added(option->type_name(value_name));
 }
 
 Option VerbOptions::add_number(const std::string& names,
@@ -222,7 +274,7 @@ Option VerbOptions::add_word(const std::string& names,
                              const std::string& help,
                              std::function<void(const std::string&)> use) {
   const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
-  const auto read = [words = std::move(words), use = std::move(use)](const std::string& text) {
+  const auto read = [words, use = std::move(use)](const std::string& text) {
     if (std::find(words.begin(), words.end(), text) == words.end()) {
       const auto near = libchar::nearest(text, words);
       throw Error({ErrorKind::usage,
@@ -234,7 +286,7 @@ Option VerbOptions::add_word(const std::string& names,
     }
     use(text);
   };
-  return add_parsed(names, value_name, read, help);
+  return add_parsed(names, value_name, read, help).known_words(std::move(words));
 }
 
 CommandLine::CommandLine(const std::string& program,
@@ -242,7 +294,8 @@ CommandLine::CommandLine(const std::string& program,
                          const std::string& version,
                          const std::string& footer)
     : app_(std::make_unique<CLI::App>(what, program)) {
-  app_->set_version_flag("--version", version);
+  app_->set_help_flag("-h,--help", "this page");
+  app_->set_version_flag("--version", version, "version, build type, compiler and commit");
   app_->require_subcommand(1);
   app_->footer(footer);
 }
@@ -251,13 +304,49 @@ CommandLine::~CommandLine() = default;
 
 void CommandLine::add(const VerbEntry& entry, Session& session) {
   CLI::App* sub = app_->add_subcommand(entry.name, entry.what);
-  sub->get_formatter()->column_width(34);
   sub->add_flag_callback(
       "-q,--quiet",
       [&session] { session.terminal.be_quiet(); },
-      "no progress, no warnings, no notes");
-  VerbOptions options(*sub);
+      "nothing but errors on stderr: no progress, no warnings, no notes");
+  examples_[entry.name] = entry.examples;
+  VerbOptions options(*sub, words_);
+  options
+      .add_parsed(
+          "--color",
+          "auto|always|never",
+          [](const std::string& text) {
+            const auto colour = libchar::find_enum<Colour>(text);
+            if (!colour)
+              throw Error(
+                  {ErrorKind::usage, "E0202", "", "expected one of auto, always, never", text, ""});
+            use_colour(*colour);
+          },
+          "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
+          "auto)")
+      .known_words(libchar::words_of<Colour>());
   sub->final_callback(entry.add_options(options, session));
+}
+
+VerbUsage CommandLine::usage_of(const CLI::App& verb) const {
+  VerbUsage usage{verb.get_name(), verb.get_description(), {}, {}, examples_.at(verb.get_name())};
+  for (const CLI::Option* option : verb.get_options()) {
+    OptionUsage one = usage_of_option(*option, words_);
+    (one.flags.empty() ? usage.arguments : usage.options).push_back(std::move(one));
+  }
+  return usage;
+}
+
+ProgramUsage CommandLine::usage() const {
+  ProgramUsage usage;
+  usage.name = app_->get_name();
+  usage.what = app_->get_description();
+  usage.version = libchar::version();
+  usage.footer = app_->get_footer();
+  for (const CLI::Option* option : app_->get_options())
+    usage.options.push_back(usage_of_option(*option, words_));
+  for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
+    usage.verbs.push_back(usage_of(*verb));
+  return usage;
 }
 
 std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {

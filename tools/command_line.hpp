@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,11 +22,17 @@ namespace sensorchar {
 
 struct Session;
 struct VerbEntry;
+struct Example;
+struct ProgramUsage;
+struct VerbUsage;
+
+/// The values of an option that are known beforehand.
+using KnownWords = std::map<const CLI::Option*, std::vector<std::string>>;
 
 /// An option or argument that was added, for what is said about few of them.
 class Option {
  public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, KnownWords* words) : option_(option), words_(words) {}
   Option& required();
   /// The heading in the help under which it stands.
   Option& group(const std::string& heading);
@@ -36,17 +43,21 @@ class Option {
   /// Lists: exactly one value after each flag.
   Option& one_value_each();
   Option& excludes(const Option& other);
+  /// Values that are offered by the completion and the man page; others are not refused.
+  Option& known_words(std::vector<std::string> words);
 
  private:
   CLI::Option* option_;
+  KnownWords* words_;
 };
 
 /// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output".
 /// Variables must live until the verb has run, and keep their value where an option is not given;
-/// defaults must stand in `help`. What an option refuses is Error(usage) that names the option.
+/// defaults must stand in `help`. What an option refuses is Error(usage) that names the option. A value that is called LOG, FILE, MODEL,
+/// SCENE, CURVE, RUN, DIR or FOLDER is completed as a file or folder.
 class VerbOptions {
  public:
-  explicit VerbOptions(CLI::App& app) : app_(&app) {}
+  VerbOptions(CLI::App& app, KnownWords& words) : app_(&app), words_(&words) {}
 
   Option add_flag(const std::string& names, bool& value, const std::string& help);
   Option add_text(const std::string& names, std::string& value, const std::string& help);
@@ -100,7 +111,10 @@ class VerbOptions {
                   const std::string& help,
                   std::function<void(const std::string&)> use);
 
+  Option added(CLI::Option* option) { return {option, words_}; }
+
   CLI::App* app_;
+  KnownWords* words_;
 };
 
 /// A program with verbs.
@@ -117,13 +131,19 @@ class CommandLine {
 
   /// Adds a verb with its options and those that every verb has (--quiet).
   void add(const VerbEntry& verb, Session& session);
-  /// Parses argv and runs the verb that was chosen. Returns what is to be printed instead (--help,
-  /// --version), or nothing. Throws Error(usage) for what cannot be understood, and whatever the
+  /// Everything that was added, for help, man pages and completions.
+  ProgramUsage usage() const;
+  /// Parses argv and runs the verb that was chosen. Returns what is to be printed instead
+  /// (--version), or nothing. Throws Error(usage) for what cannot be understood, and whatever the
   /// verb throws.
   std::optional<std::string> run(const std::vector<std::string>& argv);
 
  private:
+  VerbUsage usage_of(const CLI::App& verb) const;
+
   std::unique_ptr<CLI::App> app_;
+  KnownWords words_;
+  std::map<std::string, std::vector<Example>> examples_;  ///< of each verb
 };
 
 }  // namespace sensorchar

@@ -4,9 +4,14 @@
 #include <exception>
 #include <span>
 
+#include "generate.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/core/version.hpp"
 #include "verb.hpp"
+
+namespace {
+constexpr std::size_t kPageColumns = 100;  ///< of help that is not for a terminal
+}
 
 int main(int argc, char** argv) {
   using namespace sensorchar;
@@ -33,6 +38,16 @@ int main(int argc, char** argv) {
         fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
         "Begin with: sensorchar inspect LOG");
     for (const VerbEntry& verb : verbs()) line.add(verb, call.session);
+    ProgramUsage usage = line.usage();
+    usage.released = SENSORCHAR_RELEASED;
+    const auto page =
+        generated(usage, call.session.command, columns_of_stdout().value_or(kPageColumns));
+    if (page) return print(*page);
+    for (const VerbUsage& verb : usage.verbs)
+      if (call.session.command.size() > 1 && verb.name == call.session.command[1])
+        for (const OptionUsage& option : verb.options)
+          call.session.flags.insert(option.flags.begin(), option.flags.end());
+    set_memory_hint(call.session);
     if (const auto text = line.run(call.session.command)) print(*text);
   });
 }

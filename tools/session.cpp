@@ -58,7 +58,12 @@ libchar::Json document_head(const Session& session,
   return document;
 }
 
+void print_beside(const Session& session, const std::string& text) {
+  if (!session.terminal.quiet()) print_text(text);
+}
+
 void print_summary(Session& session, const std::string& output, const std::string& text) {
+  if (session.terminal.quiet()) return;
   if (!libchar::writes_through(output)) return print_text(text);
   session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
 }
@@ -74,13 +79,16 @@ namespace {
 constexpr const char* kNoMemory = "E0403";
 constexpr const char* kNoThread = "E0419";
 
+const char* g_memory_hint = "close other programs, or use a machine with more";
+
 // Said without taking memory: there is none.
 int refuse_for_memory() noexcept {
   for (const std::string_view part :
        {std::string_view("sensorchar: error "),
         std::string_view(kNoMemory),
-        std::string_view(": not enough memory for this input; hint: read less of it with "
-                         "--channel, --from and --to\n")})
+        std::string_view(": not enough memory for this input; hint: "),
+        std::string_view(g_memory_hint),
+        std::string_view("\n")})
     if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
   return 4;
 }
@@ -104,6 +112,21 @@ libchar::Problem with_curve_hint(const Session& session, libchar::Problem proble
     if (const std::string curve = libchar::curve_in_header(word); !curve.empty())
       problem.hint = fmt::format(
           "this is a table of a curve: sensorchar fit {} --curve {}", shell_word(word), curve);
+  }
+  return problem;
+}
+
+/// A hint that names a flag of other verbs is of no use here.
+libchar::Problem with_own_hint(const Session& session, libchar::Problem problem) {
+  const std::string& hint = problem.hint;
+  if (session.flags.empty() || hint.find("sensorchar ") != std::string::npos) return problem;
+  for (std::size_t at = hint.find("--"); at != std::string::npos; at = hint.find("--", at + 2)) {
+    const std::size_t end = hint.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
+    const std::string flag = hint.substr(at, end == std::string::npos ? end : end - at);
+    if (flag.size() > 2 && session.flags.count(flag) == 0) {
+      problem.hint.clear();
+      return problem;
+    }
   }
   return problem;
 }
@@ -135,7 +158,8 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
-    return fail(libchar::one_line(with_flags(with_curve_hint(session, error.problem()))),
+    const libchar::Problem problem = with_flags(with_curve_hint(session, error.problem()));
+    return fail(libchar::one_line(with_own_hint(session, problem)),
                 exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return stopped(cancelled.signal);
@@ -166,6 +190,13 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
 }
 
 }  // namespace
+
+void set_memory_hint(const Session& session) {
+  if (session.flags.count("--channel") + session.flags.count("--from") == 2)
+    g_memory_hint = "read less of it with --channel, --from and --to";
+  else if (session.flags.count("--duration") > 0)
+    g_memory_hint = "make it shorter with --duration";
+}
 
 void end_in_a_sentence() {
   constexpr std::string_view kDefect =

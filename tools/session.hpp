@@ -2,6 +2,7 @@
 // One run of the program, and what every verb does with it.
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace sensorchar {
 
 struct Session {
   std::vector<std::string> command;  ///< argv as given
+  std::set<std::string> flags;       ///< that the verb has: hints name no others
   Terminal terminal;
   bool wrote = false;                     ///< something has its name already, should the rest fail
   bool strict = false;                    ///< warnings end the run with exit code 3
@@ -30,7 +32,13 @@ libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);
 
-/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note.
+/// What is said beside results that stand in files; nothing when quiet.
+void print_beside(const Session& session, const std::string& text);
+
+/// What memory that is refused is answered with: what this verb can do about it.
+void set_memory_hint(const Session& session);
+
+/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 
 /// A file that cannot be written is refused before the work is done: it is an input, stands already, or its folder cannot be written.

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "colour.hpp"
 #include "flag_names.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
@@ -97,6 +99,19 @@ int stop_signal() {
   return g_stop_signal;
 }
 
+std::optional<std::size_t> columns_of_stdout() {
+  constexpr std::size_t kMost = 10000;
+  if (const char* said = std::getenv("COLUMNS"); said != nullptr) {
+    const std::size_t columns = std::strtoul(said, nullptr, 10);
+    if (columns > 0 && columns < kMost) return columns;
+  }
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0)
+    return std::nullopt;
+  if (size.ws_col == 0) return std::nullopt;
+  return size.ws_col;
+}
+
 void print(std::string_view text) {
   const int status = write_all(STDOUT_FILENO, text);
   if (status == EPIPE) throw StdoutClosed{};
@@ -110,12 +125,42 @@ void print(std::string_view text) {
   }
 }
 
+std::size_t table_width() {
+  return columns_of_stdout().value_or(0);
+}
+
+namespace {
+
+/// Long lines broken between words, what follows two places further in.
+std::string fitted(std::string_view text, std::size_t width) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    if (width > 0 && libchar::width_of(line) > width) {
+      const std::size_t indent = std::min(line.find_first_not_of(' '), width / 2);
+      const std::string inner(indent + 2, ' ');
+      out += inner.substr(2) +
+             libchar::wrapped(line.substr(indent), width, inner).substr(inner.size());
+    } else {
+      out += line;
+    }
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
 void print_text(const std::string& text) {
-  print(with_flags(text));
+  const std::string lines = fitted(with_flags(text), table_width());
+  print(colours(STDOUT_FILENO) ? coloured_result(lines) : lines);
 }
 
 void say(std::string_view line) {
-  write_all(STDERR_FILENO, std::string(line) + "\n");
+  write_all(STDERR_FILENO,
+            (colours(STDERR_FILENO) ? coloured_message(line) : std::string(line)) + "\n");
 }
 
 Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
@@ -142,13 +187,31 @@ void Terminal::update(double fraction, std::string_view what) {
     return;
   drawn_ = now;
   std::string line = libchar::printable(what, 60);
-  if (fraction >= 0) line += fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0));
+  if (fraction >= 0)
+    line +=
+        fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0)) + time_left(fraction, what, now);
   const std::size_t places = libchar::width_of(line);
   const std::string rest =
       escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
   write_all(STDERR_FILENO, "\r" + line + rest);
   shown_ = places;
   g_line_drawn = 1;
+}
+
+// From how fast it went since this phase was first heard of.
+std::string Terminal::time_left(double fraction, std::string_view what, Clock::time_point now) {
+  if (phase_ != what || fraction < phase_fraction_) {
+    phase_ = what;
+    phase_start_ = now;
+    phase_fraction_ = fraction;
+  }
+  const double seconds = std::chrono::duration<double>(now - phase_start_).count();
+  const double done = fraction - phase_fraction_;
+  if (seconds < 1 || done < 0.01 || fraction >= 1) return "";
+  const double left = seconds * (1 - fraction) / done;
+  if (left < 100) return fmt::format(", {:.0f} s left", left);
+  if (left < 6000) return fmt::format(", {:.0f} min left", left / 60);
+  return fmt::format(", {:.0f} h left", left / 3600);
 }
 
 void Terminal::clear() {

@@ -3,6 +3,7 @@
 // is interrupted.
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +32,16 @@ void work_is_done();
 /// Number of the signal that asked the program to stop, 0 when there is none.
 int stop_signal();
 
+/// Characters in a line where results are read: what COLUMNS says, else those of the terminal that stdout is; nothing for a file or a pipe.
+std::optional<std::size_t> columns_of_stdout();
+/// The same for tables: 0, any width, where there is none.
+std::size_t table_width();
+
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
-/// The same for a text that is read: options of the library are named by their flags.
+/// The same for a text that is read: options of the library are named by their flags, lines are wrapped between words to the width of
+/// the terminal, and statuses are coloured there.
 void print_text(const std::string& text);
 
 /// One message on stderr, a newline added. Lines coming from files must have gone through
@@ -63,9 +70,14 @@ class Terminal : public libchar::Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  std::string time_left(double fraction, std::string_view what, Clock::time_point now);
+
   bool draws_ = false, escapes_ = false, quiet_ = false;
   std::size_t shown_ = 0;  ///< characters of the line now on the terminal
   Clock::time_point start_, drawn_;
+  std::string phase_;              ///< what is being done
+  Clock::time_point phase_start_;  ///< since when
+  double phase_fraction_ = 0;      ///< where it began
 };
 
 }  // namespace sensorchar

@@ -13,12 +13,18 @@
 
 namespace sensorchar {
 
+/// A command that works, and what it is for ("an Allan curve of one channel").
+struct Example {
+  std::string what, command;
+};
+
 struct VerbEntry {
   int place;  ///< verbs stand in this order in the help
   std::string name;
   std::string what;  ///< the line in the help
   /// Adds the verb's options, and returns what runs when it is chosen.
   std::function<std::function<void()>(VerbOptions&, Session&)> add_options;
+  std::vector<Example> examples = {};  ///< at least two: they stand in the help and in the man page
 };
 
 /// All verbs, in the order of the help.

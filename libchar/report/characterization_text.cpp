@@ -10,7 +10,7 @@
 
 namespace libchar {
 
-std::string characterization_text(const CharacterizationView& view) {
+std::string characterization_text(const CharacterizationView& view, std::size_t width) {
   const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
@@ -29,7 +29,7 @@ std::string characterization_text(const CharacterizationView& view) {
   if (result.still) text += printable(result.still->sentence) + "\n";
   for (const ChannelView& channel : view.channels) {
     const ChannelResult& c = *channel.result;
-    text += "\n" + (c.fit ? fit_text(c.channel, *c.fit) : printable(c.channel.name) + "\n");
+    text += "\n" + (c.fit ? fit_text(c.channel, *c.fit, width) : printable(c.channel.name) + "\n");
     text += fmt::format(
         "  {}: {}\n", rating_word(channel.summary.rating), printable(channel.summary.sentence));
     if (c.verification)
@@ -41,8 +41,8 @@ std::string characterization_text(const CharacterizationView& view) {
   return text;
 }
 
-std::string characterization_text(const Characterization& result) {
-  return characterization_text(characterization_view(result));
+std::string characterization_text(const Characterization& result, std::size_t width) {
+  return characterization_text(characterization_view(result), width);
 }
 
 }  // namespace libchar

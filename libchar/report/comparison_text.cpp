@@ -83,7 +83,7 @@ Json comparison_json(const Comparison& c) {
   return out;
 }
 
-std::string comparison_text(const Comparison& c) {
+std::string comparison_text(const Comparison& c, std::size_t width) {
   std::string out =
       fmt::format("A: {}: {}\nB: {}: {}\n",
                   printable(c.a.file),
@@ -117,7 +117,7 @@ std::string comparison_text(const Comparison& c) {
                     bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
                     where.empty() ? std::string(name_of(row.difference)) : where});
   }
-  return out + "\n" + text_table(rows, "", true) + "\n" + printable(c.verdict) + "\n";
+  return out + "\n" + text_table(rows, "", true, width) + "\n" + printable(c.verdict) + "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {

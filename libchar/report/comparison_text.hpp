@@ -13,7 +13,7 @@ namespace libchar {
 Json comparison_json(const Comparison& comparison);
 
 /// A table of the algorithms that ran, with what is unlike above it and the verdict below.
-std::string comparison_text(const Comparison& comparison);
+std::string comparison_text(const Comparison& comparison, std::size_t width = 0);
 
 /// One page of Markdown.
 std::string comparison_markdown(const Comparison& comparison);

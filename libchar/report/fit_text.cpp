@@ -83,7 +83,7 @@ std::vector<std::string> process_row(const Coefficient& c,
           ""};
 }
 
-std::string power_laws_text(const NoiseFit& fit) {
+std::string power_laws_text(const NoiseFit& fit, std::size_t width) {
   std::vector<std::vector<std::string>> rows = {
       {"S_y(f), one-sided", "noise type", "h", "95 % interval", "status"}};
   for (const PowerLaw& law : power_laws(fit)) {
@@ -100,12 +100,12 @@ std::string power_laws_text(const NoiseFit& fit) {
                                 : "",
                     status});
   }
-  return rows.size() > 1 ? text_table(rows, "  ", true) : "";
+  return rows.size() > 1 ? text_table(rows, "  ", true, width) : "";
 }
 
 }  // namespace
 
-std::string fit_text(const Channel& channel, const NoiseFit& fit) {
+std::string fit_text(const Channel& channel, const NoiseFit& fit, std::size_t width) {
   std::string text = fmt::format("{}{}\n",
                                  printable(channel.name),
                                  shown_unit(channel.unit).empty() || channel.unit.empty()
@@ -116,8 +116,8 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
                                                  "95 % interval",
                                                  "unit",
                                                  "status",
-                                                 "at best",
-                                                 "10 % needs",
+                                                 "least error",
+                                                 "record for 10 %",
                                                  "in other words"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (fit.term[i].status != Status::not_fitted)
@@ -128,12 +128,13 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit) {
     rows.push_back(process_row(fit.gauss_markov->sigma, "gauss_markov sigma", unit));
     rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
   }
-  text += text_table(rows, "  ", true);
+  text += text_table(rows, "  ", true, width);
   if (!fit.band.whole)
     text +=
-        "  at best, 10 % needs: of a record whose whole spectrum the terms describe, not this band "
+        "  least error, record for 10 %: of a record whose whole spectrum the terms describe, not "
+        "this band "
         "alone\n";
-  text += power_laws_text(fit);
+  text += power_laws_text(fit, width);
   if (fit.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
                         significant(*fit.bandwidth_hz, 4),

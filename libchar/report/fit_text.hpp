@@ -9,6 +9,7 @@
 namespace libchar {
 
 /// One channel's noise coefficients as a table, with what was done to the data and what to think of the fit.
-std::string fit_text(const Channel& channel, const NoiseFit& fit);
+/// `width`: characters in a line that its table is fitted to; 0: any.
+std::string fit_text(const Channel& channel, const NoiseFit& fit, std::size_t width = 0);
 
 }  // namespace libchar

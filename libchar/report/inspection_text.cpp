@@ -36,7 +36,7 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           q.samples < 3 || constant ? "-" : significant(q.difference_kurtosis, 3)};
 }
 
-std::string channel_table(const Inspection& inspection) {
+std::string channel_table(const Inspection& inspection, std::size_t width) {
   std::vector<std::vector<std::string>> rows = {{"channel",
                                                  "unit",
                                                  "missing",
@@ -49,7 +49,7 @@ std::string channel_table(const Inspection& inspection) {
                                                  "kurtosis of differences"}};
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
-  return text_table(rows);
+  return text_table(rows, "  ", false, width);
 }
 
 // "angular_velocity.x, … and 34 more": enough to see what a topic is about.
@@ -64,7 +64,7 @@ std::string some_fields(const LogTopic& topic) {
   return text;
 }
 
-std::string topic_table(const LogInfo& info) {
+std::string topic_table(const LogInfo& info, std::size_t width) {
   std::vector<std::vector<std::string>> rows = {{"topic", "type", "rows", "rate", "fields"}};
   for (const LogTopic& topic : info.topics)
     rows.push_back({printable(topic.name, 60),
@@ -72,12 +72,12 @@ std::string topic_table(const LogInfo& info) {
                     std::to_string(topic.rows),
                     topic.rate_hz > 0 ? significant(topic.rate_hz, 4) + " Hz" : "-",
                     some_fields(topic)});
-  return text_table(rows, "  ", true);
+  return text_table(rows, "  ", true, width);
 }
 
 }  // namespace
 
-std::string inspection_text(const Inspection& inspection) {
+std::string inspection_text(const Inspection& inspection, std::size_t width) {
   const LogInfo& info = inspection.info;
   std::string text = summary_line(info) + "\n";
   std::string dialect = info.format;
@@ -88,7 +88,7 @@ std::string inspection_text(const Inspection& inspection) {
   const std::string front = printable(info.file) + ": warning: ";
   for (const Warning& warning : info.warnings.list())
     text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
-  text += is_listing(info) ? topic_table(info) : channel_table(inspection);
+  text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     for (const std::string& suggestion : inspection.quality[c].suggestions)
       text +=

@@ -202,7 +202,7 @@ std::string lot_html(const LotReport& report) {
                    lot_json(report));
 }
 
-std::string lot_text(const LotReport& report) {
+std::string lot_text(const LotReport& report, std::size_t width) {
   const Lot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& sentence : outlier_sentences(lot))
@@ -215,14 +215,14 @@ std::string lot_text(const LotReport& report) {
         row.push_back(printable(cell));
       rows.push_back(std::move(row));
     }
-  out += "\n" + text_table(rows);
+  out += "\n" + text_table(rows, "  ", false, width);
   rows = {{"group", "what", "mean", "spread (sd)", "counted", "not counted"}};
   for (const LotStatistic& s : lot.statistics) {
     if (s.counted.empty()) continue;
     rows.push_back(lot_cells(s));
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
-  return out + "\n" + text_table(rows, "  ", true);
+  return out + "\n" + text_table(rows, "  ", true, width);
 }
 
 std::vector<OutputFile> lot_files(const LotReport& report, const std::filesystem::path& folder) {

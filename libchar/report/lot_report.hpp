@@ -24,6 +24,6 @@ struct LotReport {
 std::vector<OutputFile> lot_files(const LotReport& report, const std::filesystem::path& folder);
 Json lot_json(const LotReport& report);
 std::string lot_html(const LotReport& report);
-std::string lot_text(const LotReport& report);
+std::string lot_text(const LotReport& report, std::size_t width = 0);
 
 }  // namespace libchar

@@ -47,7 +47,7 @@ std::vector<std::string> term_row(const Coefficient& c, std::size_t t, const std
 
 }  // namespace
 
-std::string model_text(const SensorModel& m) {
+std::string model_text(const SensorModel& m, std::size_t width) {
   const std::string axis = axis_of(m);
   std::string text = fmt::format("{}{}: {}{}, {}, {}\n",
                                  printable(m.channel),
@@ -67,7 +67,7 @@ std::string model_text(const SensorModel& m) {
     rows.push_back({"gauss_markov sigma", significant(m.gauss_markov.sigma, 5), "", u, "", ""});
     rows.push_back({"gauss_markov tau", significant(m.gauss_markov.tau_s, 5), "", "s", "", ""});
   }
-  text += rows.size() > 1 ? text_table(rows, "  ", true) : "  no noise\n";
+  text += rows.size() > 1 ? text_table(rows, "  ", true, width) : "  no noise\n";
   text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
   if (m.bandwidth_hz)
     text += fmt::format("  low-pass corner {} Hz\n", significant(*m.bandwidth_hz, 4));

@@ -7,6 +7,6 @@ namespace libchar {
 
 /// A sensor model in text, for a terminal: its terms with intervals, and the same in the units of
 /// data sheets.
-std::string model_text(const SensorModel& model);
+std::string model_text(const SensorModel& model, std::size_t width = 0);
 
 }  // namespace libchar

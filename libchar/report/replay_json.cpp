@@ -9,7 +9,9 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/allan_text.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
@@ -460,6 +462,31 @@ Json replay_json(const ReplayResult& result) {
 
 Json replay_json_without_times(const ReplayResult& result) {
   return replay_json_without_times(replay_view(result));
+}
+
+Json algorithms_json() {
+  Json out = Json::array();
+  for (const fusion::Entry& entry : fusion::algorithms()) {
+    const fusion::Description& d = *entry.description;
+    Json one = {{"name", std::string(d.name)},
+                {"title", std::string(d.title)},
+                {"source", std::string(d.source)},
+                {"complexity", std::string(d.complexity)},
+                {"learning_complexity", std::string(d.learning_complexity)},
+                {"needs", texts(needs_in_words(d))},
+                {"accepts_missing", d.needs.accepts_missing},
+                {"options", Json::array()}};
+    for (const fusion::Option& option : entry.options)
+      one["options"].push_back({{"name", std::string(option.name)},
+                                {"unit", std::string(option.unit)},
+                                {"standard", json_number(option.standard)},
+                                {"low", json_number(option.low)},
+                                {"high", json_number(option.high)},
+                                {"whole", option.whole},
+                                {"meaning", std::string(option.meaning)}});
+    out.push_back(std::move(one));
+  }
+  return out;
 }
 
 }  // namespace libchar

@@ -12,6 +12,9 @@ Json replay_json(const ReplayView& view);
 /// The same with a view made for it alone.
 Json replay_json(const ReplayResult& result);
 
+/// Every fusion algorithm with what it needs and its options, as an array (docs/json.md).
+Json algorithms_json();
+
 /// What a clock or the heap measured, and what follows from it.
 inline constexpr const char* kMeasuredKeys[] = {
     "measured", "verdict_with_costs", "ns_per_sample", "learning_s", "peak_bytes", "on_front"};

@@ -8,6 +8,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/algorithm_words.hpp"
 #include "libchar/replay/preparation_words.hpp"
@@ -22,7 +23,7 @@ std::string cell(double value, int digits) {
 
 }  // namespace
 
-std::string replay_text(const ReplayView& view) {
+std::string replay_text(const ReplayView& view, std::size_t width) {
   const ReplayResult& r = *view.result;
   const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
   const char* error = r.has_reference ? "RMSE" : "leave-one-out";
@@ -38,31 +39,26 @@ std::string replay_text(const ReplayView& view) {
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     text += fmt::format(
         "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);
-  text += fmt::format("\n{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}\n",
-                      "algorithm",
-                      error,
-                      "95 %",
-                      "regret",
-                      "ns/sample",
-                      "memory");
+  std::vector<std::vector<std::string>> rows = {
+      {"algorithm", error, "95 %", "regret", "ns/sample", "memory", ""}};
   for (const AlgorithmView* v : view.ranked) {
     const AlgorithmResult* a = v->result;
-    text += fmt::format(
-        "{:<34} {:>12} {:>24} {:>9} {:>11} {:>9}{}\n",
-        printable(a->label),
-        cell(a->rmse, 5),
-        std::isfinite(a->rmse_ci95.low)
-            ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
-            : "-",
-        !std::isfinite(a->regret) ? "-"
-        : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
-                                  : significant(1 + a->regret, 3) + " x",
-        cell(a->ns_per_sample, 3),
-        bytes_text(a->peak_bytes),
-        a->bound             ? "  (bound)"
-        : a->as_good_as_best ? "  *"
-                             : "");
+    rows.push_back(
+        {printable(a->label),
+         cell(a->rmse, 5),
+         std::isfinite(a->rmse_ci95.low)
+             ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
+             : "-",
+         !std::isfinite(a->regret) ? "-"
+         : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
+                                   : significant(1 + a->regret, 3) + " x",
+         cell(a->ns_per_sample, 3),
+         bytes_text(a->peak_bytes),
+         a->bound             ? "(bound)"
+         : a->as_good_as_best ? "*"
+                              : ""});
   }
+  text += "\n" + text_table(rows, "", true, width);
   text += "\n* the best method, and those whose difference from it is not resolved\n";
   for (const SkippedAlgorithms& s : view.skipped)
     text += fmt::format("skipped {}: {}\n",

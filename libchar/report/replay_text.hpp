@@ -8,7 +8,8 @@
 namespace libchar {
 
 /// Control characters of names are escaped.
-std::string replay_text(const ReplayView& view);
+/// `width`: characters in a line that its table is fitted to; 0: any.
+std::string replay_text(const ReplayView& view, std::size_t width = 0);
 
 /// Every algorithm there is: what it needs, and its options with units and defaults.
 std::string algorithms_text();

@@ -111,7 +111,7 @@ TEST_CASE(
         Names{"last-channel"});
   CHECK(missing(run_with_additions({"model", "--list"}).out, "exports.md") == Names{"names"});
   const std::string help = run_with_additions({"allan", "--help"}).out;
-  const std::size_t from = help.find("--type ") + 7;
+  const std::size_t from = help.find("\n  --type ") + 10;
   std::string types = help.substr(from, help.find('\n', from) - from);
   std::replace(types.begin(), types.end(), '|', '\n');
   CHECK(missing(types, "theory/allan.md") == Names{"scaled-oadev"});

@@ -71,7 +71,8 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
       .add_text(
           "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
   options.add_flag("--json", verb->json, "one JSON document instead of CSV");
   add_reading_options(options, session, verb->analysis.options.reading);
@@ -86,7 +87,11 @@ VerbEntry verb_allan() {
   return {3,
           "allan",
           "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
-          allan_options};
+          allan_options,
+          {{"a few averaging times of one channel",
+            "sensorchar allan imu.csv -c gyro_z --taus 0.1s,1s,10s"},
+           {"the modified deviation of all gyroscopes, into a table",
+            "sensorchar allan imu.csv -c 'gyro*' --type mdev -o mdev.csv"}}};
 }
 
 }  // namespace sensorchar

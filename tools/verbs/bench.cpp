@@ -195,9 +195,12 @@ void run_bench(Session& session, BenchVerb& verb) {
   if (verb.json) {
     print(dump_json(document));
   } else {
-    print_text(bench_text(report));
-    if (changes) print(changes_text(*changes, tolerance));
-    if (!verb.folder.empty()) print(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
+    const auto say = [&](const std::string& text) {
+      verb.folder.empty() ? print_text(text) : print_beside(session, text);
+    };
+    say(bench_text(report));
+    if (changes) say(changes_text(*changes, tolerance));
+    if (!verb.folder.empty()) say(fmt::format("wrote {}\n", fmt::join(foreseen(), " ")));
   }
   if (report.stress) refuse_wrong(*report.stress);
   if (changes) refuse_worse(*changes, tolerance, verb.against);
@@ -255,7 +258,8 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .add_texts(
           "--parts", verb->parts, "these only: " + fmt::format("{}", fmt::join(kBenchParts, ", ")))
       .separated_by_commas()
-      .value_name("PART,…");
+      .value_name("PART,…")
+      .known_words({kBenchParts.begin(), kBenchParts.end()});
   options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
   options.add_flag("--stress", verb->stress, "the same as --parts stress");
   options.add_count("--seed", verb->seed, "of the first simulation (default: 1)");
@@ -299,7 +303,10 @@ VerbEntry verb_bench() {
   return {13,
           "bench",
           "Run time against error: ways to get noise coefficients, fusion algorithms",
-          bench_options};
+          bench_options,
+          {{"the whole comparison on short records, under a minute", "sensorchar bench --quick"},
+           {"how many sensors, and how long a record, for a target",
+            "sensorchar bench report/gyro_z.sensor.yaml --parts design --target 0.001 --at 10s"}}};
 }
 
 }  // namespace sensorchar

@@ -98,14 +98,16 @@ Characterization characterized(Session& session,
 /// A set of more files is named by its first ones.
 constexpr std::size_t kMostNamed = 24;
 
-void say_written(const std::vector<OutputFile>& outputs, const std::vector<std::string>& removed) {
+void say_written(const Session& session,
+                 const std::vector<OutputFile>& outputs,
+                 const std::vector<std::string>& removed) {
   std::string written = "\nwrote";
   const std::size_t named = outputs.size() > kMostNamed ? kMostNamed - 1 : outputs.size();
   for (std::size_t k = 0; k < named; ++k) written += fmt::format(" {}", printable(outputs[k].path));
   if (named < outputs.size()) written += fmt::format(" and {} more", outputs.size() - named);
   if (!removed.empty()) written += "\nremoved, of an earlier run:";
   for (const std::string& name : removed) written += fmt::format(" {}", printable(name));
-  print(written + "\n");
+  if (!session.terminal.quiet()) print(written + "\n");
 }
 
 void run_one_by_one(Session& session,
@@ -126,8 +128,8 @@ void run_one_by_one(Session& session,
       documents.push_back(json_report(view));
       continue;
     }
-    print_text(characterization_text(view));
-    say_written(outputs, removed);
+    print_beside(session, characterization_text(view, table_width()));
+    say_written(session, outputs, removed);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
 }
@@ -205,8 +207,8 @@ void run_pooled(Session& session,
   all.push_back({verb.folder, runs_files(report, verb.folder)});
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
-  print_text(runs_text(report));
-  say_written(all.back().files, removed);
+  print_beside(session, runs_text(report));
+  say_written(session, all.back().files, removed);
 }
 
 void run_lot(Session& session,
@@ -223,10 +225,11 @@ void run_lot(Session& session,
   all.push_back({verb.folder, lot_files(report, verb.folder)});
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(lot_json(report)));
-  print_text(lot_text(report));
+  print_beside(session, lot_text(report, table_width()));
   for (const Characterization& result : results)
-    if (result.limits) print_text("\n" + printable(result.log.file) + limits_text(*result.limits));
-  say_written(all.back().files, removed);
+    if (result.limits)
+      print_beside(session, "\n" + printable(result.log.file) + limits_text(*result.limits));
+  say_written(session, all.back().files, removed);
 }
 
 /// The files whose names are known before the logs are read.
@@ -298,6 +301,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
           "-o,--output",
           verb->folder,
           "folder for the results (made when absent; with several logs one folder each inside)")
+      .value_name("DIR")
       .required();
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
@@ -346,7 +350,10 @@ VerbEntry verb_characterize() {
           "characterize",
           "everything about a recording: report.html, report.json, curves.csv, a "
           "sensor model per channel",
-          characterize_options};
+          characterize_options,
+          {{"everything about a recording", "sensorchar characterize imu.csv -o report"},
+           {"one channel, its longest still stretch, as one document",
+            "sensorchar characterize imu.csv -c gyro_z --still auto -o still --json"}}};
 }
 
 }  // namespace sensorchar

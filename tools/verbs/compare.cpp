@@ -61,9 +61,12 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
   std::vector<std::string> failed;
   for (const ComparisonCheck& check : checks)
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
-  print(verb.json       ? dump_json(document(session, comparison, failed))
-        : verb.markdown ? comparison_markdown(comparison)
-                        : comparison_text(comparison));
+  if (verb.json)
+    print(dump_json(document(session, comparison, failed)));
+  else if (verb.markdown)
+    print(comparison_markdown(comparison));
+  else
+    print_text(comparison_text(comparison, table_width()));
   if (!failed.empty()) refuse_failed(failed);
 }
 
@@ -90,8 +93,10 @@ void compare_two_characterizations(Session& session, const CompareVerb& verb) {
     out["failed"] = Json::array();
     for (const std::string& sentence : failed) out["failed"].push_back(printable(sentence));
     print(dump_json(out));
+  } else if (verb.markdown) {
+    print(comparison_markdown(comparison));
   } else {
-    print(verb.markdown ? comparison_markdown(comparison) : comparison_text(comparison));
+    print_text(comparison_text(comparison));
   }
   if (!failed.empty()) refuse_failed(failed);
 }
@@ -137,7 +142,10 @@ VerbEntry verb_compare() {
   return {9,
           "compare",
           "Two reports of replay, or two characterizations, side by side",
-          compare_options};
+          compare_options,
+          {{"did a sensor change between two recordings?", "sensorchar compare monday friday"},
+           {"for a build server: exit code 6 when an error grew by more than 5 %",
+            "sensorchar compare array-replay new-replay --fail-if rmse+5%"}}};
 }
 
 }  // namespace sensorchar

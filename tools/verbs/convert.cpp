@@ -89,7 +89,13 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_convert() {
-  return {10, "convert", "From one log format to another, without losing a bit", convert_options};
+  return {10,
+          "convert",
+          "From one log format to another, without losing a bit",
+          convert_options,
+          {{"a table as NumPy file, bit by bit", "sensorchar convert imu.csv -o imu.npy"},
+           {"one channel of the first minute",
+            "sensorchar convert imu.csv -c gyro_z --to 1min -o minute.csv"}}};
 }
 
 }  // namespace sensorchar

@@ -143,10 +143,14 @@ void run_fit(Session& session, const FitVerb& verb) {
     text = dump_json(document);
   } else {
     for (const ChannelFit& c : fits)
-      text += (text.empty() ? "" : "\n") + fit_text(c.channel, c.fit);
+      text += (text.empty() ? "" : "\n") +
+              fit_text(c.channel, c.fit, verb.output.empty() ? table_width() : 0);
   }
   if (verb.output.empty()) {
-    print(text);
+    if (verb.json)
+      print(text);
+    else
+      print_text(text);
   } else {
     write_whole_file(verb.output, text, verb.force);
   }
@@ -187,7 +191,8 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   options.add_duration("--duration",
                        verb->duration_s,
                        "length of the record behind a --curve allan: gives honest intervals");
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
   options
       .add_text("--models",
                 verb->models,
@@ -209,7 +214,10 @@ VerbEntry verb_fit() {
   return {5,
           "fit",
           "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
-          fit_options};
+          fit_options,
+          {{"coefficients of every channel", "sensorchar fit imu.csv"},
+           {"coefficients of an Allan curve that was read off a data sheet, of a record of 10 min",
+            "sensorchar fit curve.csv --curve allan --duration 600"}}};
 }
 
 }  // namespace sensorchar

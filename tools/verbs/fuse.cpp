@@ -101,7 +101,11 @@ VerbEntry verb_fuse() {
   return {9,
           "fuse",
           "A log fused with what a replay learnt: estimates, their deviations, a flag a sensor",
-          fuse_options};
+          fuse_options,
+          {{"a log by what the replay recommends",
+            "sensorchar fuse array.csv --with array-replay -o fused.csv"},
+           {"by another algorithm of that replay, as NumPy file",
+            "sensorchar fuse array.csv --with array-replay --algorithm mean -o fused.npy"}}};
 }
 
 }  // namespace sensorchar

@@ -58,7 +58,8 @@ void run_inspect(Session& session, const InspectVerb& verb) {
       continue;
     }
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
-    print_text((inspections.size() > 1 ? "\n" : "") + libchar::inspection_text(inspections.back()));
+    print_text((inspections.size() > 1 ? "\n" : "") +
+               libchar::inspection_text(inspections.back(), table_width()));
     print(next_command(verb, info));
   }
   if (!verb.json) return;
@@ -82,8 +83,13 @@ std::function<void()> inspect_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_inspect() {
-  return {
-      1, "inspect", "What is in a log: channels, rate, gaps, repairs, resolution", inspect_options};
+  return {1,
+          "inspect",
+          "What is in a log: channels, rate, gaps, repairs, resolution",
+          inspect_options,
+          {{"what a log holds", "sensorchar inspect imu.csv"},
+           {"a log without stamps, names and units",
+            "sensorchar inspect counts.npy --rate 200Hz --names gx,gy,gz --units deg/s"}}};
 }
 
 }  // namespace sensorchar

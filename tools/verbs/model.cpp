@@ -124,7 +124,9 @@ void run_summary(const Session& session, const ModelVerb& verb) {
     for (const SensorModel& m : read.models) document["models"].push_back(model_json(m));
     text = dump_json(document);
   } else {
-    for (const SensorModel& m : read.models) text += (text.empty() ? "" : "\n") + model_text(m);
+    for (const SensorModel& m : read.models)
+      text += (text.empty() ? "" : "\n") + model_text(m, verb.output.empty() ? table_width() : 0);
+    if (verb.output.empty()) return print_text(text);
   }
   deliver(verb, text);
 }
@@ -195,11 +197,19 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                "basalt: one number in place of three; orbslam3: whole rate, no File.version");
 }
 
+std::vector<std::string> target_words() {
+  std::vector<std::string> words;
+  for (const ExportTarget& target : export_targets()) words.emplace_back(target.name);
+  return words;
+}
+
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
   options.add_texts(
       "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
-  options.add_text("--to", verb->target, "target; --list names them").value_name("NAME");
+  options.add_text("--to", verb->target, "target; --list names them")
+      .value_name("NAME")
+      .known_words(target_words());
   options.add_flag("--list", verb->list, "the targets, each with its convention");
   options.add_text("-o,--output", verb->output, "write there instead of to stdout")
       .value_name("FILE");
@@ -215,7 +225,10 @@ VerbEntry verb_model() {
   return {6,
           "model",
           "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
-          model_options};
+          model_options,
+          {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
+           {"the numbers of an IMU as Kalibr wants them, its z axes for all",
+            "sensorchar model report/*.sensor.yaml --to kalibr --axes z -o imu.yaml"}}};
 }
 
 }  // namespace sensorchar

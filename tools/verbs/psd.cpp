@@ -67,7 +67,13 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_psd() {
-  return {4, "psd", "power spectrum of every channel (Welch), as CSV or JSON", psd_options};
+  return {4,
+          "psd",
+          "power spectrum of every channel (Welch), as CSV or JSON",
+          psd_options,
+          {{"a spectrum of segments of 20 s, into a table",
+            "sensorchar psd imu.csv -c gyro_z --segment 20s -o psd.csv"},
+           {"the spectral lines", "sensorchar psd imu.csv --lines"}}};
 }
 
 }  // namespace sensorchar

@@ -137,6 +137,12 @@ void print_plan(Session& session,
   const auto plan = explain_replay(scene, options, session.terminal);
   session.terminal.clear();
   session.terminal.warn(scene.warnings, verb.source.path);
+  if (verb.json) {
+    Json document = document_head(session, "replay-plan", {});
+    document["plan"] = Json::array();
+    for (const std::string& sentence : plan) document["plan"].push_back(printable(sentence));
+    return print(dump_json(document));
+  }
   for (const std::string& sentence : plan) print_text(printable(sentence) + "\n");
 }
 
@@ -153,12 +159,13 @@ void check_replay_outputs(const ReplayVerb& verb,
 }
 
 // The scene as a file that replays to the same results.
-void write_scene(const ReplayVerb& verb,
+void write_scene(const Session& session,
+                 const ReplayVerb& verb,
                  const Scene& scene,
                  const std::vector<std::string>& inputs) {
   const fs::path folder = fs::path(verb.scene_file).parent_path();
   write_outputs({{verb.scene_file, scene_yaml(scene)}}, folder, inputs, verb.force);
-  print(fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.json) print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
 }
 
 // Runs everything and writes the reports; says which files.
@@ -200,16 +207,23 @@ void run_and_report(Session& session,
   for (const WholeFile* file : streamed) files.push_back(file->path());
   const auto removed = write_outputs(outputs, folder, inputs, verb.force, streamed);
   if (verb.json) return print(dump_json(document));
-  print_text(replay_text(view));
+  print_beside(session, replay_text(view, table_width()));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
   if (!removed.empty())
     written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
-  print(written + "\n");
+  if (!session.terminal.quiet()) print(written + "\n");
+}
+
+void print_algorithms(const Session& session, bool json) {
+  if (!json) return print_text(algorithms_text());
+  Json document = document_head(session, "fusion-algorithms", {});
+  document["algorithms"] = algorithms_json();
+  print(dump_json(document));
 }
 
 void run_replay(Session& session, const ReplayVerb& verb) {
-  if (verb.list) return print(algorithms_text());
+  if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
     refuse_replay("SCENE", "which scene or recording?", "", "--list names the algorithms");
   const Scene scene = read_scene(verb);
@@ -221,7 +235,14 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   if (!verb.scene_file.empty())
     check_outputs({verb.scene_file}, fs::path(verb.scene_file).parent_path(), inputs, verb.force);
   if (!verb.folder.empty()) run_and_report(session, verb, scene, inputs);
-  if (!verb.scene_file.empty()) write_scene(verb, scene, inputs);
+  if (!verb.scene_file.empty()) write_scene(session, verb, scene, inputs);
+}
+
+std::vector<std::string> algorithm_names() {
+  std::vector<std::string> names;
+  for (const fusion::Entry& entry : fusion::algorithms())
+    names.emplace_back(entry.description->name);
+  return names;
 }
 
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
@@ -234,7 +255,8 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                  verb->algorithms,
                  "run these only (default: the scene's, else all that it has the data for)")
       .separated_by_commas()
-      .value_name("NAME,…");
+      .value_name("NAME,…")
+      .known_words(algorithm_names());
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING");
   options
@@ -287,7 +309,12 @@ VerbEntry verb_replay() {
           "replay",
           "Every fusion algorithm that a scene has the data for, compared: report.html, "
           "report.json, report.md",
-          replay_options};
+          replay_options,
+          {{"every algorithm on the channels of a recording",
+            "sensorchar replay array.csv --sensors 'gyro*' --reference truth --learning 0..150 -o "
+            "array-replay"},
+           {"what a replay of a scene would do, and what it would leave out",
+            "sensorchar replay array.scene.yaml --explain"}}};
 }
 
 }  // namespace sensorchar

@@ -296,7 +296,12 @@ VerbEntry verb_simulate() {
   return {7,
           "simulate",
           "A recording with known truth, from sensor models or a scene",
-          simulate_options};
+          simulate_options,
+          {{"ten minutes of a sensor at rest",
+            "sensorchar simulate report/gyro_z.sensor.yaml --duration 10min -o simulated.csv"},
+           {"three devices that turn to and fro, the second with a fault",
+            "sensorchar simulate report/gyro_z.sensor.yaml --devices 3 --duration 10min --truth "
+            "sine,amplitude=5,frequency_hz=0.01 --fault gyro_z2:bias=0.3@200..260 -o array.csv"}}};
 }
 
 }  // namespace sensorchar

@@ -105,7 +105,7 @@ void run_again(Session& session, const VerifyVerb& verb, const std::string& docu
     out["rerun"] = rerun_json(run);
     print(dump_json(out));
   } else {
-    print(rerun_text(run));
+    print_text(rerun_text(run));
   }
   if (run.holds()) return;
   throw Error({ErrorKind::check,
@@ -136,7 +136,7 @@ void run_verify(Session& session, const VerifyVerb& verb) {
     for (const ResultCheck& check : checks) document["documents"].push_back(check_json(check));
     print(dump_json(document));
   } else {
-    for (const ResultCheck& check : checks) print(check_text(check));
+    for (const ResultCheck& check : checks) print_text(check_text(check));
   }
   const auto broken = std::find_if(
       checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
@@ -176,7 +176,10 @@ VerbEntry verb_verify() {
   return {12,
           "verify",
           "Are results and their inputs still what the report was written with?",
-          verify_options};
+          verify_options,
+          {{"are the files of a folder as they were written?", "sensorchar verify report"},
+           {"are the numbers those of this program as well?",
+            "sensorchar verify report --rerun again"}}};
 }
 
 }  // namespace sensorchar
