@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/places.hpp"
+#include "tests/support/schemas.hpp"
 #include "tests/support/shared.hpp"
 
 namespace test {
@@ -60,10 +61,13 @@ inline Ran run_words(const std::vector<std::string>& words, const RunOptions& op
   return ran;
 }
 
-/// Runs sensorchar with these arguments.
+/// Runs sensorchar with these arguments. Documents that it prints and writes are held against docs/schema.
 inline Ran run(std::vector<std::string> arguments, const RunOptions& options = {}) {
   arguments.insert(arguments.begin(), test::program());
-  return run_words(arguments, options);
+  Ran ran = run_words(arguments, options);
+  if (const auto fault = faults_of_run(arguments, ran.out, options.folder); !fault.empty())
+    throw std::runtime_error(fault);
+  return ran;
 }
 
 }  // namespace test
