@@ -24,6 +24,10 @@ for folder in ("libchar", "tools"):
             files[code].add(path.relative_to(root).as_posix())
         for kind, code in re.findall(r'ErrorKind::(\w+),\s*"(E\d{4})"', text):
             kinds[code].add(EXIT[kind])
+for path in sorted((root / "tools/python").rglob("*.py")):
+    for kind, code in re.findall(r'raise (Usage|Input|Numeric)Error\(.*?"(E\d{4})"', path.read_text(), re.S):
+        files[code].add(path.relative_to(root).as_posix())
+        kinds[code].add(EXIT[kind.lower()])
 
 rows, lines = {}, page.read_text().splitlines()
 for number, line in enumerate(lines, 1):

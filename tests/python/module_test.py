@@ -1,0 +1,281 @@
+"""The Python module says what the program says, without copies, and refuses in sentences. usage: module_test.py PROGRAM"""
+import dataclasses
+import gc
+import inspect
+import json
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import numpy as np
+
+import libchar
+from libchar import functions
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+IMU = str(ROOT / "fixtures/imu_at_rest.csv")
+
+
+def program(*words, folder=None):
+    """The document that the program prints."""
+    ran = subprocess.run([PROGRAM, *words, "--json", "--quiet"], cwd=folder, check=True, capture_output=True)
+    return json.loads(ran.stdout)
+
+
+def noise(n=20000, seed=1):
+    return np.random.default_rng(seed).normal(size=n)
+
+
+class SaysWhatTheProgramSays(unittest.TestCase):
+    def test_read(self):
+        log = libchar.read(IMU)
+        told = program("inspect", IMU)["recordings"][0]
+        self.assertEqual(log.names, ["gyro_z", "accel_z"])
+        self.assertEqual(log.units, ["deg/s", "g"])
+        self.assertEqual(log.rate_hz, told["rate_hz"])
+        self.assertEqual(len(log), told["samples"])
+        self.assertAlmostEqual(float(np.mean(log["gyro_z"])), told["channels"][0]["mean"], places=12)
+        self.assertEqual(libchar.read(IMU, channels=["accel_z"], to_s=10).names, ["accel_z"])
+        self.assertEqual(len(libchar.read(IMU, to_s=10)), 500)
+
+    def test_allan(self):
+        for kind, taus in (("oadev", "octave"), ("mdev", "decade"), ("totdev", [0.1, 1, 10])):
+            told = program("allan", IMU, "--type", kind, "--taus", taus if isinstance(taus, str) else "0.1s,1s,10s")["channels"]
+            for curve, channel in zip(libchar.allan(IMU, type=kind, taus=taus), told):
+                self.assertEqual(curve.tau_s.tolist(), channel["tau_s"])
+                self.assertEqual(curve.deviation.tolist(), channel["deviation"])
+                self.assertEqual(curve.ci95.tolist(), channel["ci95"])
+                self.assertEqual(curve.terms.tolist(), channel["terms"])
+                self.assertEqual((curve.name, curve.unit, curve.type), (channel["name"], channel["unit"], kind))
+
+    def test_psd(self):
+        told = program("psd", IMU, "--segment", "4096", "--window", "flat_top", "--sides", "two")["channels"]
+        for spectrum, channel in zip(libchar.psd(IMU, segment=4096, window="flat_top", sides="two"), told):
+            self.assertEqual(spectrum.frequency_hz.tolist(), channel["frequency_hz"])
+            self.assertEqual(spectrum.value.tolist(), channel["value"])
+            self.assertEqual(np.stack([spectrum.low95, spectrum.high95], axis=1).tolist(), channel["ci95"])
+
+    def test_fit(self):
+        told = program("fit", IMU)["channels"]
+        fits = libchar.fit(IMU)
+        self.assertEqual([fit.to_dict() for fit in fits], told)
+        self.assertEqual(fits[0].white_noise.value, told[0]["white_noise"]["value"])
+        self.assertEqual(list(fits[0].white_noise.ci95), told[0]["white_noise"]["ci95"])
+        self.assertIsNone(fits[1].random_walk.value)
+        self.assertGreater(fits[1].random_walk.upper95, 0)
+
+    def test_arrays_are_as_good_as_the_file(self):
+        log = libchar.read(IMU)
+        of_file, of_arrays = libchar.fit(IMU), libchar.fit(log)
+        self.assertEqual([f.to_dict() for f in of_file], [f.to_dict() for f in of_arrays])
+        named = libchar.fit({"gyro_z": log["gyro_z"]}, log.rate_hz, units=["deg/s"])
+        self.assertEqual(named[0].to_dict(), of_file[0].to_dict())
+        by_file, by_array = libchar.psd(IMU, segment_s=20), libchar.psd(log, segment_s=20)
+        for one, other in zip(by_file, by_array):
+            np.testing.assert_array_equal(one.value, other.value)
+        for one, other in zip(libchar.allan(IMU), libchar.allan(log)):
+            self.assertEqual(one.to_dict(), other.to_dict())
+
+    def test_characterize(self):
+        with tempfile.TemporaryDirectory() as folder:
+            told = program("characterize", IMU, "-o", "report", folder=folder)
+            result = libchar.characterize(IMU)
+            document = result.to_dict()
+            for key in ("verdict", "summary", "recording", "allan", "spectrum", "fit", "quality", "trace"):
+                self.assertEqual(document[key], told[key], key)
+            self.assertEqual(result["gyro_z"].fit.to_dict()["white_noise"], told["fit"]["channels"][0]["white_noise"])
+            written = result.write(os.path.join(folder, "by-python"))
+            self.assertTrue(all(os.path.getsize(path) > 0 for path in written))
+            with self.assertRaises(libchar.InputError):
+                result.write(os.path.join(folder, "by-python"))
+            self.assertIn("</html>", result.html())
+            self.assertEqual(len(result.models()), 2)
+
+    def test_simulate(self):
+        model = libchar.characterize(IMU, channels=["gyro_z"]).models()[0]
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "gyro_z.sensor.yaml"
+            path.write_text(model)
+            subprocess.run([PROGRAM, "simulate", str(path), "--devices", "2", "--duration", "60", "--truth", "sine,amplitude=2,frequency_hz=0.1",
+                            "--fault", "gyro_z2:bias=0.3@20..40", "--seed", "7", "-o", f"{folder}/log.csv", "--quiet"], check=True, capture_output=True)
+            log = libchar.read(f"{folder}/log.csv")
+            for source in (model, path):
+                made = libchar.simulate(source, duration_s=60, devices=2, truth="sine,amplitude=2,frequency_hz=0.1",
+                                        faults=["gyro_z2:bias=0.3@20..40"], seed=7)
+                self.assertEqual(made.names, log.names)
+                np.testing.assert_array_equal(made.to_array(), log.to_array())
+
+    def test_replay(self):
+        model = libchar.characterize(IMU, channels=["gyro_z"]).models()[0]
+        made = libchar.simulate(model, duration_s=120, devices=3, truth="sine,amplitude=2,frequency_hz=0.1")
+        with tempfile.TemporaryDirectory() as folder:
+            libchar.write(f"{folder}/log.f64", made)
+            told = program("replay", "log.f64", "--sensors", "gyro*", "--reference", "truth", "--learning", "0..60", "--algorithms",
+                           "mean,least-squares", "-o", "out", folder=folder)
+            how = dict(sensors=["gyro*"], reference="truth", learning=(0, 60), algorithms=["mean", "least-squares"])
+            for source in (f"{folder}/log.f64", made):
+                result = libchar.replay(source, **how)
+                self.assertEqual([a.name for a in result.algorithms], ["mean", "least-squares"])
+                for algorithm, row in zip(result.algorithms, told["algorithms"]):
+                    self.assertEqual(algorithm.rmse, row["rmse"])
+                    self.assertEqual(algorithm.to_dict()["weights"], row["weights"])
+            self.assertEqual(result["mean"].status, "ran")
+            self.assertIn("</html>", result.html)
+        scene = libchar.replay(ROOT / "fixtures/scenes/rv-2.5-tilt.yaml", allan=False, timing=False)
+        self.assertIn("tilt-kalman", [a.name for a in scene.algorithms])
+
+
+class CopiesNothing(unittest.TestCase):
+    def test_in(self):
+        table = np.asfortranarray(np.stack([noise(), noise(seed=2)], axis=1))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for source in (noise(), table, {"a": noise()}, libchar.read(IMU), noise()[::1], noise()[100:15000]):
+                columns = functions._columns(source, 100.0, None, None, None)
+                for name, column in zip(columns["names"], columns["samples"]):
+                    original = source[name] if isinstance(source, (dict, libchar.Recording)) else source
+                    self.assertTrue(np.shares_memory(column, original))
+            libchar.fit(table, 100)
+
+    def test_in_copied_once_and_said(self):
+        for source in (noise().astype(np.float32), noise()[::2], np.stack([noise(), noise()], axis=1)[:, 0], np.arange(20000) % 7, noise()[::-1]):
+            with self.assertWarns(libchar.CopyWarning):
+                copied = libchar.fit(source, 100)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                self.assertEqual(copied[0].to_dict(), libchar.fit(np.ascontiguousarray(source, dtype=float), 100)[0].to_dict())
+
+    def test_memory_of_a_call(self):
+        record = noise(4_000_000)
+
+        def peak():
+            """Bytes that the process has held at most, by the system."""
+            status = pathlib.Path("/proc/self/status").read_text()
+            return int(status.split("VmHWM:")[1].split()[0]) * 1024
+
+        libchar.psd(record, 100, segment=4096)
+        before = peak()
+        libchar.psd(record, 100, segment=4096)
+        self.assertLess(peak() - before, record.nbytes / 4)
+
+    def test_out(self):
+        log = libchar.read(IMU)
+        for array in (*log.samples, libchar.psd(log)[0].value):
+            self.assertFalse(array.flags.owndata)  # a vector of the library's, which the array owns
+            self.assertTrue(array.flags.c_contiguous and array.flags.writeable)
+        gyro = log["gyro_z"]
+        mean = float(gyro.mean())
+        del log
+        gc.collect()
+        self.assertEqual(float(gyro.mean()), mean)
+
+    def test_the_lock_is_released(self):
+        record, count, stop = noise(2_000_000), [0], threading.Event()
+
+        def work():
+            while not stop.is_set():
+                count[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        begin, count[0] = time.perf_counter(), 0
+        libchar.fit(record, 100, threads=1)
+        counted, seconds = count[0], time.perf_counter() - begin
+        stop.set()
+        thread.join()
+        self.assertGreater(counted, 20 * seconds)  # of a thousand a second; with the lock held: none
+
+
+class Refuses(unittest.TestCase):
+    def refused(self, kind, call, code):
+        with self.assertRaises(kind) as caught:
+            call()
+        self.assertEqual(caught.exception.code, code, caught.exception)
+        self.assertGreater(len(str(caught.exception)), 20)
+        return caught.exception
+
+    def test_files(self):
+        self.assertIn("/nowhere", self.refused(libchar.InputError, lambda: libchar.read("/nowhere/a.csv"), "E0101").where)
+        with tempfile.TemporaryDirectory() as folder:
+            bad = pathlib.Path(folder) / "bad.csv"
+            bad.write_text("t,x\n0,1\n1,y\n2,3\n")
+            error = self.refused(libchar.InputError, lambda: libchar.read(bad), "E0311")
+            self.assertIn("bad.csv:3", error.where)
+        self.refused(libchar.UsageError, lambda: libchar.read(IMU, channels=["gyro_x"]), "E0320")
+        self.assertIsInstance(error, OSError)
+
+    def test_arguments(self):
+        x = noise(1000)
+        for call in (lambda: libchar.fit(x), lambda: libchar.fit(np.zeros((2, 2, 2)), 1), lambda: libchar.fit(np.array(["a"]), 1),
+                     lambda: libchar.fit(x, 1, names=["a", "b"]), lambda: libchar.fit({"a": x}, 1, channels=["b"]),
+                     lambda: libchar.fit(x, 1, units=["a", "b"])):
+            self.refused(libchar.UsageError, call, "E0208")
+        for call in (lambda: libchar.allan(x, 1, type="odev"), lambda: libchar.psd(x, 1, window="hamm"), lambda: libchar.fit(x, 1, terms=["N"]),
+                     lambda: libchar.allan(x, 1, taus="eighth")):
+            self.refused(libchar.UsageError, call, "E0202")
+        self.assertRaises(ValueError, lambda: libchar.allan(x, 1, type="odev"))
+
+    def test_numbers(self):
+        self.refused(libchar.NumericError, lambda: libchar.fit(noise(3), 1), "E0711")
+        error = self.refused(libchar.NumericError, lambda: libchar.psd(noise(3), 1), "E0715")
+        again = pickle.loads(pickle.dumps(error))
+        self.assertEqual((str(again), again.code), (str(error), error.code))
+
+    def test_interrupt(self):
+        script = f"import libchar, sys; print('begins', flush=True)\nfor _ in range(1000): libchar.replay({str(ROOT / 'fixtures/scenes/rv-5.1-faults.yaml')!r})"
+        child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        child.stdout.readline()
+        time.sleep(1.5)
+        child.send_signal(signal.SIGINT)
+        _, err = child.communicate(timeout=30)
+        self.assertIn("KeyboardInterrupt", err)
+
+
+class IsDescribed(unittest.TestCase):
+    def test_results_are_plain(self):
+        log = libchar.read(IMU)
+        results = [log, *libchar.allan(log), *libchar.psd(log, segment=512), *libchar.fit(log), libchar.characterize(log)]
+        for result in results:
+            self.assertTrue(dataclasses.is_dataclass(result))
+            json.dumps(result.to_dict(), allow_nan=False)
+
+    def test_documentation(self):
+        for name in libchar.__all__:
+            thing = getattr(libchar, name)
+            if name != "build":
+                self.assertTrue(inspect.getdoc(thing), name)
+        for function in (libchar.read, libchar.allan, libchar.psd, libchar.fit, libchar.characterize, libchar.simulate, libchar.replay):
+            self.assertIn(" s", inspect.getdoc(function))
+            for argument in inspect.signature(function).parameters.values():
+                self.assertIsNot(argument.annotation, argument.empty, f"{function.__name__}({argument.name})")
+        package = pathlib.Path(libchar.__file__).parent
+        self.assertTrue((package / "py.typed").exists() and (package / "_libchar.pyi").exists())
+
+    def test_stubs(self):
+        from libchar import _libchar
+        stub = (pathlib.Path(libchar.__file__).parent / "_libchar.pyi").read_text()
+        for name in dir(_libchar):
+            if not name.startswith("_"):
+                self.assertRegex(stub, rf"\b(def|class) {name}\b")
+
+    def test_types(self):
+        if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode != 0:
+            self.skipTest("mypy is not installed")
+        with tempfile.TemporaryDirectory() as cache:
+            ran = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, str(pathlib.Path(libchar.__file__).parent)],
+                                 capture_output=True, text=True)
+        self.assertEqual(ran.returncode, 0, ran.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=0)
