@@ -22,6 +22,7 @@ inline TopicSum read_topic(const libchar::Format& format,
                            std::size_t most) {
   libchar::ReadOptions options;
   options.hash = false;
+  options.block_bytes = most * 40;
   const auto reader = format.topics(path, options);
   const std::size_t fields = reader->topics()[topic].fields.size();
   std::vector<std::size_t> all(fields);
@@ -43,9 +44,12 @@ inline TopicSum read_topic(const libchar::Format& format,
       for (std::size_t i = 0; i < block.rows; ++i) {
         std::uint64_t bits = 0;
         std::memcpy(&bits, &block.columns[c][i], sizeof bits);
-        sum.hash = sum.hash * 31 + bits * (2 * c + 1);
+        sum.hash += bits * (2 * c + 1) * (2 * (sum.rows + i) + 1);  // of blocks of any size
       }
     }
+    if (stamped)
+      for (std::size_t i = 0; i < block.rows; ++i)
+        sum.hash += static_cast<std::uint64_t>(block.time_ns[i]) * (2 * (sum.rows + i) + 1);
     sum.rows += block.rows;
   }
   reader->finish(warnings);
