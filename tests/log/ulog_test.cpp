@@ -284,7 +284,9 @@ TEST_CASE("ULog: a topic whose definition cannot be used says why") {
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;float[70000] x;"), "a") ==
         "its format is longer than a message can be");
   CHECK(why(ulog_message('F', "a:b[4000000000] x;") + ulog_message('F', "b:;"), "a") ==
-        "its format is longer than a message can be");
+        "the formats of the log have too many fields in all");
+  CHECK(why(ulog_message('F', "a:uint64_t " + std::string(300, 'n') + ";"), "a") ==
+        "its fields have names of more than 255 characters");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;nonsense;"), "a") ==
         "its format has a field that is none: nonsense");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;") +

@@ -10,7 +10,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostTopics = 10000;
+constexpr std::size_t kMostTopics = 10000, kMostFieldsInAll = 200000;
 
 using Body = std::span<const std::byte>;  // of a message, behind its front
 
@@ -64,13 +64,14 @@ class DataflashLister {
   DataflashTopic* topic_of(std::size_t kind, std::int64_t instance);
   DataflashTopic* topic_of(const DataflashBurst& burst);
   void note_block(const DataflashKind& kind, const DataflashMessage& message);
-  void describe_topic(DataflashTopic& content, LogTopic& about) const;
+  void describe_topic(DataflashTopic& content, LogTopic& about);
 
   DataflashListing* listing_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> of_kind_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> of_batch_;
   DataflashBatches batches_;
   std::optional<std::uint32_t> last_burst_;
+  std::size_t fields_ = 0;  // described so far
 };
 
 DataflashTopic* DataflashLister::topic_of(std::size_t kind, std::int64_t instance) {
@@ -163,7 +164,7 @@ void DataflashLister::describe_topics() {
   }
 }
 
-void DataflashLister::describe_topic(DataflashTopic& content, LogTopic& about) const {
+void DataflashLister::describe_topic(DataflashTopic& content, LogTopic& about) {
   about.rows = content.rows;
   if (!content.kind) {
     about.type = "batch sampler";
@@ -179,6 +180,10 @@ void DataflashLister::describe_topic(DataflashTopic& content, LogTopic& about) c
   about.sensor = dataflash_sensor(kind.name);
   about.why_not = kind.why_not;
   if (!about.why_not.empty()) return;
+  if (fields_ > kMostFieldsInAll) {
+    about.why_not = "the log has too many fields in all";
+    return;
+  }
   bool numbers = false;
   for (std::size_t f = 0; f < kind.fields.size(); ++f) {
     const DataflashField& field = kind.fields[f];
@@ -192,6 +197,7 @@ void DataflashLister::describe_topic(DataflashTopic& content, LogTopic& about) c
           {f, field.byte + k * static_cast<std::uint32_t>(size_of(field.type))});
     }
   }
+  fields_ += about.fields.size();
   if (!numbers) about.why_not = "text";
   const DataflashClock& clock = content.logged;
   if (clock.last > clock.first)

@@ -12,8 +12,10 @@
 namespace libchar {
 namespace {
 
-constexpr int kDeepest = 32;                     // formats within formats
+constexpr int kDeepest = 32;  // formats within formats
+constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMostBytes = 65535 - 2;  // of a message of data
+constexpr std::uint64_t kMostFields = 200000, kMostSteps = 4000000;
 
 std::optional<NumberType> ulog_number(std::string_view type) {
   static constexpr std::array<std::pair<std::string_view, NumberType>, 12> kTypes = {
@@ -35,13 +37,6 @@ std::optional<NumberType> ulog_number(std::string_view type) {
 }
 
 }  // namespace
-
-// What has been flattened so far; steps bound the work where formats without fields are repeated.
-struct UlogFormats::Flattening {
-  UlogLayout layout;
-  std::size_t most_fields = 0;
-  std::uint32_t steps = 0;
-};
 
 void UlogFormats::add(std::string_view text) {
   const std::size_t colon = text.find(':');
@@ -89,28 +84,28 @@ bool UlogFormats::parse_member(std::string_view text, Member& member) {
   return !type.empty();
 }
 
-UlogLayout UlogFormats::layout(const std::string& name, std::size_t most_fields) const {
-  Flattening out;
-  out.most_fields = most_fields;
-  std::string why_not = flatten(name, "", 0, out);
-  if (!why_not.empty()) out.layout.fields.clear();
-  out.layout.why_not = std::move(why_not);
-  out.layout.least_bytes = out.layout.bytes;
-  if (!out.layout.why_not.empty()) return std::move(out.layout);
+UlogLayout UlogFormats::layout(const std::string& name) {
+  UlogLayout out;
+  out.why_not = flatten(name, "", 0, out);
+  out.least_bytes = out.bytes;
+  if (!out.why_not.empty()) {
+    out.fields.clear();
+    return out;
+  }
   // Padding at the end of the outermost format is not written.
   const std::vector<Member>& members = definitions_.find(name)->second.members;
   for (auto last = members.rbegin(); last != members.rend(); ++last) {
     const auto number = ulog_number(last->type);
     if (!last->name.starts_with("_padding") || !number) break;
-    out.layout.least_bytes -= last->count * static_cast<std::uint32_t>(size_of(*number));
+    out.least_bytes -= last->count * static_cast<std::uint32_t>(size_of(*number));
   }
-  return std::move(out.layout);
+  return out;
 }
 
 std::string UlogFormats::flatten(const std::string& format,
                                  const std::string& prefix,
                                  int depth,
-                                 Flattening& out) const {
+                                 UlogLayout& out) {
   const auto found = definitions_.find(format);
   if (found == definitions_.end())
     return fmt::format("the log does not define its format {}", printable(format, 40));
@@ -126,13 +121,20 @@ std::string UlogFormats::flatten(const std::string& format,
 std::string UlogFormats::flatten_member(const Member& member,
                                         const std::string& prefix,
                                         int depth,
-                                        Flattening& out) const {
+                                        UlogLayout& out) {
+  if (prefix.size() + member.name.size() > kLongestName)
+    return fmt::format("its fields have names of more than {} characters", kLongestName);
   const auto number = ulog_number(member.type);
-  const auto size = number ? static_cast<std::uint32_t>(size_of(*number)) : 0U;
-  const bool sample = !member.name.starts_with("_padding") && member.type != "char";
+  const std::uint64_t size = number ? size_of(*number) : 0;
+  if (out.bytes + size * member.count > kMostBytes)
+    return "its format is longer than a message can be";
+  if (number && (member.name.starts_with("_padding") || member.type == "char")) {
+    out.bytes += static_cast<std::uint32_t>(size * member.count);
+    return "";
+  }
   for (std::uint32_t k = 0; k < member.count; ++k) {
-    if (++out.steps > kMostBytes || out.layout.bytes + size > kMostBytes)
-      return "its format is longer than a message can be";
+    if (++steps_ > kMostSteps || fields_ == kMostFields)
+      return "the formats of the log have too many fields in all";
     const std::string name =
         member.array ? fmt::format("{}{}[{}]", prefix, member.name, k) : prefix + member.name;
     if (!number) {
@@ -140,11 +142,9 @@ std::string UlogFormats::flatten_member(const Member& member,
       if (!why_not.empty()) return why_not;
       continue;
     }
-    if (sample) {
-      if (out.layout.fields.size() == out.most_fields) return "the log has too many fields in all";
-      out.layout.fields.push_back({name, *number, out.layout.bytes});
-    }
-    out.layout.bytes += size;
+    out.fields.push_back({name, *number, out.bytes});
+    out.bytes += static_cast<std::uint32_t>(size);
+    ++fields_;
   }
   return "";
 }

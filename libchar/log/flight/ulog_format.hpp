@@ -29,8 +29,8 @@ class UlogFormats {
   /// Takes the text of one definition. One that contradicts an earlier one of its name makes that name unusable.
   void add(std::string_view text);
 
-  /// The fields of a message of this format, at most `most_fields` of them.
-  UlogLayout layout(const std::string& name, std::size_t most_fields) const;
+  /// The fields of a message of this format. All layouts together have a bound, so that a small file cannot ask for endless work.
+  UlogLayout layout(const std::string& name);
 
   /// Was a name defined twice, and not alike?
   bool contradicted() const { return contradicted_; }
@@ -46,20 +46,19 @@ class UlogFormats {
     std::vector<Member> members;
     std::string why_not;
   };
-  struct Flattening;
-
   static bool parse_member(std::string_view text, Member& member);
   std::string flatten(const std::string& format,
                       const std::string& prefix,
                       int depth,
-                      Flattening& out) const;
+                      UlogLayout& out);
   std::string flatten_member(const Member& member,
                              const std::string& prefix,
                              int depth,
-                             Flattening& out) const;
+                             UlogLayout& out);
 
   std::map<std::string, Definition, std::less<>> definitions_;
   bool contradicted_ = false;
+  std::uint64_t fields_ = 0, steps_ = 0;  // of all layouts
 };
 
 }  // namespace libchar

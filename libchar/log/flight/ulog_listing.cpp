@@ -9,8 +9,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostFieldsInAll = 200000;
-
 using Data = std::span<const std::byte>;  // of a message, behind its id
 
 const UlogField* find_field(const UlogLayout& layout, std::string_view name, NumberType type) {
@@ -111,7 +109,6 @@ class Lister {
   bool by_publication_;
   UlogFormats formats_;
   std::map<std::string, std::size_t> topic_of_name_;
-  std::size_t fields_in_all_ = 0;
   std::uint64_t last_stamp_ = 0;
 };
 
@@ -122,9 +119,7 @@ void Lister::subscribe(Data body) {
   const std::string name = fmt::format("{} {}", message, instance);
   const auto [place, fresh] = topic_of_name_.try_emplace(name, listing_->topics.size());
   if (fresh) {
-    UlogLayout layout = formats_.layout(message, kMostFieldsInAll - fields_in_all_);
-    fields_in_all_ += layout.fields.size();
-    listing_->contents.push_back(new_topic(message, std::move(layout)));
+    listing_->contents.push_back(new_topic(message, formats_.layout(message)));
     listing_->topics.emplace_back();
     listing_->topics.back().name = name;
   }
@@ -216,7 +211,7 @@ void Lister::describe_topic(std::size_t topic) {
   about.sensor = px4_sensor(content.message);
   if (about.why_not.empty()) about.why_not = content.layout.why_not;
   if (about.why_not.empty() && formats_.contradicted())
-    about.why_not = formats_.layout(content.message, kMostFieldsInAll).why_not;
+    about.why_not = formats_.layout(content.message).why_not;
   if (!about.why_not.empty()) return;
   about.fields = fields_of(content);
   const UlogStamps& stamps = ulog_stamps(content, by_publication_);

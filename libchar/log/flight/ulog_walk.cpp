@@ -15,9 +15,9 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kTypes = "BFIMPQARDLCSO";
-constexpr std::size_t kUlogLookedBack = 70000;  // a longest message and the beginning of the next
-constexpr int kMostStrangers = 8;               // messages in a row that nothing is known of
-constexpr std::size_t kTextLookedAt = 48;       // bytes of a text whose characters are checked
+constexpr int kMostStrangers = 4;  // messages in a row that nothing is known of
+constexpr std::size_t kUlogLookedBack = (kMostStrangers + 1) * 65538;
+constexpr std::size_t kTextLookedAt = 48;  // bytes of a text whose characters are checked
 constexpr std::array<unsigned char, 8> kSync = {0x2f, 0x73, 0x13, 0x20, 0x25, 0x0c, 0xbb, 0x12};
 
 // What a type has in front of its text, and the least that it can measure.
