@@ -25,7 +25,7 @@ void check_models(const std::vector<BenchSignal>& models, const DesignOptions& o
                    model.name,
                    "one target for models of several units or rates",
                    "",
-                   "ask for those of one unit and rate at a time"});
+                   "give models of one unit and rate at a time; of a log, by `channels`"});
     if (options.tau_s * model.rate_hz < 1)
       throw Error({ErrorKind::usage,
                    "E0967",

@@ -101,6 +101,22 @@ double chi_square_density(double x, double dof) {
   return boost::math::gamma_p_derivative(dof / 2, x / 2, Policy()) / 2;
 }
 
+// Both by their recurrences up to an argument of ten, and from there by their asymptotic series (M. Abramowitz and I. A. Stegun, 6.3.18 and
+// 6.4.12).
+LogMoments chi_square_log_moments(double dof) {
+  double x = dof / 2, psi = -std::log(x), derivative = 0;
+  for (; x < 10; ++x) {
+    psi -= 1 / x;
+    derivative += 1 / (x * x);
+  }
+  const double r = 1 / (x * x);
+  psi += std::log(x) - 0.5 / x -
+         r * (1.0 / 12 - r * (1.0 / 120 - r * (1.0 / 252 - r * (1.0 / 240 - r / 132))));
+  derivative += 1 / x + 0.5 * r +
+                r / x * (1.0 / 6 - r * (1.0 / 30 - r * (1.0 / 42 - r * (1.0 / 30 - r * 5 / 66))));
+  return {psi, derivative};
+}
+
 Interval chi_square_interval(double deviation, double edf, double confidence) {
   assert(confidence > 0 && confidence < 1);
   if (!(edf >= 1)) edf = 1;

@@ -2,7 +2,8 @@
 // is known of its scatter decides the weights and what the intervals mean, and a sentence says so:
 //   relative_sd given       weights 1/sd^2, chi-square tells whether they were right;
 //   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted
-//                           mixture, refined three times);
+//                           mixture, refined three times), with the mean and the variance that the
+//                           logarithm of a chi-square of as many degrees of freedom has;
 //   neither                 equal relative errors, estimated from the scatter about the fit;
 //                           neighbouring residuals that go the same way count as fewer points,
 //                           n (1-r)/(1+r).
@@ -111,8 +112,9 @@ TermSet offered_to(const DigitisedCurve& curve, const FitOptions& options) {
   return terms;
 }
 
-/// Inverse Cholesky factor of the covariance of ln(variance) for a record of the curve's duration.
-Eigen::MatrixXd whitening_for(const DigitisedCurve& curve, const Mixture& theta) {
+/// What a record of the curve's duration makes of ln(variance): bias, and inverse Cholesky factor of the covariance. A variance with few
+/// degrees of freedom, as at the slow end, is that of a chi-square, whose logarithm is skew.
+void weigh_by_duration(const DigitisedCurve& curve, const Mixture& theta, CurveProblem& problem) {
   const double rate_hz = curve.rate_hz.value_or(1 / curve.x.front());
   AllanCurve record;
   record.dt_s = 1 / rate_hz;
@@ -134,10 +136,19 @@ Eigen::MatrixXd whitening_for(const DigitisedCurve& curve, const Mixture& theta)
     level[j] = allan_variance(
         noise, static_cast<double>(record.points[static_cast<std::size_t>(j)].m), record.dt_s);
   covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
+  problem.bias.resize(n);
+  Eigen::VectorXd wider(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double dof = 2 / covariance(j, j);
+    const LogMoments moments = chi_square_log_moments(dof);
+    problem.bias[j] = moments.mean;
+    wider[j] = std::sqrt(moments.variance / covariance(j, j));
+  }
+  covariance = wider.asDiagonal() * covariance * wider.asDiagonal();
   // Points read off a graph are a percent off; neighbours a fraction of an octave apart would be
   // singular without that.
   covariance.diagonal().array() += 1e-4 + 0.01 * covariance.diagonal().array();
-  return inverse_cholesky_factor(covariance);
+  problem.whitening = inverse_cholesky_factor(covariance);
 }
 
 enum class Scatter { stated, from_duration, estimated };
@@ -419,7 +430,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
   } else if (curve.duration_s && curve.is_allan) {
     judge.scatter = Scatter::from_duration;
     for (int round = 0; round < 3; ++round) {
-      problem.whitening = whitening_for(curve, rough.theta);
+      weigh_by_duration(curve, rough.theta, problem);
       rough = solve_curve_thoroughly(problem, offered);
     }
   } else {
@@ -571,7 +582,9 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
   for (std::size_t left_out = 1; divisible && points - left_out >= fewest && left_out < points;
        ++left_out) {
     NoiseFit part = fit_points(slow_part(curve, left_out), offered, options, 1);
-    if (part.goodness.p < kDescribed) continue;
+    // White noise is seen at the fast end: a part that says nothing of it any more has left out more than a filter.
+    if (part.goodness.p < kDescribed || (whole[Term::white].value && !part[Term::white].value))
+      continue;
     // An octave more takes out the bias that "just passes" leaves.
     const std::size_t further = left_out + points_in_octave(curve, left_out);
     if (points - std::min(further, points) >= fewest) {

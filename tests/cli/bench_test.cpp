@@ -94,6 +94,18 @@ TEST_CASE("bench: a scene with a sweep, a model with a target") {
   CHECK_THAT(ran.out, Contains("Design: how many sensors") && Contains(" 7 "));
 }
 
+TEST_CASE("bench: what is asked of fusion is looked at before anything is measured") {
+  const std::string scene = test::fixture("scenes/lever-arm.yaml");
+  const auto err = [](const std::vector<std::string>& words) { return test::run(words).err; };
+  CHECK_THAT(err({"bench", "--sweep", "minque.gamma"}), Contains("E0963"));
+  CHECK_THAT(err({"bench", "--sweep", "minque.gama=.9"}), Contains("gamma"));
+  CHECK_THAT(err({"bench", "--algorithms", "minqe"}), Contains("E0853"));
+  CHECK_THAT(err({"bench", scene, "--parts", "scaling", "--sweep", "minque.gamma=.9"}),
+             Contains("E0205") && Contains("--sweep"));
+  CHECK_THAT(err({"bench", test::fixture("imu_at_rest.csv"), "--algorithms", "minque"}),
+             Contains("E0205") && Contains("--algorithms"));
+}
+
 TEST_CASE("bench: refused in a sentence") {
   CHECK_THAT(test::run({"bench", "--parts", "charakterization"}).err,
              Contains("E0202") && Contains("characterization"));

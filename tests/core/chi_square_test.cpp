@@ -102,3 +102,24 @@ TEST_CASE("without degrees of freedom nothing is improbable") {
   CHECK(chi_square_tail(0, 3) == 1);
   CHECK(chi_square_tail(-1, 3) == 1);
 }
+
+TEST_CASE("chi-square: mean and variance of the logarithm") {
+  // psi and psi' at 1/2, 1, 2 and 15/2 in closed form.
+  constexpr double kEuler = 0.57721566490153286, kPi2 = 9.8696044010893586;
+  const auto check = [](double dof, double mean, double variance) {
+    CAPTURE(dof);
+    CHECK(chi_square_log_moments(dof).mean == Approx(mean).epsilon(1e-12));
+    CHECK(chi_square_log_moments(dof).variance == Approx(variance).epsilon(1e-12));
+  };
+  check(1, -kEuler - std::log(2.0), kPi2 / 2);
+  check(2, -kEuler, kPi2 / 6);
+  check(4, 1 - kEuler - std::log(2.0), kPi2 / 6 - 1);
+  double psi = -kEuler - 2 * std::log(2.0), derivative = kPi2 / 2;
+  for (double x = 0.5; x < 7.5; ++x) {
+    psi += 1 / x;
+    derivative -= 1 / (x * x);
+  }
+  check(15, psi - std::log(7.5), derivative);
+  CHECK(chi_square_log_moments(1e8).mean == Approx(-1e-8).epsilon(1e-6));
+  CHECK(chi_square_log_moments(1e8).variance == Approx(2e-8).epsilon(1e-6));
+}

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "heap_meter.hpp"
 #include "libchar/benchmark/bench_inputs.hpp"
@@ -16,6 +17,8 @@
 #include "libchar/core/result_check.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fusion/registry.hpp"
+#include "libchar/replay/sweep.hpp"
 #include "libchar/report/bench_against.hpp"
 #include "libchar/report/bench_report_files.hpp"
 #include "reading_options.hpp"
@@ -52,6 +55,26 @@ void check_parts(const BenchVerb& verb) {
                    "no such part of a benchmark",
                    part,
                    did_you_mean(nearest(part, kBenchParts), first_names(kBenchParts))});
+}
+
+/// Before anything is measured: fusion comes late, and a slip must not cost the minutes before it.
+void check_algorithms(const BenchVerb& verb) {
+  for (const std::string& name : verb.algorithms) fusion::algorithm(name);
+  for (const std::string& text : verb.sweeps) parse_sweep(text, "--sweep");
+}
+
+void check_there_are_scenes(const BenchVerb& verb, const BenchInputs& inputs) {
+  if (verb.wants("fusion") && !inputs.scenes.empty()) return;
+  for (const auto& [option, given] : {std::pair{"--sweep", !verb.sweeps.empty()},
+                                      std::pair{"--algorithms", !verb.algorithms.empty()}})
+    if (given)
+      throw Error({ErrorKind::usage,
+                   "E0205",
+                   option,
+                   "it is about fusion, and nothing is fused",
+                   "",
+                   verb.wants("fusion") ? "give a scene, or no files for those that are built in"
+                                        : "add fusion to --parts"});
 }
 
 // Of the files, or what is built in where there are none. A part that nothing was given for is left out.
@@ -172,7 +195,9 @@ void run_bench(Session& session, BenchVerb& verb) {
   };
   if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
   const Json older = verb.against.empty() ? Json() : result_document(verb.against);
+  check_algorithms(verb);
   const BenchInputs inputs = inputs_of(session, verb);
+  check_there_are_scenes(verb, inputs);
   const BenchReport report = measured(session, verb, inputs);
   if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design &&
       !report.stress)

@@ -20,6 +20,13 @@ Eigen::ArrayXd model_of(const CurveProblem& problem, const Mixture& theta) {
   return model;
 }
 
+/// ln v - ln mu, of which the expectation is zero.
+Eigen::ArrayXd log_ratio(const CurveProblem& problem, const Eigen::ArrayXd& model) {
+  Eigen::ArrayXd ratio = (problem.value / model).log();
+  if (problem.bias.size() > 0) ratio -= problem.bias;
+  return ratio;
+}
+
 Eigen::MatrixXd whitened(const CurveProblem& problem, const Eigen::MatrixXd& columns) {
   if (problem.weight.size() > 0) return problem.weight.matrix().asDiagonal() * columns;
   return problem.whitening.size() == 0 ? columns : Eigen::MatrixXd(problem.whitening * columns);
@@ -49,7 +56,7 @@ Mixture step_goal(const CurveProblem& problem,
   const Eigen::MatrixXd columns = jacobian(problem, model, free);
   const Eigen::ArrayXd held = model_of(problem, fixed);
   const Eigen::MatrixXd target =
-      whitened(problem, ((1 + (problem.value / model).log()) - held / model).matrix());
+      whitened(problem, ((1 + log_ratio(problem, model)) - held / model).matrix());
   const TermMatrix gram = columns.transpose() * columns;
   const Eigen::VectorXd product = columns.transpose() * target;
   Mixture right{};
@@ -82,7 +89,7 @@ void refine(const CurveProblem& problem,
 }  // namespace
 
 Eigen::ArrayXd curve_residuals(const CurveProblem& problem, const Mixture& theta) {
-  return whitened(problem, (problem.value / model_of(problem, theta)).log().matrix()).array();
+  return whitened(problem, log_ratio(problem, model_of(problem, theta)).matrix()).array();
 }
 
 TermMatrix curve_information(const CurveProblem& problem,

@@ -14,6 +14,8 @@ struct CurveProblem {
   /// L^-1 with cov(ln value) = s L L'; empty = identity (equal relative errors)
   Eigen::MatrixXd whitening;
   Eigen::ArrayXd weight;  ///< its diagonal, where it has nothing else
+  Eigen::ArrayXd
+      bias;  ///< of ln(value), where its expectation is not that of the curve; empty: none
   Eigen::Index size() const { return value.size(); }
 };
 
