@@ -17,7 +17,8 @@ std::string percent(double share) {
 std::string gap_text(double gap) {
   if (std::isnan(gap)) return "–";
   if (gap <= 0) return "on the front";
-  return gap < 10 ? fmt::format("{} above", percent(gap)) : fmt::format("{:.0f} % above", 100 * gap);
+  return gap < 10 ? fmt::format("{} above", percent(gap))
+                  : fmt::format("{:.0f} % above", 100 * gap);
 }
 
 std::string bytes_cell(const std::optional<double>& bytes) {
