@@ -39,11 +39,10 @@ bool ChunkedTopics::lacks_example(StreamId stream) const {
 }
 
 void ChunkedTopics::count_messages() {
-  Warnings again;  // what is found is said when the file is read
   scan().begin_at(first_record());
   RawMessage message;
   StreamId stream = 0;
-  while (scan().next(message, stream, again)) {
+  while (scan().next(message, stream, found_listing())) {
     StreamCount& count = counts_[stream];
     count.first_ns = count.rows == 0 ? message.log_ns : std::min(count.first_ns, message.log_ns);
     count.last_ns = count.rows == 0 ? message.log_ns : std::max(count.last_ns, message.log_ns);
@@ -54,7 +53,6 @@ void ChunkedTopics::count_messages() {
 
 // The first message of each stream: from the chunks that the index names, or the beginning of the file.
 void ChunkedTopics::find_examples() {
-  Warnings again;
   RawMessage message;
   StreamId stream = 0;
   for (const ChunkPlace& chunk : chunks_) {
@@ -63,7 +61,7 @@ void ChunkedTopics::find_examples() {
     if (!looked_for || chunk.at < first_record()) continue;
     scan().begin_at(chunk.at);
     scan().stop_behind_chunk();
-    while (scan().next(message, stream, again)) look_at(stream, message);
+    while (scan().next(message, stream, found_listing())) look_at(stream, message);
     for (auto& [id, count] : counts_) count.piece_ended = count.seen > 0;
   }
   const auto lacking = [&] {
@@ -73,7 +71,7 @@ void ChunkedTopics::find_examples() {
   };
   if (!lacking()) return;
   scan().begin_at(first_record());
-  while (scan().at() < kExampleBytes && scan().next(message, stream, again)) {
+  while (scan().at() < kExampleBytes && scan().next(message, stream, found_listing())) {
     if (!lacks_example(stream)) continue;
     look_at(stream, message);
     if (!lacking()) return;
@@ -124,8 +122,10 @@ bool ChunkedTopics::next_message(RawMessage& message, Warnings& warnings) {
 }
 
 void ChunkedTopics::finish(Warnings& warnings) {
+  MessageTopics::finish(warnings);
+  if (!ended_) return;
   const LogTopic& topic = topics()[chosen_];
-  if (ended_ && seen_ < topic.rows)
+  if (seen_ < topic.rows)
     warnings.add("lost_messages",
                  fmt::format("messages of {} that the file's index counts and that are not there",
                              printable(topic.name)),

@@ -143,6 +143,7 @@ void MessageTopics::select(std::size_t topic,
                            const std::vector<std::size_t>& fields,
                            std::optional<std::size_t> time,
                            std::int64_t unit_ns) {
+  selected_ = true;
   topic_ = topic;
   fields_ = fields.size();
   source_ = source_of(topic);
@@ -195,19 +196,27 @@ bool MessageTopics::row_of(const RawMessage& message, Warnings& warnings) {
 
 bool MessageTopics::next(RowBlock& block, std::size_t most, Warnings& warnings) {
   warnings.merge(std::exchange(early_, {}));
-  for (std::vector<double>& column : block.columns) column.resize(most);
-  block.time_ns.resize(most);
+  std::size_t room = 0;
+  const auto make_room = [&](std::size_t rows) {
+    for (std::vector<double>& column : block.columns) column.resize(rows);
+    block.time_ns.resize(rows);
+    room = rows;
+  };
   RawMessage message;
-  bool more = true;
-  while (block.rows < most && (more = next_message(message, warnings))) {
+  while (block.rows < most && next_message(message, warnings)) {
     if (!row_of(message, warnings)) continue;
+    if (block.rows == room) make_room(std::min(most, std::max<std::size_t>(256, 4 * room)));
     for (std::size_t c = 0; c < fields_; ++c) block.columns[c][block.rows] = row_[c];
     block.time_ns[block.rows] = stamp_;
     ++block.rows;
   }
-  for (std::vector<double>& column : block.columns) column.resize(block.rows);
-  block.time_ns.resize(block.rows);
+  make_room(block.rows);
   return block.rows > 0;
+}
+
+void MessageTopics::finish(Warnings& warnings) {
+  warnings.merge(std::exchange(early_, {}));
+  if (listed_only()) warnings.merge(listing_);
 }
 
 }  // namespace libchar

@@ -43,6 +43,8 @@ class MessageTopics : public TopicReader {
               std::optional<std::size_t> time,
               std::int64_t unit_ns) override;
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
+  /// What was found when topics were listed, unless rows were read, whose warnings say it too.
+  void finish(Warnings& warnings) override;
 
  protected:
   /// `publishes`: messages have a time of publication too.
@@ -56,7 +58,11 @@ class MessageTopics : public TopicReader {
   /// Where a message stands, for warnings.
   virtual std::string place(const RawMessage& message) const;
 
+  /// Said with the listing and with the rows.
   Warnings& found_early() { return early_; }
+  /// Said with the listing; found again where rows are read.
+  Warnings& found_listing() { return listing_; }
+  bool listed_only() const { return !selected_; }
   const std::string& path() const { return path_; }
 
  private:
@@ -76,7 +82,8 @@ class MessageTopics : public TopicReader {
   bool publishes_ = false;
   std::vector<LogTopic> topics_;
   std::vector<Topic> decoders_;
-  Warnings early_;
+  Warnings early_, listing_;
+  bool selected_ = false;
   std::size_t topic_ = 0, fields_ = 0;
   Source source_ = Source::log;
   bool time_field_ = false;
