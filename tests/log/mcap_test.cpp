@@ -72,6 +72,8 @@ TEST_CASE("MCAP: topics are listed with types, counts, rates and fields, or why 
   std::string bytes = test::slurp(test::ros("ros2.mcap"));
   const test::TemporaryFolder folder;
   const LogInfo counted = log_listing(changed_mcap(folder, bytes.substr(0, bytes.size() - 20)), {});
+  CHECK(counted.warnings.find("cut_end") != nullptr);
+  CHECK(listing.warnings.empty());
   REQUIRE(counted.topics.size() == listing.topics.size());
   for (const LogTopic& topic : listing.topics) {
     INFO(topic.name);
