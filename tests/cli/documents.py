@@ -41,7 +41,7 @@ RUNS = [
     ["compare", "report", "judged"], ["compare", "replay", "replay"], ["compare", "pooled", "pooled"],
     ["convert", IMU, "-o", "imu.npy"], ["convert", IMU, "-o", "imu.f64"],
     ["verify", "report"], ["verify", "report", "--rerun", "again"],
-    ["bench", "report/gyro_z.sensor.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
+    ["bench", "report/gyro_z.sensor.yaml", "scenes/rv-5.1-faults.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
      "characterization,design,fusion", "--algorithms", "mean,median"],
 ]
 
