@@ -39,7 +39,15 @@ std::string front_of(const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(descriptor);
-    throw Error({ErrorKind::input, "E0101", path, "is a folder, a file was expected", "", ""});
+    std::error_code none;
+    const bool rosbag2 =
+        std::filesystem::exists(std::filesystem::path(path) / "metadata.yaml", none);
+    throw Error({ErrorKind::input,
+                 "E0101",
+                 path,
+                 "is a folder, a file was expected",
+                 "",
+                 rosbag2 ? "a recording of ROS 2: name the .mcap or .db3 file in it" : ""});
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
