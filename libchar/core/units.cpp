@@ -46,13 +46,13 @@ const std::array kUnits = {
     UnitRow{"mT", Quantity::magnetic_field, 1e-3, "mt"},
     UnitRow{"µT", Quantity::magnetic_field, 1e-6, "µt|ut|μt|utesla"},
     UnitRow{"nT", Quantity::magnetic_field, 1e-9, "nt"},
-    UnitRow{"Gauss", Quantity::magnetic_field, 1e-4, "gauss|gs"},
+    UnitRow{"Gauss", Quantity::magnetic_field, 1e-4, "gauss|gs|ga"},
     UnitRow{"mGauss", Quantity::magnetic_field, 1e-7, "mgauss|mgs"},
     UnitRow{"Pa", Quantity::pressure, 1, "pa"},
     UnitRow{"hPa", Quantity::pressure, 100, "hpa|mbar"},
     UnitRow{"kPa", Quantity::pressure, 1000, "kpa"},
     UnitRow{"bar", Quantity::pressure, 1e5, "bar"},
-    UnitRow{"°C", Quantity::temperature, 1, "°c|degc|celsius|c|degreesc|deg_c"},
+    UnitRow{"°C", Quantity::temperature, 1, "°c|degc|℃|celsius|c|degreesc|deg_c"},
     UnitRow{"K", Quantity::temperature, 1, "k|kelvin"},
     UnitRow{"°F", Quantity::temperature, 5.0 / 9, "°f|degf|fahrenheit"},
     UnitRow{"V", Quantity::voltage, 1, "v|volt|volts"},
@@ -120,18 +120,11 @@ bool listed(std::string_view spellings, std::string_view wanted) {
 
 // "1/16.4 deg/s", "0.05 deg/s": a factor, a blank, a unit.
 std::optional<Unit> with_factor(std::string_view text) {
-  const std::size_t blank = text.find(' ');
-  if (blank == std::string_view::npos || blank == 0) return std::nullopt;
-  const std::string_view front = text.substr(0, blank);
-  const std::size_t slash = front.find('/');
-  const auto numerator = parse_double(front.substr(0, slash));
-  const auto denominator =
-      slash == std::string_view::npos ? std::optional(1.0) : parse_double(front.substr(slash + 1));
-  if (!numerator || !denominator || *denominator == 0 || *numerator == 0) return std::nullopt;
-  auto unit = find_unit(text.substr(blank + 1));
-  if (!unit) return std::nullopt;
-  unit->to_si *= *numerator / *denominator;
-  unit->symbol = std::string(front) + " " + unit->symbol;
+  const auto counts = count_unit(text);
+  if (!counts) return std::nullopt;
+  auto unit = find_unit(counts->unit);
+  unit->to_si *= counts->factor;
+  unit->symbol = std::string(text.substr(0, text.find(' '))) + " " + unit->symbol;
   return unit;
 }
 
@@ -148,6 +141,32 @@ std::optional<Unit> find_unit(std::string_view text) {
         !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
       return Unit{row.symbol, row.quantity, row.to_si};
   return with_factor(text);
+}
+
+std::optional<double> parse_factor(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const auto numerator = parse_double(text.substr(0, slash));
+  const auto denominator =
+      slash == std::string_view::npos ? std::optional(1.0) : parse_double(text.substr(slash + 1));
+  if (!numerator || !denominator || *denominator == 0 || *numerator == 0) return std::nullopt;
+  const double factor = *numerator / *denominator;
+  return std::isfinite(factor) && factor != 0 ? std::optional(factor) : std::nullopt;
+}
+
+std::optional<CountUnit> count_unit(std::string_view text) {
+  const std::size_t blank = text.find(' ');
+  if (blank == std::string_view::npos || blank == 0) return std::nullopt;
+  const auto factor = parse_factor(text.substr(0, blank));
+  const std::size_t unit = text.find_first_not_of(' ', blank);
+  if (!factor || unit == std::string_view::npos || !find_unit(text.substr(unit)))
+    return std::nullopt;
+  if (count_unit(text.substr(unit))) return std::nullopt;  // two numbers are a slip
+  return CountUnit{*factor, std::string(text.substr(unit))};
+}
+
+bool dimensionless(std::string_view unit) {
+  const auto known = find_unit(unit);
+  return known && known->quantity == Quantity::ratio && known->symbol == "1";
 }
 
 std::vector<HabitualValue> habitual_units(std::string_view term, std::string_view unit_text) {
@@ -211,12 +230,12 @@ std::string term_unit(std::string_view term, std::string_view unit) {
 
 std::string shown_unit(std::string_view unit) {
   if (unit.empty()) return "U";
-  return unit == "1" ? "" : std::string(unit);
+  return dimensionless(unit) ? "" : std::string(unit);
 }
 
 std::string shown_term_unit(std::string_view term, std::string_view unit) {
-  const std::string u = term_unit(term, unit);
-  if (unit != "1") return u;
+  if (!dimensionless(unit)) return term_unit(term, unit);
+  const std::string u = term_unit(term, "1");
   if (u == "1") return "";
   return u.starts_with("1·") ? u.substr(std::string_view("1·").size()) : u;
 }

@@ -66,4 +66,17 @@ std::string term_unit(std::string_view term, std::string_view unit);
 std::string shown_unit(std::string_view unit);
 std::string shown_term_unit(std::string_view term, std::string_view unit);
 
+/// "0.05 deg/s", "1/16.4 deg/s", "3.33 mg": a number in front of a unit, which is the value of one count.
+struct CountUnit {
+  double factor = 1;
+  std::string unit;  ///< as written behind the number
+};
+std::optional<CountUnit> count_unit(std::string_view text);
+
+/// "1/16.4" or "0.05"; nothing when it is no number, or zero.
+std::optional<double> parse_factor(std::string_view text);
+
+/// Is it the unit of numbers without one ("1", "-", "none"), which is not printed?
+bool dimensionless(std::string_view unit);
+
 }  // namespace libchar

@@ -70,7 +70,11 @@ TEST_CASE("what is wrong with the first lines is told with line, column and numb
   // A name of two lines: the columns behind it count from the second.
   CHECK(failure("t,\"a\nb\",x,x\n0,1,2,3\n")
             .find("log.csv:2:6: error E0307: two columns have the same name (first at 2:4)") == 0);
-  CHECK_THAT(failure("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n"),
+  CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n").info.dialect[1] ==
+        "2 lines in front of the table left out");
+  ReadOptions named;
+  named.header = "yes";
+  CHECK_THAT(failure("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named),
              Catch::Contains("E0303: 2 line(s) before the table do not fit its 2 columns") &&
                  Catch::Contains("`skip_rows` 2 leaves them out"));
 }

@@ -194,8 +194,9 @@ TEST_CASE("real recordings: rates and rows") {
   CHECK(mimu.info.samples == 37439);
   CHECK(mimu.info.time.rate_hz == Approx(62.5).epsilon(1e-5));
   CHECK(mimu.info.channels.size() == 48);
-  CHECK(mimu.info.channels[0].unit == "1/16.4 deg/s");
-  CHECK(mimu.info.channels[0].integer);
+  CHECK(mimu.info.channels[0].unit == "deg/s");  // counts of 1/16.4 deg/s
+  CHECK_FALSE(mimu.info.channels[0].integer);
+  CHECK(std::fabs(mimu.samples[0][0] * 16.4 - std::round(mimu.samples[0][0] * 16.4)) < 1e-9);
   CHECK(mimu.info.time.gaps == 0);
   const Recording dot = read("array_dot4_quad_horizontal_path_9.csv");
   CHECK(dot.info.samples == 6481);

@@ -198,10 +198,12 @@ TEST_CASE("of several columns of time the choice is said where it is the device'
     return read_recording((folder / "x.csv").string()).info.guesses;
   };
   CHECK(guesses("host_time[us],device_time[ms],x") ==
-        std::vector<std::string>{"time column: device_time[ms], the device's own clock "
-                                 "(`time_column` takes another one)"});
+        std::vector<std::string>{"time column: device_time[ms], the device's own clock, not "
+                                 "host_time[us] (`time_column` takes another one)"});
   CHECK(guesses("device_time[us],y[ms],x").empty());
-  CHECK(guesses("host_timestamp[us],timestamp[ms],x").empty());
+  CHECK(guesses("host_timestamp[us],timestamp[ms],x") ==
+        std::vector<std::string>{"time column: timestamp[ms], not host_timestamp[us] "
+                                 "(`time_column` takes another one)"});
 }
 
 TEST_CASE("the device's own time is preferred to the host's") {

@@ -71,23 +71,64 @@ ChunkReader::~ChunkReader() {
 }
 
 std::size_t ChunkReader::read_some(char* to, std::size_t n) {
+  std::size_t done = packed() ? 0 : std::min(n, front_.size());
+  if (done > 0) {
+    std::memcpy(to, front_.data(), done);
+    front_.erase(0, done);
+  }
+  while (packed() && done < n && !ended_) {
+    const std::size_t got = unpacker_->read(to + done, n - done);
+    ended_ = got == 0;
+    done += got;
+  }
+  if (!packed()) {
+    if (done < n) done += read_file(to + done, n - done);
+    ended_ = file_ended_ && front_.empty();
+  }
+  read_ += done;
+  return done;
+}
+
+// The bytes of a compressed file, which are those that are hashed.
+std::size_t ChunkReader::read_stored(char* to, std::size_t n) {
+  std::size_t done = std::min(n, front_.size());
+  std::memcpy(to, front_.data(), done);
+  front_.erase(0, done);
+  if (done == 0) done = read_file(to, n);
+  if (hashing_) sha_.update({to, done});
+  stored_ += done;
+  return done;
+}
+
+void ChunkReader::look_for_packing() {
+  front_.resize(kPackingBytes);
+  front_.resize(read_file(front_.data(), kPackingBytes));
+  const Packing packing = packing_of(front_);
+  if (packing == Packing::none) return;
+  unpacker_ = make_unpacker(
+      packing,
+      [this](char* to, std::size_t n) { return read_stored(to, n); },
+      path_ == "-" ? "standard input" : path_);
+}
+
+std::size_t ChunkReader::read_file(char* to, std::size_t n) {
   std::size_t done = 0;
-  while (done < n && !ended_) {
+  while (done < n && !file_ended_) {
     const ssize_t got = ::read(descriptor_, to + done, n - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0)
       refuse(path_ == "-" ? "standard input" : path_,
              "cannot read: " + std::string(std::strerror(errno)));
-    if (got == 0) ended_ = true;
+    if (got == 0) file_ended_ = true;
     done += static_cast<std::size_t>(got);
   }
-  read_ += done;
   return done;
 }
 
 std::string_view ChunkReader::head() {
   const std::size_t first = std::size_t{1}
                             << 16U;  // small files end here; long headers ask for more
+  look_for_packing();
   head_.resize(first);
   std::size_t size = read_some(head_.data(), first);
   if (!ended_) {
@@ -99,7 +140,7 @@ std::string_view ChunkReader::head() {
     char one = 0;
     if (read_some(&one, 1) == 1) head_.push_back(one);
   }
-  if (hashing_) sha_.update(head_);
+  if (hashing_ && !packed()) sha_.update(head_);
   return head_;
 }
 
@@ -140,6 +181,7 @@ bool ChunkReader::next(RawChunk& chunk) {
                 chunk.bytes.begin() + static_cast<std::ptrdiff_t>(size));
   chunk.size = cut;
   if (done_) drop_nul_tail(chunk);
+  if (done_ && packed_cut()) drop_cut_line(chunk);
   chunk.last = done_;
   offset_ += chunk.size;
   return chunk.size > 0 || !done_;
@@ -168,16 +210,23 @@ void ChunkReader::drop_nul_tail(RawChunk& chunk) {
   chunk.size = line;
 }
 
+// Where compressed data end in the middle, so does the last line.
+void ChunkReader::drop_cut_line(RawChunk& chunk) {
+  const std::size_t whole = last_line_end(chunk.bytes.data(), 0, chunk.size);
+  cut_bytes_ += chunk.size - whole;
+  chunk.size = whole;
+}
+
 Sha256Blocks* ChunkReader::begin_hash(const RawChunk& chunk) {
   const std::string_view fresh(chunk.bytes.data() + chunk.hash_from,
                                chunk.hash_to - chunk.hash_from);
   if (interleaves_hash()) return sha_.begin_interleaved(fresh);
-  if (hashing_) sha_.update(fresh);
+  if (hashing_ && !packed()) sha_.update(fresh);
   return nullptr;
 }
 
 void ChunkReader::end_hash(const RawChunk& chunk) {
-  if (!hashing_) return;
+  if (!hashing_ || packed()) return;
   if (interleaves_hash()) sha_.finish_interleaved();
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
@@ -194,9 +243,12 @@ void ChunkReader::hash(const RawChunk& chunk) {
 
 std::string ChunkReader::finish_hash() {
   if (!hashing_) return "";
-  if (!ended_ && !regular_) return "";
+  if (!(packed() ? file_ended_ : ended_) && !regular_) return "";
   std::vector<char> buffer(std::size_t{1} << 18U);
-  while (!ended_) sha_.update({buffer.data(), read_some(buffer.data(), buffer.size())});
+  while (packed() && read_stored(buffer.data(), buffer.size()) > 0) {
+  }
+  while (!packed() && !ended_)
+    sha_.update({buffer.data(), read_some(buffer.data(), buffer.size())});
   return sha_.finish();
 }
 

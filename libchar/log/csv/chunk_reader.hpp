@@ -1,13 +1,17 @@
 #pragma once
-// The bytes of a CSV file, cut into chunks of whole lines, and their SHA-256.
+// The bytes of a CSV file, unpacked where it is compressed, cut into chunks of whole lines, and the SHA-256 of the file as it
+// is stored.
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "libchar/core/sha256.hpp"
 #include "libchar/log/csv/dialect.hpp"
+#include "libchar/log/csv/unpacker.hpp"
 
 namespace libchar::csv {
 
@@ -45,14 +49,17 @@ class ChunkReader {
   void hash(const RawChunk& chunk);
   /// The same in two steps, for a parser that hashes between them; nullptr where that cannot
   /// be.
-  bool interleaves_hash() const { return hashing_ && sha_.can_interleave(); }
+  bool interleaves_hash() const { return hashing_ && !packed() && sha_.can_interleave(); }
   Sha256Blocks* begin_hash(const RawChunk& chunk);
   void end_hash(const RawChunk& chunk);
   /// Reads on to the end of a regular file for its hash; "" when a pipe was not read to its end or
   /// no hash was asked for.
   std::string finish_hash();
 
-  std::uint64_t size() const { return size_; }  ///< 0 when unknown
+  std::uint64_t size() const { return size_; }  ///< as stored; 0 when unknown
+  bool packed() const { return unpacker_ != nullptr; }
+  bool packed_cut() const { return packed() && unpacker_->cut(); }
+  std::uint64_t stored_read() const { return stored_; }  ///< bytes of a compressed file
   std::uint64_t bytes_read() const { return read_; }
   std::uint64_t nul_tail() const {
     return nuls_;
@@ -64,6 +71,10 @@ class ChunkReader {
  private:
   std::size_t fill(char* to, std::size_t n, std::size_t& from_head);
   std::size_t read_some(char* to, std::size_t n);
+  std::size_t read_file(char* to, std::size_t n);
+  std::size_t read_stored(char* to, std::size_t n);
+  void look_for_packing();
+  void drop_cut_line(RawChunk& chunk);
   void drop_nul_tail(RawChunk& chunk);
 
   std::string path_;
@@ -76,6 +87,10 @@ class ChunkReader {
   std::size_t taken_ = 0;    // of the head
   std::vector<char> carry_;  // an unfinished line
   Sha256 sha_;
+  std::string front_;  // bytes that were looked at and not yet given out
+  bool file_ended_ = false;
+  std::atomic<std::uint64_t> stored_ = 0;
+  std::unique_ptr<Unpacker> unpacker_;
 };
 
 }  // namespace libchar::csv

@@ -11,11 +11,13 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
 #include "libchar/log/csv/dialect.hpp"
 #include "libchar/log/csv/header.hpp"
+#include "libchar/log/csv/pivot.hpp"
 #include "libchar/log/csv/plan.hpp"
 #include "libchar/log/csv/rows.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -32,8 +34,17 @@ class CsvSource final : public RowSource {
     info_.file = path == "-" ? "standard input" : path;
     info_.format = "csv";
     const std::string_view head = chunks_.head();
+    if (head.empty() && chunks_.packed())
+      throw Error({ErrorKind::input,
+                   "E0329",
+                   info_.file,
+                   "the compressed data end before their first byte of text",
+                   "",
+                   "copy the file again"});
     dialect_ = understand(head, chunks_.whole(), options, info_);
     plan_ = plan_columns(dialect_, options, info_);
+    read_channels_ = info_.channels;
+    if (dialect_.group_column >= 0) group_channels();
     missing_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
@@ -41,6 +52,7 @@ class CsvSource final : public RowSource {
     chunks_.start_at(dialect_.data_offset);
     next_line_ = dialect_.first_data_line;
     info_.bytes = chunks_.size();
+    if (chunks_.packed()) info_.dialect.emplace_back("compressed");
     info_.first_line = next_line_;
     const int threads =
         std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
@@ -60,12 +72,13 @@ class CsvSource final : public RowSource {
     while (take(current_)) {
       account(warnings);
       std::swap(block, current_.rows);
+      if (pivot_.active()) pivot_.widen(block, current_.groups);
       if (current_.problem) prepare_problem();
       if (block.rows > 0) return true;
       if (problem_) throw Error(*problem_);
     }
     reached_end_ = true;
-    return false;
+    return std::exchange(flushed_, true) ? false : pivot_.flush(block);
   }
 
   void finish(Warnings& warnings) override {
@@ -85,13 +98,20 @@ class CsvSource final : public RowSource {
     add(warnings, "number_out_of_range", kNumbersOutOfRange, overflow_);
     add(warnings, "number_too_small", kNumbersTooSmall, too_small_);
     if (missing_.count > 0)
-      add(warnings, "missing_cell", missing_cells(info_.channels, missing_per_channel_), missing_);
+      add(warnings, "missing_cell", missing_cells(read_channels_, missing_per_channel_), missing_);
     if (chunks_.nul_tail() > 0)
       warnings.add("nul_tail",
                    fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
                                chunks_.nul_tail(),
                                chunks_.cut_bytes() > 0 ? " with the line they cut off" : ""),
                    place_name(next_line_, 1));
+    if (chunks_.packed_cut())
+      warnings.add("compressed_cut",
+                   "the compressed file ends before its end mark (cut?): the whole rows up to "
+                   "there are read",
+                   place_name(next_line_, 1));
+    if (filtered_ > 0)
+      info_.dialect.push_back(fmt::format("{} of other kinds left out", plural(filtered_, "row")));
     if (inexact_ > 0)
       info_.dialect.push_back(
           fmt::format("{} integers beyond 2^53 rounded to the nearest double", inexact_));
@@ -101,10 +121,12 @@ class CsvSource final : public RowSource {
     return place_name(line_of(block, i), 1);
   }
   std::string where(const RowBlock& block, std::size_t i, std::uint64_t) const override {
-    return dialect_.time_column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
+    return dialect_.time.column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
                                      : fmt::format("{}:{}", info_.file, line_of(block, i));
   }
-  std::uint64_t bytes_read() const override { return dialect_.data_offset + consumed_; }
+  std::uint64_t bytes_read() const override {
+    return chunks_.packed() ? chunks_.stored_read() : dialect_.data_offset + consumed_;
+  }
   std::uint64_t bytes_total() const override { return chunks_.size(); }
 
   std::string sha256() override {
@@ -113,6 +135,19 @@ class CsvSource final : public RowSource {
   }
 
  private:
+  // The channels of each group: "Gyroscope_x", or the group alone where there is one.
+  void group_channels() {
+    std::vector<Channel> wide;
+    for (const std::string& group : dialect_.groups)
+      for (const Channel& channel : read_channels_) {
+        wide.push_back(channel);
+        wide.back().name = plan_.channels == 1 ? group : group + "_" + channel.name;
+      }
+    info_.channels = std::move(wide);
+    pivot_ =
+        Pivot(plan_.channels, dialect_.groups.size(), dialect_.time.column >= 0, dialect_.cycles);
+  }
+
   void read_ahead(int threads) {
     try {
       pipeline_ = std::make_unique<ChunkPipeline>(chunks_, plan_, threads);
@@ -130,6 +165,7 @@ class CsvSource final : public RowSource {
     const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
     const auto lines = static_cast<std::uint64_t>(
         std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (chunks_.packed()) return 0;
     if (body.empty() || chunks_.size() <= dialect_.data_offset) return 0;
     return static_cast<std::uint64_t>(static_cast<double>(chunks_.size() - dialect_.data_offset) /
                                       static_cast<double>(body.size()) *
@@ -166,6 +202,7 @@ class CsvSource final : public RowSource {
     ParsedChunk& chunk = current_;
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
+    if (dialect_.clock_only) pass_midnight(chunk.rows);
     collect(blank_, chunk.blank);
     collect(comment_, chunk.comment);
     collect(repeated_, chunk.repeated);
@@ -188,13 +225,26 @@ class CsvSource final : public RowSource {
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       fractional_[c] |= chunk.fractional[c];
-      info_.channels[c].integer = fractional_[c] == 0;
+      for (std::size_t k = c; k < info_.channels.size(); k += plan_.channels)
+        info_.channels[k].integer = fractional_[c] == 0;
     }
     inexact_ += chunk.inexact_integers;
     next_line_ += chunk.lines;
     rows_ += chunk.rows.rows;
+    filtered_ += chunk.filtered;
     consumed_ += chunk.account.bytes;
     total_.add(chunk.account);
+  }
+
+  // A time of day begins again at midnight.
+  void pass_midnight(RowBlock& rows) {
+    constexpr std::int64_t kDay = std::int64_t{86400} * 1000000000;
+    for (std::size_t i = 0; i < rows.rows; ++i) {
+      std::int64_t& stamp = rows.time_ns[i];
+      if (stamp + days_ns_ < last_clock_ns_ - kDay / 2) days_ns_ += kDay;
+      stamp += days_ns_;
+      last_clock_ns_ = stamp;
+    }
   }
 
   void prepare_problem() {
@@ -226,18 +276,21 @@ class CsvSource final : public RowSource {
   LogInfo info_;
   Dialect dialect_;
   Plan plan_;
+  std::vector<Channel> read_channels_;  // before they are made wide
+  Pivot pivot_;
   ChunkReader chunks_;
   Warnings pending_;
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Problem> problem_;
   Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, too_small_, missing_;
+  std::int64_t days_ns_ = 0, last_clock_ns_ = 0;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::uint32_t> fractional_;
   Account total_;
   std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
-                inexact_ = 0;
-  bool cr_noted_ = false, finished_ = false, reached_end_ = false;
+                inexact_ = 0, filtered_ = 0;
+  bool cr_noted_ = false, finished_ = false, reached_end_ = false, flushed_ = false;
   std::unique_ptr<ChunkPipeline> pipeline_;  // ends before what it reads
 };
 
@@ -260,7 +313,7 @@ Format csv_format() {
   Format row;
   row.about.name = "csv";
   row.about.title = "CSV";
-  row.about.suffixes = {".csv", ".tsv", ".txt", ".dat"};
+  row.about.suffixes = {".csv", ".tsv", ".txt", ".dat", ".lvm"};
   row.about.otherwise = "`-`";
   row.about.names = "yes";
   row.about.units = "yes";

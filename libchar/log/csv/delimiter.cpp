@@ -3,11 +3,31 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/csv/columns.hpp"
 #include "libchar/log/csv/number.hpp"
 
 namespace libchar::csv {
 
+namespace {
+
+// "1.234,56" under a decimal comma, "1,234.56" under a point: one mark between groups of three, another once behind them.
+char mark_of_grouped(std::string_view text) {
+  for (const auto& [point, group] : {std::pair{'.', ','}, std::pair{',', '.'}})
+    if (const std::string plain = without_thousands(text, {point, group});
+        plain != text && text.find(point) != std::string_view::npos)
+      return point;
+  return 0;
+}
+
+}  // namespace
+
 bool numeric(const Field& field, char delimiter, char* mark) {
+  if (const std::size_t label = label_length(field.text); label > 0)
+    return numeric({field.text.substr(label), 0, field.quoted}, delimiter, mark);
+  if (const char grouped = mark_of_grouped(field.text); grouped != 0) {
+    if (mark != nullptr) *mark = grouped;
+    return true;
+  }
   if (read_cell(field.text, '.').kind != Cell::bad) {
     if (mark != nullptr && field.text.find('.') != std::string::npos) *mark = '.';
     return true;
@@ -64,7 +84,9 @@ Score score(const std::vector<Line>& lines, char delimiter) {
 Score best_score(const std::vector<Line>& lines) {
   Score best;
   for (const char candidate : {',', ';', '\t', ' '}) {
-    const Score s = score(lines, candidate);
+    Score s = score(lines, candidate);
+    // Tabs count as blanks, and names behind tabs have blanks inside: those must win clearly.
+    if (candidate == ' ' && best.delimiter == '\t' && best.columns > 1) s.quality *= 0.7;
     if (s.quality > best.quality + 1e-9) best = s;
   }
   return best;
@@ -80,6 +102,22 @@ char decimal_mark(const std::vector<Line>& lines, char delimiter) {
       points += mark == '.';
     }
   return commas > points ? ',' : '.';
+}
+
+char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal) {
+  constexpr std::size_t kEnough = 3;
+  for (const char group : {',', '.', '\'', ' '}) {
+    if (group == decimal || (group == ' ' && delimiter == ' ')) continue;
+    std::size_t found = 0;
+    for (const Line& line : lines)
+      for (const Field& field : split(line.text, delimiter)) {
+        if (read_cell(field.text, decimal).kind != Cell::bad) continue;
+        const std::string plain = without_thousands(field.text, {decimal, group});
+        found += plain != field.text && read_cell(plain, decimal).kind == Cell::value;
+      }
+    if (found >= kEnough) return group;
+  }
+  return 0;
 }
 
 char named_delimiter(const std::string& name) {

@@ -28,6 +28,9 @@ Score best_score(const std::vector<Line>& lines);
 /// ',' when more numbers of the sample show a decimal comma than a point, else '.'.
 char decimal_mark(const std::vector<Line>& lines, char delimiter);
 
+/// What stands between groups of three digits in three cells or more, 0 when nothing does.
+char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal);
+
 /// "tab", "space" or the character itself; throws Error(usage) for what cannot separate numbers.
 char named_delimiter(const std::string& name);
 

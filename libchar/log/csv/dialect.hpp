@@ -12,6 +12,7 @@
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
+#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 
@@ -24,22 +25,47 @@ inline constexpr std::size_t kHeadBytes =
 
 struct Column {
   std::string name, unit;
+  std::string unit_below;  ///< in a second header line
+  bool unnamed = false;    ///< the header has an empty cell
+  bool left_out = false;   ///< words, or a count of the rows: no channel unless it is asked for
   std::string text;        ///< header cell as written
   std::uint64_t line = 0;  ///< place of the header cell, 1-based; 0 without header
   std::uint64_t position = 0;
 };
 
+/// How a column of stamps is written.
+struct StampPart {
+  int column = -1;           ///< index among all columns, -1 = none
+  bool calendar = false;     ///< dates or clock times, else numbers
+  std::int64_t unit_ns = 1;  ///< of numbers
+};
+
+/// Rows with another value in this column are left out, or (`must`) refused.
+struct RowFilter {
+  int column = -1;
+  std::string value;
+  bool must = false;
+};
+
 struct Dialect {
   char delimiter = ',';  ///< ' ' stands for runs of blanks and tabs
   char decimal = '.';
+  char thousands = 0;  ///< between groups of three digits; 0 = none
+  std::string lead;    ///< what ends a stamp in front of the cells, "]" or "->"; "" = none
   LineEnd line_end = LineEnd::lf;
   bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
   bool has_header = false;
   std::string header;  ///< the header line as it stands in the file, to recognise a repeated one
   std::vector<Column> columns;
-  int time_column = -1;  ///< index among all columns, -1 = none
-  std::int64_t time_unit_ns = 1000000000;
-  std::size_t data_offset = 0;        ///< byte at which the first line after the header starts
+  StampPart time;
+  StampPart more_time;  ///< added to it: a clock time to its date, nanoseconds to their seconds
+  DateOrder date_order = DateOrder::day_first;
+  std::vector<RowFilter> filters;
+  int group_column = -1;            ///< its values make channels of their own
+  std::vector<std::string> groups;  ///< these, in the order of the file
+  bool cycles = false;          ///< each group once, in turn: a turn is a row, at its first stamp
+  bool clock_only = false;      ///< stamps begin again at midnight
+  std::size_t data_offset = 0;  ///< byte at which the first line after the header starts
   std::uint64_t first_data_line = 1;  ///< its physical line number
 };
 

@@ -4,10 +4,7 @@
 
 #include <map>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/text.hpp"
-#include "libchar/log/csv/number.hpp"
-#include "libchar/log/reading_fields.hpp"
 
 namespace libchar::csv {
 
@@ -20,6 +17,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
   std::map<std::string, int> stripped;
   for (Column& column : dialect.columns) {
     std::tie(column.name, column.unit) = name_and_unit(column.text);
+    if (column.unit.empty()) column.unit = column.unit_below;
     ++stripped[column.name];
   }
   std::map<std::string, const Column*> seen;
@@ -28,9 +26,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
     if (!dialect.has_header) continue;
     if (column.name.empty()) {
       column.name = fmt::format("c{}", i);
-      info.warnings.add("unnamed_column",
-                        "columns without a name are named by their position, c0, c1…",
-                        place_name(column.line, column.position));
+      column.unnamed = true;
     } else if (stripped[column.name] > 1) {
       column.name =
           std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
@@ -57,21 +53,6 @@ void name_columns(Dialect& dialect, LogInfo& info) {
                    column.name,
                    "rename one, or read with `header` no and `skip_rows` 1 to use positions"});
   }
-}
-
-void read_rate_comment(std::string_view comment, LogInfo& info) {
-  const std::string text = ascii_lower(comment);
-  const std::size_t word = text.find("rate");
-  const std::size_t hz = text.find("hz", word == std::string::npos ? 0 : word);
-  if (word == std::string::npos || hz == std::string::npos) return;
-  std::string number = text.substr(word + 4, hz - word - 4);
-  number.erase(0, number.find_first_of("0123456789"));
-  const double factor = !number.empty() && number.back() == 'k' ? 1000 : 1;
-  number.erase(number.find_last_of("0123456789.") + 1);
-  const auto rate = parse_double(number);
-  if (!rate || *rate * factor < kRates.lowest || *rate * factor > kRates.highest) return;
-  info.time.rate_hz = *rate * factor;
-  info.dialect.push_back(fmt::format("rate {} Hz from a comment", shortest(info.time.rate_hz)));
 }
 
 }  // namespace libchar::csv

@@ -12,9 +12,6 @@ namespace libchar::csv {
 /// strange names a warning.
 void name_columns(Dialect& dialect, LogInfo& info);
 
-/// "// Update Rate: 100.0Hz": a comment that states the sampling rate.
-void read_rate_comment(std::string_view comment, LogInfo& info);
-
 /// "line 412", "line 412, column 6": a place in the form Warnings use.
 std::string place_name(std::uint64_t line, std::uint64_t column);
 

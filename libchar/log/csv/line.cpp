@@ -75,4 +75,18 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
   return fields;
 }
 
+std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {
+  constexpr std::size_t kLongest = 48;
+  const std::size_t end = line.substr(0, kLongest).find(lead);
+  if (end == std::string_view::npos) return std::nullopt;
+  std::size_t begin = line.find_first_not_of(" \t");
+  if (lead == "]") {
+    if (line[begin] != '[') return std::nullopt;
+    ++begin;
+  }
+  if (begin >= end) return std::nullopt;
+  after = std::min(line.find_first_not_of(" \t,;:", end + lead.size()), line.size());
+  return Field{std::string(trimmed(line.substr(begin, end - begin))), begin, false};
+}
+
 }  // namespace libchar::csv

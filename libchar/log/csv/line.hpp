@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,10 @@ struct Field {
 /// Splits one line (without its line end). Throws nothing: an open quote takes the rest of the line
 /// (`open_quote` is set).
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote = nullptr);
+
+/// The stamp in front of a line of a terminal, "[2024-05-01 12:00:00.123] 1,2" or "12:00:00.123 -> 1,2", up to `lead`, "]" or
+/// "->"; nothing when the line has none. `after` is where the cells begin.
+std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after);
 
 /// Does this line start with a comment sign (#, %, //)?
 bool is_comment(std::string_view line);

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "libchar/core/text.hpp"
+#include "libchar/log/csv/columns.hpp"
 #include "libchar/log/csv/number.hpp"
+#include "libchar/log/csv/stamps.hpp"
 #include "libchar/log/csv/vector_rows.hpp"
 
 namespace libchar::csv {
@@ -54,15 +57,24 @@ class RowParser {
       if (column.size() < 32) column.resize(32);
       capacity_ = std::min(capacity_, column.size());
     }
-    if (dialect_.time_column >= 0) {
+    if (dialect_.time.column >= 0) {
       if (rows.time_ns.size() < 32) rows.time_ns.resize(32);
       capacity_ = std::min(capacity_, rows.time_ns.size());
     } else {
       rows.time_ns.clear();
     }
     point_at_columns();
-    for (std::size_t i = 0; i < kNanoseconds.size(); ++i)
-      if (dialect_.time_unit_ns == kNanoseconds[i]) stamp_digits_ = static_cast<int>(i);
+    const bool one_number = !dialect_.time.calendar && dialect_.more_time.column < 0;
+    for (std::size_t i = 0; one_number && i < kNanoseconds.size(); ++i)
+      if (dialect_.time.unit_ns == kNanoseconds[i]) stamp_digits_ = static_cast<int>(i);
+    // Of two parts of a stamp the one that stands first in a row sets it, the other is added.
+    first_part_ = dialect_.more_time.column >= 0 && dialect_.more_time.column < dialect_.time.column
+                      ? Plan::kMoreTime
+                      : Plan::kTime;
+    line_by_line_ =
+        !dialect_.lead.empty() || !dialect_.filters.empty() || dialect_.group_column >= 0;
+    out_.groups.clear();
+    out_.filtered = 0;
     out_.lines = 0;
     out_.problem.reset();
     out_.unended.reset();
@@ -82,7 +94,7 @@ class RowParser {
   void grow() {
     const std::size_t wanted = capacity_ * 2;
     for (auto& column : out_.rows.columns) column.resize(wanted);
-    if (dialect_.time_column >= 0) out_.rows.time_ns.resize(wanted);
+    if (dialect_.time.column >= 0) out_.rows.time_ns.resize(wanted);
     capacity_ = wanted;
     point_at_columns();
   }
@@ -109,8 +121,8 @@ class RowParser {
   // The fast way of vector_rows.hpp, from p to the first row that it does not take.
   const char* vector_rows(const char* p) {
     const bool crlf = dialect_.line_end == LineEnd::crlf;
-    const bool timed = dialect_.time_column >= 0;
-    if (dialect_.delimiter == ' ' || dialect_.decimal != '.' ||
+    const bool timed = dialect_.time.column >= 0;
+    if (dialect_.delimiter == ' ' || dialect_.decimal != '.' || line_by_line_ ||
         (!crlf && dialect_.line_end != LineEnd::lf) || (timed && stamp_digits_ < 0))
       return p;
     std::vector<VectorColumn> columns(plan_.target.size());
@@ -156,7 +168,7 @@ class RowParser {
   // in front of the first row that is anything else, of which it has changed nothing but scratch.
   const char* quick_rows(const char* p, const char* const end) {
     if (dialect_.delimiter == ' ' || dialect_.line_end == LineEnd::cr ||
-        dialect_.line_end == LineEnd::none)
+        dialect_.line_end == LineEnd::none || line_by_line_)
       return p;
     const std::size_t before = rows_;
     const int* const target = plan_.target.data();
@@ -180,7 +192,7 @@ class RowParser {
           q = quick_stamp(q, point, stamp_digits_, out_.rows.time_ns[row]);
           if (q == nullptr) break;
         } else {
-          q = quick_text(q, c, to == Plan::kTime);
+          q = quick_text(q, c, to);
           if (q == nullptr) break;
         }
         if (c == last || *q != delimiter) {
@@ -201,8 +213,8 @@ class RowParser {
     return p;
   }
 
-  // A column that is not wanted, or stamps in a unit that is no power of ten.
-  const char* quick_text(const char* p, std::size_t column, bool stamp) {
+  // A column that is not wanted, or stamps that are no numbers in a unit of a power of ten.
+  const char* quick_text(const char* p, std::size_t column, int to) {
     const char* const start = p;
     while (p < end_ && *p != dialect_.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
     if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
@@ -211,13 +223,25 @@ class RowParser {
         (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start)))
       return nullptr;
     std::size_t offset = 0;
-    if (stamp && read_stamp({start, static_cast<std::size_t>(p - start)},
-                            dialect_.decimal,
-                            dialect_.time_unit_ns,
-                            out_.rows.time_ns[rows_],
-                            offset) != StampDefect::none)
+    if (to != Plan::kSkip &&
+        take_part(trimmed({start, static_cast<std::size_t>(p - start)}), to, offset) !=
+            StampDefect::none)
       return nullptr;
     return p;
+  }
+
+  // A stamp, or one of its two parts, into the row at hand.
+  StampDefect take_part(std::string_view text, int to, std::size_t& offset) {
+    std::int64_t ns = 0;
+    const StampPart& part = to == Plan::kTime ? dialect_.time : dialect_.more_time;
+    const StampDefect defect = read_part(text, part, dialect_, ns, offset);
+    if (defect != StampDefect::none) return defect;
+    std::int64_t& stamp = out_.rows.time_ns[rows_];
+    if (to == first_part_)
+      stamp = ns;
+    else if (__builtin_add_overflow(stamp, ns, &stamp))
+      return StampDefect::out_of_range;
+    return StampDefect::none;
   }
 
   // Any line, looked at byte by byte.
@@ -269,6 +293,8 @@ class RowParser {
       out_.repeated.add(line_, 1);
       out_.account.header_bytes += bytes;
       list_lines();
+    } else if (!wanted(line)) {
+      leave_out(bytes);
     } else if (careful_row(line)) {
       out_.account.row_bytes += bytes;
       note_line();
@@ -298,9 +324,22 @@ class RowParser {
   bool blank(char c) const { return c == ' ' || c == '\t'; }
   bool ends(char c) const { return dialect_.delimiter == ' ' ? blank(c) : c == dialect_.delimiter; }
 
+  // The stamp that a terminal put in front of the line.
+  bool lead_field(std::string_view line, Span& span) const {
+    std::size_t after = 0;
+    const auto lead = lead_of(line, dialect_.lead, after);
+    if (!lead) return false;
+    span.start = span.from = lead->offset;
+    span.to = lead->offset + lead->text.size();
+    span.next = after;
+    span.last = after >= line.size();
+    return true;
+  }
+
   // The field that starts at i.
   Span field(std::string_view line, std::size_t i) {
     Span span;
+    if (i == 0 && !dialect_.lead.empty() && lead_field(line, span)) return span;
     const auto pad = [&](std::size_t k) {
       return k < line.size() && blank(line[k]) && !ends(line[k]);
     };
@@ -352,6 +391,61 @@ class RowParser {
       span.ok = false;
     }
     return span;
+  }
+
+  void leave_out(std::uint64_t bytes) {
+    if (out_.problem) return;
+    ++out_.filtered;
+    out_.account.filtered_bytes += bytes;
+    list_lines();
+  }
+
+  // Does the row have the values that are asked for? Notes its group.
+  bool wanted(std::string_view line) {
+    if (dialect_.filters.empty() && dialect_.group_column < 0) return true;
+    Span span;
+    std::size_t i = 0;
+    const int columns = static_cast<int>(plan_.target.size());
+    for (int c = 0; c < columns && !span.last; ++c, i = span.next) {
+      span = field(line, i);
+      if (!span.ok) return false;
+      const std::string_view text = line.substr(span.from, span.to - span.from);
+      for (const RowFilter& filter : dialect_.filters)
+        if (filter.column == c && text != filter.value) {
+          if (filter.must) refuse_kind(text, span, filter);
+          return false;
+        }
+      if (c == dialect_.group_column && !note_group(text, span)) return false;
+    }
+    return true;
+  }
+
+  void refuse_kind(std::string_view text, const Span& span, const RowFilter& filter) {
+    const std::string& name = dialect_.columns[static_cast<std::size_t>(filter.column)].name;
+    fail("E0327",
+         fmt::format("rows of another kind begin: {} was {} before", name, filter.value),
+         std::string(text),
+         fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each",
+                     name,
+                     filter.value,
+                     name),
+         span.start);
+  }
+
+  bool note_group(std::string_view text, const Span& span) {
+    const auto at = std::find(dialect_.groups.begin(), dialect_.groups.end(), text);
+    if (at == dialect_.groups.end()) {
+      fail("E0332",
+           fmt::format("a value of the column of `group_by` that the first {} do not have",
+                       plural(dialect_.groups.size(), "value")),
+           std::string(text),
+           "`where` reads one of them",
+           span.start);
+      return false;
+    }
+    out_.groups.resize(rows_);
+    out_.groups.push_back(static_cast<std::uint32_t>(at - dialect_.groups.begin()));
+    return true;
   }
 
   bool careful_row(std::string_view line) {
@@ -417,14 +511,13 @@ class RowParser {
       ++out_.account.unread;
       return true;
     }
-    return target == Plan::kTime ? stamp(text, span)
-                                 : value(text, span, static_cast<std::size_t>(target));
+    return target < 0 ? stamp(text, span, target)
+                      : value(text, span, static_cast<std::size_t>(target));
   }
 
-  bool stamp(std::string_view text, const Span& span) {
+  bool stamp(std::string_view text, const Span& span, int to) {
     std::size_t offset = 0;
-    switch (read_stamp(
-        text, dialect_.decimal, dialect_.time_unit_ns, out_.rows.time_ns[rows_], offset)) {
+    switch (take_part(text, to, offset)) {
       case StampDefect::none:
         ++out_.account.stamps;
         return true;
@@ -436,6 +529,14 @@ class RowParser {
              span.start);
         break;
       case StampDefect::malformed: {
+        if ((to == Plan::kTime ? dialect_.time : dialect_.more_time).calendar) {
+          fail("E0321",
+               "no date or clock time like those before it",
+               std::string(text),
+               "`date_order` day or month says which number of 05/01/2024 is the day",
+               span.start);
+          break;
+        }
         const Cell why = read_cell(text, dialect_.decimal);
         fail("E0311",
              fmt::format("{} in the time column",
@@ -458,7 +559,7 @@ class RowParser {
 
   bool value(std::string_view text, const Span& span, std::size_t channel) {
     double& out = pointers_[channel][rows_];
-    const Cell cell = read_cell(text, dialect_.decimal);
+    const Cell cell = read_styled(text, {dialect_.decimal, dialect_.thousands});
     switch (cell.kind) {
       case Cell::value:
         out = cell.number;
@@ -514,7 +615,8 @@ class RowParser {
     RowBlock& rows = out_.rows;
     rows.rows = rows_;
     out_.lines = line_;
-    const std::uint64_t stamps = dialect_.time_column >= 0 ? 1 : 0;
+    const std::uint64_t stamps =
+        (dialect_.time.column >= 0 ? 1 : 0) + (dialect_.more_time.column >= 0 ? 1 : 0);
     out_.account.cells += quick_rows_ * plan_.target.size();
     out_.account.values += quick_rows_ * plan_.channels;
     out_.account.stamps += quick_rows_ * stamps;
@@ -523,7 +625,8 @@ class RowParser {
     out_.account.bytes = consumed;
     if (out_.problem)
       out_.account.bytes = out_.account.row_bytes + out_.account.blank_bytes +
-                           out_.account.comment_bytes + out_.account.header_bytes;
+                           out_.account.comment_bytes + out_.account.header_bytes +
+                           out_.account.filtered_bytes;
   }
 
   const char* begin_;
@@ -538,7 +641,8 @@ class RowParser {
   std::uint64_t line_ = 0, quick_rows_ = 0;
   std::vector<std::uint32_t> separators_;
   const char* line_start_ = nullptr;
-  bool lines_listed_ = false;
+  bool lines_listed_ = false, line_by_line_ = false;
+  int first_part_ = Plan::kTime;
 };
 
 }  // namespace
@@ -546,6 +650,7 @@ class RowParser {
 void Account::add(const Account& o) {
   bytes += o.bytes;
   row_bytes += o.row_bytes;
+  filtered_bytes += o.filtered_bytes;
   blank_bytes += o.blank_bytes;
   comment_bytes += o.comment_bytes;
   header_bytes += o.header_bytes;

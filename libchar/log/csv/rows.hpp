@@ -44,11 +44,12 @@ struct RowProblem {
 /// Everything goes somewhere: bytes = row + blank + comment + repeated header; cells = values +
 /// missing + rejected + unread.
 struct Account {
+  std::uint64_t filtered_bytes = 0;  ///< of rows that were not asked for
   std::uint64_t bytes = 0, row_bytes = 0, blank_bytes = 0, comment_bytes = 0, header_bytes = 0;
   std::uint64_t cells = 0, values = 0, missing = 0, rejected = 0, unread = 0, stamps = 0;
   void add(const Account& other);
   bool balanced() const {
-    return bytes == row_bytes + blank_bytes + comment_bytes + header_bytes &&
+    return bytes == row_bytes + filtered_bytes + blank_bytes + comment_bytes + header_bytes &&
            cells == values + missing + rejected + unread + stamps;
   }
 };
@@ -61,12 +62,14 @@ struct Plan {
   bool overflow_as_missing = false;
   bool skip_repeated_header = false;
   std::string file;
-  static constexpr int kSkip = -1, kTime = -2;
+  static constexpr int kSkip = -1, kTime = -2, kMoreTime = -3;
 };
 
 struct ParsedChunk {
   RowBlock rows;
-  std::uint64_t lines = 0;  ///< line ends in the chunk (a last line without one counts)
+  std::vector<std::uint32_t> groups;  ///< of each row, where a column makes groups
+  std::uint64_t filtered = 0;         ///< rows that were not asked for
+  std::uint64_t lines = 0;            ///< line ends in the chunk (a last line without one counts)
   std::optional<RowProblem> problem;
   std::optional<Spot>
       unended;  ///< end of a last row that has no line end and may have been cut in its last cell

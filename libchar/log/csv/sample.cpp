@@ -31,9 +31,10 @@ Sample sample_lines(std::string_view head,
                     bool whole,
                     std::size_t offset,
                     std::uint64_t number,
-                    const std::string& file) {
+                    const std::string& file,
+                    std::size_t most) {
   Sample sample;
-  while (offset < head.size() && sample.lines.size() < kSample) {
+  while (offset < head.size() && sample.lines.size() < most) {
     Line line = line_at(head, offset, number);
     if (line.end == LineEnd::none && !whole) {
       if (sample.lines.empty())  // else the row parser tells

@@ -5,7 +5,8 @@
 
 namespace libchar::csv {
 
-inline constexpr std::size_t kSample = 100;  ///< lines studied
+inline constexpr std::size_t kSample = 100;         ///< lines studied
+inline constexpr std::size_t kLongPreamble = 2000;  ///< where those hold no table
 
 struct Sample {
   std::vector<Line>
@@ -13,12 +14,13 @@ struct Sample {
   std::vector<Line> comments;  ///< before the first of them
 };
 
-/// Lines of `head` (all of the file when `whole`) from `offset` on, whose physical line has this
+/// The first `most` lines of `head` (all of the file when `whole`) from `offset` on, whose physical line has this
 /// `number`. Throws Error(input) when not even the first line ends in the head.
 Sample sample_lines(std::string_view head,
                     bool whole,
                     std::size_t offset,
                     std::uint64_t number,
-                    const std::string& file);
+                    const std::string& file,
+                    std::size_t most = kSample);
 
 }  // namespace libchar::csv

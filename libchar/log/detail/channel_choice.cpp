@@ -15,7 +15,15 @@ namespace {
 std::vector<std::size_t> all_but_time(const TableColumns& table) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < table.names.size(); ++i)
-    if (i != table.time) columns.push_back(i);
+    if (i != table.time && i != table.more_time) columns.push_back(i);
+  return columns;
+}
+
+std::vector<std::size_t> all_channels(const TableColumns& table) {
+  std::vector<std::size_t> columns = all_but_time(table);
+  std::erase_if(columns, [&](std::size_t i) {
+    return std::find(table.left_out.begin(), table.left_out.end(), i) != table.left_out.end();
+  });
   return columns;
 }
 
@@ -44,7 +52,7 @@ std::size_t column_of(const TableColumns& table,
                  wanted,
                  "`time_column` none reads it as a channel"});
   std::vector<std::string> names;
-  for (const std::size_t i : all_but_time(table)) names.push_back(table.names[i]);
+  for (const std::size_t i : all_channels(table)) names.push_back(table.names[i]);
   refuse_channel(wanted, names, options, file);
 }
 
@@ -55,7 +63,7 @@ std::vector<std::size_t> columns_of(const TableColumns& table,
                                     const std::string& file) {
   std::vector<std::size_t> out;
   if (is_pattern(wanted) && !find_column(table, wanted))
-    for (const std::size_t i : all_but_time(table))
+    for (const std::size_t i : all_channels(table))
       if (matches(wanted, table.names[i]) ||
           (i < table.texts.size() && matches(wanted, table.texts[i])))
         out.push_back(i);
@@ -101,7 +109,7 @@ void refuse_channel(const std::string& wanted,
 std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const ReadOptions& options,
                                          const std::string& file) {
-  std::vector<std::size_t> chosen = all_but_time(table);
+  std::vector<std::size_t> chosen = all_channels(table);
   if (chosen.empty())
     throw Error({ErrorKind::input,
                  "E0310",

@@ -15,6 +15,8 @@ struct TableColumns {
   std::vector<std::string> names;
   std::vector<std::string> texts;   ///< as written, where that differs from the names; else empty
   std::optional<std::size_t> time;  ///< the time column, which is no channel
+  std::optional<std::size_t> more_time;  ///< the rest of its stamps
+  std::vector<std::size_t> left_out;     ///< no channels unless they are asked for
   bool positions_skip_time = false;  ///< c0, c1… count the columns that are not the time (else all)
 };
 

@@ -25,13 +25,27 @@ std::optional<std::string> unit_suffix(std::string_view name, std::string_view s
     if (suffix == "none" || suffix == "min") return std::nullopt;  // "speed_min" is a minimum
   }
   if (find_unit(suffix)) return std::string(suffix);
-  // rad_s, m_s2, deg_s: '_' in place of '/'
+  // deg_per_s, m_per_s2
   std::string spelled(suffix);
+  if (const std::size_t per = spelled.find("_per_"); per != std::string::npos) {
+    spelled.replace(per, 5, "/");
+    return find_unit(spelled) ? std::optional(spelled) : std::nullopt;
+  }
+  // rad_s, m_s2, deg_s: '_' in place of '/'
   if (const std::size_t low = spelled.find('_'); low != std::string::npos) {
     spelled[low] = '/';
     if (find_unit(spelled)) return spelled;
   }
   return std::nullopt;
+}
+
+// Where "[0]" begins at the end of a name, 0 when it does not end so.
+std::size_t index_behind(std::string_view cell) {
+  if (cell.size() < 4 || cell.back() != ']') return 0;
+  const std::size_t open = cell.rfind('[');
+  if (open == std::string_view::npos || open == 0 || open + 2 >= cell.size()) return 0;
+  const std::string_view inside = cell.substr(open + 1, cell.size() - open - 2);
+  return inside.find_first_not_of("0123456789") == std::string_view::npos ? open : 0;
 }
 
 }  // namespace
@@ -52,12 +66,31 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
     // gyro(1), gyro(2): an index, not a unit
     const bool index = unit.find_first_not_of("0123456789") == std::string_view::npos;
+    // "Temp, °C (serial 10012345)" has its unit in front of a remark.
+    const std::size_t comma = name.rfind(", ");
+    if (!find_unit(unit) && comma != std::string_view::npos && comma > 0 &&
+        find_unit(trimmed(name.substr(comma + 2))))
+      return {std::string(trimmed(name.substr(0, comma))),
+              std::string(trimmed(name.substr(comma + 2)))};
+    if (unit.find(": ") != std::string_view::npos) return {std::string(name), ""};
     if (!name.empty() && !index && unit.size() <= 40 && unit.find('"') == std::string_view::npos)
       return {std::string(name), std::string(unit)};
   }
+  // "Pressure, hPa", "Time since start in ms"
+  for (const std::string_view sign : {std::string_view(", "), std::string_view(" in ")})
+    if (const std::size_t at = cell.rfind(sign); at != std::string_view::npos && at > 0)
+      if (const std::string_view unit = trimmed(cell.substr(at + sign.size())); find_unit(unit))
+        return {std::string(trimmed(cell.substr(0, at))), std::string(unit)};
+  // "gyro_rad[0]": an index behind the unit. PX4 calls rates of turn rad.
+  if (const std::size_t index = index_behind(cell); index > 0) {
+    auto [name, unit] = name_and_unit(cell.substr(0, index));
+    if (unit == "rad" && ascii_lower(name).find("gyro") != std::string::npos) unit = "rad/s";
+    if (unit == "ga") unit = "Gauss";
+    if (!unit.empty()) return {name + std::string(cell.substr(index)), unit};
+  }
   for (std::size_t low = cell.find('_'); low != std::string_view::npos;
        low = cell.find('_', low + 1)) {
-    if (low == 0) continue;
+    if (low == 0 || cell.substr(0, low).ends_with("_per")) continue;
     if (const auto unit = unit_suffix(cell.substr(0, low), cell.substr(low + 1)))
       return {std::string(cell.substr(0, low)), *unit};
   }

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/median.hpp"
@@ -13,137 +12,19 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/column_name.hpp"
+#include "libchar/log/time/time_names.hpp"
 
 namespace libchar {
 namespace {
 
-struct TimeName {
-  std::string_view name;
-  std::int64_t unit_ns;  // 0 = not said by the name
-};
-
-constexpr std::array kTimeNames = {
-    TimeName{"t", 0},
-    TimeName{"time", 0},
-    TimeName{"timestamp", 0},
-    TimeName{"time stamp", 0},
-    TimeName{"timestamps", 0},
-    TimeName{"stamp", 0},
-    TimeName{"times", 0},
-    TimeName{"elapsed", 0},
-    TimeName{"elapsed time", 0},
-    TimeName{"elapsed_time", 0},
-    TimeName{"time_stamp", 0},
-    TimeName{"host_time", 0},
-    TimeName{"sample_time", 0},
-    TimeName{"sampletime", 0},
-    TimeName{"timeus", 1000},
-    TimeName{"timems", 1000000},
-    TimeName{"seconds", 1000000000},
-    TimeName{"sec", 1000000000},
-    TimeName{"secs", 1000000000},
-    TimeName{"millis", 1000000},
-    TimeName{"milliseconds", 1000000},
-    TimeName{"micros", 1000},
-    TimeName{"microseconds", 1000},
-    TimeName{"nanoseconds", 1},
-    TimeName{"sampletimefine", 100000}};  // Xsens SampleTimeFine counts 0.1 ms
-
-// Whose clock it is: a device stamps its samples when it takes them, a host when they arrive.
-constexpr std::array<std::string_view, 7> kDevices = {
-    "device", "dev", "sensor", "imu", "hardware", "hw", "sample"};
-constexpr std::array<std::string_view, 11> kHosts = {
-    "host", "pc", "ros", "system", "sys", "recv", "receive", "received", "arrival", "log", "unix"};
-constexpr std::array<std::string_view, 3> kTimes = {"time", "timestamp", "stamp"};
-
-// "imu_time", "time_host" or "arrival timestamp": one of `words` beside a word for time.
-template <std::size_t N>
-bool time_of(const std::string& name, const std::array<std::string_view, N>& words) {
-  const std::size_t between = name.find_first_of("_ .-");
-  if (between == std::string::npos) return false;
-  const std::string_view all(name), first = all.substr(0, between),
-                                    second = all.substr(between + 1);
-  const auto among = [](const auto& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-  };
-  return (among(words, first) && among(kTimes, second)) ||
-         (among(kTimes, first) && among(words, second));
-}
-
-enum class Clock { device, unknown, host };
-
-Clock clock_of(std::string_view stem) {
-  const std::string name = ascii_lower(stem);
-  if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices))
-    return Clock::device;
-  return time_of(name, kHosts) ? Clock::host : Clock::unknown;
-}
-
-const TimeName* find_time_name(std::string_view stem) {
-  const std::string wanted = ascii_lower(stem);
-  for (const TimeName& known : kTimeNames)
-    if (known.name == wanted) return &known;
-  static constexpr TimeName other{"timestamp_", 0};
-  const bool said = wanted.starts_with("timestamp_") || wanted.starts_with("timestamp ") ||
-                    clock_of(stem) != Clock::unknown;
-  return said ? &other : nullptr;
-}
-
-std::int64_t unit_in_ns(std::string_view unit) {
-  const auto known = find_unit(unit);
-  if (!known || known->quantity != Quantity::time) return 0;
-  return std::llround(known->to_si * 1e9);
-}
-
-std::string unit_name(std::int64_t ns) {
-  switch (ns) {
-    case 1:
-      return "ns";
-    case 1000:
-      return "us";
-    case 1000000:
-      return "ms";
-    case 1000000000:
-      return "s";
-    case 60000000000:
-      return "min";
-    case 3600000000000:
-      return "h";
-    default:
-      return fmt::format("{} ns", ns);
-  }
-}
-
-double median_step(const std::vector<double>& values) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
-  if (steps.empty()) return 0;
-  return median_in_place(steps, Middle::lower);
-}
-
 bool near_uniform_and_rising(const std::vector<double>& values) {
   if (values.size() < 3) return false;
-  const double step = median_step(values);
+  const double step = usual_step(values);
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double d = values[i] - values[i - 1];
     if (!(d > 0) || d > 10 * step) return false;
   }
   return step > 0;
-}
-
-// Time since 1970 betrays its unit by its size; a time since power-on by its step, as sensors run at 0.5 Hz to 50 kHz.
-std::int64_t guess_unit(const FirstValues& first) {
-  const std::vector<double>& values = first.values;
-  const double size = values.empty() ? 0 : std::fabs(values[0]);
-  if (size >= 1e17) return 1;
-  if (size >= 1e14) return 1000;
-  if (size >= 1e11 && size < 1e14) return 1000000;
-  if (size >= 1e9 && size < 1e10 && !first.integers) return 1000000000;
-  const double step = median_step(values);
-  if (step < 2) return 1000000000;
-  if (step < 200) return 1000000;
-  if (step < 200000) return 1000;
-  return 1;
 }
 
 // The name of a column without its unit.
@@ -176,32 +57,135 @@ std::size_t named_column(const TableFront& table,
                channel_hint(wanted, names, options)});
 }
 
-// The first that is a device's time, else the first that is not said to be a host's, else the first.
-std::optional<std::size_t> column_called_time(const TableFront& table, LogInfo& info) {
-  std::optional<std::size_t> found;
-  std::size_t named = 0;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const std::string stem = stem_of(table.columns[c]);
-    if (find_time_name(stem) == nullptr) continue;
-    ++named;
-    if (!found || clock_of(stem) < clock_of(stem_of(table.columns[*found]))) found = c;
+// What the first values of a column say.
+struct TimeCandidate {
+  std::size_t column = 0;
+  Clock clock = Clock::unknown;
+  bool rises = false;
+  double scatter = 0;  // of its steps, in steps
+  bool letter = false;
+};
+
+TimeCandidate time_candidate(const TableFront& table, std::size_t column, Clock clock) {
+  const std::vector<double> values = table.first_values(column).values;
+  TimeCandidate out{column, clock, values.size() < 2, 0};
+  if (values.size() < 2) return out;
+  const double step = usual_step(values);
+  std::size_t back = 0;
+  std::vector<double> off;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double d = values[i] - values[i - 1];
+    back += d < 0;
+    off.push_back(std::fabs(d - step));
   }
-  if (named > 1 && clock_of(stem_of(table.columns[*found])) == Clock::device)
-    info.guesses.push_back(
-        fmt::format("time column: {}, the device's own clock (`time_column` takes another one)",
-                    printable(table.columns[*found].name)));
-  return found;
+  out.rises = values.back() > values.front() && 5 * back <= off.size();
+  out.scatter =
+      step > 0 ? kMadToSd * median_in_place(off) / step : std::numeric_limits<double>::infinity();
+  return out;
+}
+
+bool unit_of_another_quantity(const ColumnLabel& column) {
+  const auto unit =
+      find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
+  return unit && unit->quantity != Quantity::time;
+}
+
+bool has_unit(const ColumnLabel& column) {
+  return !column.unit.empty() || !name_and_unit(column.name).second.empty();
+}
+
+bool unit_of_time(const ColumnLabel& column) {
+  const auto unit =
+      find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
+  return unit && unit->quantity == Quantity::time;
+}
+
+// A temperature t goes up and down.
+bool wanders(const TableFront& table, std::size_t column) {
+  const std::vector<double> values = table.first_values(column).values;
+  std::size_t up = 0, down = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    up += values[i] > values[i - 1];
+    down += values[i] < values[i - 1];
+  }
+  return values.size() >= 8 && 5 * std::min(up, down) > values.size();
+}
+
+std::vector<TimeCandidate> time_candidates(const TableFront& table) {
+  std::vector<TimeCandidate> out;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const ColumnLabel& column = table.columns[c];
+    if (column.text || unit_of_another_quantity(column)) continue;
+    const auto name = time_name(stem_of(column));
+    if (!column.calendar &&
+        (!name || name->date ||
+         (name->letter && (wanders(table, c) || (has_unit(column) && !unit_of_time(column))))))
+      continue;
+    out.push_back(time_candidate(table, c, name ? name->clock : Clock::unknown));
+    out.back().letter = name && name->letter;
+  }
+  if (out.size() > 1)
+    std::erase_if(out, [](const TimeCandidate& one) { return one.letter && !one.rises; });
+  // "x-axis" in seconds: nothing else says time.
+  if (out.empty() && table.columns.size() > 1 && !table.columns[0].text &&
+      unit_of_time(table.columns[0]))
+    if (const TimeCandidate first = time_candidate(table, 0, Clock::unknown); first.rises)
+      out.push_back(first);
+  return out;
+}
+
+bool steadier(const TimeCandidate& a, const TimeCandidate& b) {
+  return a.scatter * 3 < b.scatter && b.scatter > 0.01;
+}
+
+std::string names_of(const TableFront& table,
+                     const std::vector<TimeCandidate>& which,
+                     std::size_t but) {
+  std::vector<std::string> names;
+  for (const TimeCandidate& other : which)
+    if (other.column != but) names.push_back(printable(table.columns[other.column].name));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Of those that rise a device's clock, else the steadiest, else the first that is no host's.
+std::optional<std::size_t> column_called_time(const TableFront& table, LogInfo& info) {
+  std::vector<TimeCandidate> all = time_candidates(table);
+  if (all.empty()) return std::nullopt;
+  std::vector<TimeCandidate> rising;
+  for (const TimeCandidate& one : all)
+    if (one.rises) rising.push_back(one);
+  const std::vector<TimeCandidate>& among = rising.empty() ? all : rising;
+  TimeCandidate best = among.front();
+  for (const TimeCandidate& one : among) {
+    const bool device = one.clock == Clock::device && best.clock != Clock::device;
+    const bool beaten = best.clock == Clock::device && one.clock != Clock::device;
+    if (device ||
+        (!beaten && (steadier(one, best) || (one.clock < best.clock && !steadier(best, one)))))
+      best = one;
+  }
+  if (all.size() < 2) return best.column;
+  const std::string others = names_of(table, all, best.column);
+  const bool steadiest = std::any_of(
+      among.begin(), among.end(), [&](const TimeCandidate& one) { return steadier(best, one); });
+  info.guesses.push_back(fmt::format("time column: {}, {} {} (`time_column` takes another one)",
+                                     printable(table.columns[best.column].name),
+                                     best.clock == Clock::device ? "the device's own clock, not"
+                                     : steadiest                 ? "steadier than"
+                                     : among.size() < all.size() ? "which rises, not"
+                                                                 : "not",
+                                     others));
+  return best.column;
 }
 
 // Without names: a first column that rises evenly.
 std::optional<std::size_t> column_that_rises(const TableFront& table,
                                              const ReadOptions& options,
                                              LogInfo& info) {
-  if (table.columns.size() < 2) return std::nullopt;
+  if (table.columns.size() < 2 || table.columns[0].text) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
   const std::vector<double> values = table.first_values(0).values;
   if (!near_uniform_and_rising(values)) return std::nullopt;
-  const bool counter = median_step(values) == 1 &&
+  const bool counter = usual_step(values) == 1 &&
                        values.back() - values.front() == static_cast<double>(values.size() - 1);
   if (counter || !table.text) {
     info.guesses.push_back(
@@ -214,23 +198,17 @@ std::optional<std::size_t> column_that_rises(const TableFront& table,
   return 0;
 }
 
-std::int64_t unit_from_options(const std::string& word) {
-  for (const char* known : {"s", "ms", "us", "ns"})
-    if (word == known) return unit_in_ns(word);
-  throw Error(
-      {ErrorKind::usage, "E0323", "", "unknown time unit", word, "use auto, s, ms, us or ns"});
-}
-
-// As the name or the file says; 0 when neither does.
-std::int64_t unit_said(const ColumnLabel& column) {
-  const auto [stem, unit] = name_and_unit(column.name);
-  if (const TimeName* known = find_time_name(stem); known && known->unit_ns != 0)
-    return known->unit_ns;
-  const std::int64_t apart = unit_in_ns(column.unit);
-  return apart != 0 ? apart : unit_in_ns(unit);
-}
-
 }  // namespace
+
+bool called_time(const std::string& name) {
+  return time_name(name_and_unit(name).first).has_value();
+}
+
+double usual_step(const std::vector<double>& values) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+  return steps.empty() ? 0 : median_in_place(steps, Middle::lower);
+}
 
 std::optional<std::size_t> find_time_column(const TableFront& table,
                                             const ReadOptions& options,
@@ -238,25 +216,10 @@ std::optional<std::size_t> find_time_column(const TableFront& table,
   if (options.time_column == "none") return std::nullopt;
   if (options.time_column != "auto")
     return named_column(table, options.time_column, options, info.file);
-  return table.named ? column_called_time(table, info) : column_that_rises(table, options, info);
-}
-
-std::int64_t find_time_unit(const TableFront& table,
-                            std::size_t column,
-                            const ReadOptions& options,
-                            LogInfo& info) {
-  std::int64_t unit = options.time_unit != "auto" ? unit_from_options(options.time_unit)
-                                                  : unit_said(table.columns[column]);
-  if (unit == 0) {
-    unit = guess_unit(table.first_values(column));
-    info.time.unit_guessed = true;
-    info.guesses.push_back(fmt::format(
-        "time unit: {}, from the size and step of the stamps (`time_unit` says otherwise)",
-        unit_name(unit)));
-  }
-  info.time.unit = unit_name(unit);
-  info.time.unit_ns = unit;
-  return unit;
+  if (table.named) return column_called_time(table, info);
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].calendar && !table.columns[c].text) return c;
+  return column_that_rises(table, options, info);
 }
 
 }  // namespace libchar

@@ -19,6 +19,8 @@ struct ColumnLabel {
   std::string name;  ///< as it stands in the file, "" when the file names no columns
   std::string
       unit;  ///< said apart from the name (by a sidecar); "" when it can only be in the name
+  bool calendar = false;  ///< its values are dates or clock times, `first_values` seconds
+  bool text = false;      ///< no numbers, or part of the stamps of another column: never the time
 };
 
 /// The first finite values of a column.
@@ -36,15 +38,24 @@ struct TableFront {
   bool text =
       false;  ///< a text table without names has its stamps in front, as a rule; an array is all channels
   std::function<FirstValues(std::size_t column)> first_values;
+  std::optional<double> stated_rate_hz;  ///< by a comment or a preamble of the file
 };
 
-/// The column that options.time_column names (by name or position c0, c1… among all columns), or that says time by its name or,
-/// without names, by how it rises. Nothing when there is none. Throws Error(usage) for a name that is not there.
+/// Does a column of this name hold stamps ("t", "time_us", "Time (s)")?
+bool called_time(const std::string& name);
+
+/// The column that options.time_column names (by name or position c0, c1… among all columns), or that says time by its name, its
+/// unit or its dates or, without names, by how it rises. Of several those that rise, a device's clock before others, the steadier before
+/// others; the choice is a guess that names them all. Nothing when there is none. Throws Error(usage) for a name that is not there.
 std::optional<std::size_t> find_time_column(const TableFront& table,
                                             const ReadOptions& options,
                                             LogInfo& info);
 
-/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to info.time.
+/// The usual distance of two values, 0 for fewer.
+double usual_step(const std::vector<double>& values);
+
+/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to info.time. A guess has to agree with a
+/// rate that the file states (Error(input) else, with both), a unit that is said gives a warning.
 /// Throws Error(usage) for an unknown options.time_unit.
 std::int64_t find_time_unit(const TableFront& table,
                             std::size_t column,

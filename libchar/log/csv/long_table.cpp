@@ -1,0 +1,229 @@
+#include "libchar/log/csv/long_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "libchar/core/median.hpp"
+#include "libchar/core/spelling.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/log/csv/stamps.hpp"
+#include "libchar/log/detail/channel_choice.hpp"
+
+namespace libchar::csv {
+namespace {
+
+constexpr std::size_t kMostKinds = 64;
+
+bool names_kinds(std::string_view name) {
+  static constexpr std::array<std::string_view, 22> kNames = {
+      "sensor",       "sensorname", "sensor_name", "sensortype", "sensor_type", "source",
+      "channel",      "signal",     "topic",       "device",     "field",       "_field",
+      "type",         "name",       "variable",    "quantity",   "parameter",   "measurement",
+      "_measurement", "tag",        "id",          "instance"};
+  const std::string lower = ascii_lower(name);
+  return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
+}
+
+std::vector<std::string> values_of(const std::vector<Cells>& rows, std::size_t column) {
+  std::vector<std::string> values;
+  for (const Cells& row : rows)
+    if (column < row.size() && values.size() <= kMostKinds &&
+        std::find(values.begin(), values.end(), row[column].text) == values.end())
+      values.push_back(row[column].text);
+  return values;
+}
+
+std::optional<std::int64_t> stamp_of(const Cells& row, const Dialect& dialect) {
+  std::int64_t sum = 0;
+  for (const StampPart* part : {&dialect.time, &dialect.more_time}) {
+    if (part->column < 0) continue;
+    const auto column = static_cast<std::size_t>(part->column);
+    std::int64_t ns = 0;
+    std::size_t offset = 0;
+    if (column >= row.size() ||
+        read_part(row[column].text, *part, dialect, ns, offset) != StampDefect::none ||
+        __builtin_add_overflow(sum, ns, &sum))
+      return std::nullopt;
+  }
+  return sum;
+}
+
+struct Steps {
+  std::size_t all = 0, standing = 0;  // those that do not rise
+  double scatter = 0;                 // of three quarters of the rest, in steps
+  bool steady() const { return 10 * standing < all && scatter < 0.3; }
+};
+
+Steps steps_of(const std::vector<std::int64_t>& stamps) {
+  Steps out;
+  std::vector<double> rising;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    ++out.all;
+    const double step = static_cast<double>(stamps[i]) - static_cast<double>(stamps[i - 1]);
+    if (step > 0)
+      rising.push_back(step);
+    else
+      ++out.standing;
+  }
+  if (rising.empty()) return out;
+  const double usual = median_in_place(rising, Middle::lower);
+  std::vector<double> off;
+  for (const double step : rising) off.push_back(std::fabs(step - usual));
+  const auto most = off.begin() + static_cast<std::ptrdiff_t>(3 * (off.size() - 1) / 4);
+  std::nth_element(off.begin(), most, off.end());
+  out.scatter = *most / usual;
+  return out;
+}
+
+// Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that stand, and rise by kind.
+bool told_apart(const std::vector<Cells>& rows,
+                std::size_t column,
+                bool named,
+                const Dialect& dialect) {
+  std::vector<std::int64_t> all;
+  std::map<std::string, std::vector<std::int64_t>> kinds;
+  for (const Cells& row : rows)
+    if (const auto stamp = stamp_of(row, dialect); stamp && column < row.size()) {
+      all.push_back(*stamp);
+      kinds[row[column].text].push_back(*stamp);
+    }
+  const Steps whole = steps_of(all);
+  if (whole.steady()) return false;
+  if (named) return true;
+  std::size_t standing = 0;
+  for (const auto& [kind, stamps] : kinds) standing += steps_of(stamps).standing;
+  return 10 * whole.standing >= whole.all && 10 * standing < whole.standing &&
+         3 * kinds.size() <= rows.size();
+}
+
+bool whole_numbers(const std::vector<std::string>& values) {
+  return values.size() <= 16 && std::all_of(values.begin(), values.end(), [](const auto& text) {
+           const Cell cell = read_cell(text, '.');
+           return cell.kind == Cell::value && cell.integer;
+         });
+}
+
+[[noreturn]] void refuse(const std::string& name,
+                         const std::vector<std::string>& values,
+                         const LogInfo& info) {
+  throw Error({ErrorKind::input,
+               "E0327",
+               info.file,
+               fmt::format("the rows are of several kinds: {} is {}", name, first_names(values)),
+               "",
+               fmt::format("`where` {}={} reads one of them, `group_by` {} makes channels of each",
+                           name,
+                           values.front(),
+                           name)});
+}
+
+}  // namespace
+
+std::size_t column_named(const std::string& wanted, const Dialect& dialect, const LogInfo& info) {
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    const Column& column = dialect.columns[c];
+    if (column.name == wanted || column.text == wanted) return c;
+    names.push_back(column.name.empty() ? fmt::format("c{}", c) : column.name);
+  }
+  if (const auto position = position_in(wanted, names.size())) return *position;
+  throw Error({ErrorKind::usage,
+               "E0320",
+               info.file,
+               "there is no column of this name",
+               wanted,
+               did_you_mean(nearest(wanted, names), "it has " + first_names(names))});
+}
+
+std::vector<RowFilter> filters_of(const ReadOptions& options,
+                                  const Dialect& dialect,
+                                  const LogInfo& info) {
+  std::vector<RowFilter> out;
+  for (const std::string& word : options.where) {
+    const std::size_t sign = word.find('=');
+    if (sign == std::string::npos || sign == 0)
+      throw Error({ErrorKind::usage,
+                   "E0202",
+                   "`where`",
+                   "expected COLUMN=VALUE",
+                   word,
+                   "such as sensor=Gyroscope"});
+    out.push_back({static_cast<int>(column_named(word.substr(0, sign), dialect, info)),
+                   word.substr(sign + 1),
+                   false});
+  }
+  return out;
+}
+
+void choose_groups(const std::vector<Cells>& rows,
+                   const ReadOptions& options,
+                   Dialect& dialect,
+                   const LogInfo& info) {
+  if (options.group_by.empty()) return;
+  const std::size_t column = column_named(options.group_by, dialect, info);
+  dialect.group_column = static_cast<int>(column);
+  dialect.groups = values_of(rows, column);
+  if (dialect.groups.size() > kMostKinds)
+    throw Error({ErrorKind::usage,
+                 "E0328",
+                 info.file,
+                 fmt::format("more than {} values stand in the column of `group_by`", kMostKinds),
+                 options.group_by,
+                 "a column of names of sensors was expected"});
+  std::size_t changes = 0;
+  bool cyclic = true, together = true;
+  const std::size_t n = dialect.groups.size();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (column >= rows[i].size() || column >= rows[i - 1].size()) continue;
+    changes += rows[i][column].text != rows[i - 1][column].text;
+    cyclic = cyclic && rows[i][column].text == dialect.groups[i % n];
+    if (dialect.time.column >= 0 && i % n != 0)
+      together = together && stamp_of(rows[i], dialect) == stamp_of(rows[i - 1], dialect);
+  }
+  dialect.cycles = n > 1 && cyclic && !together;
+  if (n > 1 && changes < n && rows.size() > 2 * n)
+    throw Error(
+        {ErrorKind::usage,
+         "E0328",
+         info.file,
+         "the rows of one kind come behind those of another, and are not side by side: " +
+             first_names(dialect.groups),
+         "",
+         fmt::format("`where` {}={} reads one of them", options.group_by, dialect.groups[0])});
+}
+
+void refuse_long_table(const std::vector<Cells>& rows,
+                       const std::vector<ColumnKind>& kinds,
+                       const ReadOptions& options,
+                       Dialect& dialect,
+                       const LogInfo& info) {
+  if (!options.where.empty() || !options.group_by.empty()) return;
+  const bool timed = dialect.time.column >= 0;
+  if (!timed && !options.channels.empty()) return;
+  // Words first: they say more than the numbers beside them.
+  for (std::size_t k = 0; k < 2 * std::min(kinds.size(), dialect.columns.size()); ++k) {
+    const std::size_t c = k % dialect.columns.size();
+    const Column& column = dialect.columns[c];
+    const bool words = k < dialect.columns.size();
+    if (kinds[c] != (words ? ColumnKind::text : ColumnKind::number)) continue;
+    if (static_cast<int>(c) == dialect.time.column || column.text.empty()) continue;
+    const std::vector<std::string> values = values_of(rows, c);
+    if (values.size() > kMostKinds) continue;
+    if (values.size() == 1) {
+      if (words && names_kinds(column.name))
+        dialect.filters.push_back({static_cast<int>(c), values[0], true});
+    } else if (words && names_kinds(column.name) && !timed) {
+      refuse(column.name, values, info);
+    } else if (timed && (options.channels.empty() || names_kinds(column.name)) &&
+               (words || whole_numbers(values)) &&
+               told_apart(rows, c, words && names_kinds(column.name), dialect)) {
+      refuse(column.name, values, info);
+    }
+  }
+}
+
+}  // namespace libchar::csv

@@ -1,0 +1,31 @@
+#pragma once
+// Tables in long form, whose rows say whose they are: found, and told apart by options.
+
+#include "libchar/log/csv/columns.hpp"
+#include "libchar/log/csv/dialect.hpp"
+
+namespace libchar::csv {
+
+/// The column that "COLUMN=VALUE" or "COLUMN" names, by name, text or position c0, c1… among all. Throws Error(usage).
+std::size_t column_named(const std::string& wanted, const Dialect& dialect, const LogInfo& info);
+
+/// The filters of options.where. Throws Error(usage) for a column that is not there or a word without '='.
+std::vector<RowFilter> filters_of(const ReadOptions& options,
+                                  const Dialect& dialect,
+                                  const LogInfo& info);
+
+/// Fills the groups of options.group_by from the first `rows`. Throws Error(input) when they come one after the other.
+void choose_groups(const std::vector<Cells>& rows,
+                   const ReadOptions& options,
+                   Dialect& dialect,
+                   const LogInfo& info);
+
+/// Throws Error(input) where a column tells rows of several kinds apart and no option chooses: their stamps go together only by
+/// kind. A column that names kinds and holds one only so far has to keep it.
+void refuse_long_table(const std::vector<Cells>& rows,
+                       const std::vector<ColumnKind>& kinds,
+                       const ReadOptions& options,
+                       Dialect& dialect,
+                       const LogInfo& info);
+
+}  // namespace libchar::csv

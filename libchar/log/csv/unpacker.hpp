@@ -1,0 +1,33 @@
+#pragma once
+// Compressed text, unpacked as a stream in constant memory: gzip (RFC 1952, several members), Zstandard (RFC 8878, several frames),
+// xz. The libraries are zlib, libzstd and liblzma; a build without one of them says so.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace libchar::csv {
+
+enum class Packing { none, gzip, zstd, xz };
+
+/// By the first bytes.
+Packing packing_of(std::string_view first_bytes);
+inline constexpr std::size_t kPackingBytes = 6;  ///< that it looks at
+
+class Unpacker {
+ public:
+  virtual ~Unpacker() = default;
+  /// Up to n bytes, 0 at the end. Throws Error(input) for damaged data.
+  virtual std::size_t read(char* to, std::size_t n) = 0;
+  /// The stored data ended before their end mark.
+  virtual bool cut() const = 0;
+};
+
+/// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.
+std::unique_ptr<Unpacker> make_unpacker(Packing packing,
+                                        std::function<std::size_t(char*, std::size_t)> stored,
+                                        const std::string& file);
+
+}  // namespace libchar::csv

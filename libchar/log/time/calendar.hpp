@@ -1,0 +1,40 @@
+#pragma once
+// Dates and clock times as they are written in logs, to whole nanoseconds: ISO 8601 and what spreadsheets, data loggers and
+// terminals write. Days are those of the Gregorian calendar, counted from 1970-01-01.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+/// Which number of a date stands first, where its signs do not say so (05/01/2024).
+enum class DateOrder : std::uint8_t { day_first, month_first };
+
+struct CalendarStamp {
+  std::int64_t ns =
+      0;  ///< since 1970, or since midnight where there is no date; in UTC where a zone is written
+  bool date = false, clock = false, zone = false;
+  bool order_said = true;     ///< the year stands first, or the month is a word
+  bool half_days = false;     ///< AM or PM is written
+  char separator = 0;         ///< between the numbers of the date, 0 for none
+  int first = 0, second = 0;  ///< of a date whose order is not said
+};
+
+/// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24 3:04 PM", "01-May-2024 12:00",
+/// "20240501T120000Z", a date alone or a clock time alone. Fractions are rounded to the nanosecond. Nothing when it is none of
+/// these, or no day of the calendar.
+std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order);
+
+/// How the dates of a log are written.
+struct DateStyle {
+  DateOrder order = DateOrder::day_first;
+  bool ambiguous = false;  ///< could be either: a guess
+};
+
+/// From the first stamps: a number above 12 decides, then the signs ('.' is European, AM and PM and '/' American).
+/// `european` is what else the log looks like (decimal commas).
+DateStyle date_style(const std::vector<std::string_view>& texts, bool european);
+
+}  // namespace libchar
