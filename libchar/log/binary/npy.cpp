@@ -144,9 +144,8 @@ std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& 
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
-bool sniff_npy(const std::string& path, std::string_view first_bytes) {
-  return first_bytes.starts_with("\x93NUMPY") || first_bytes.starts_with("PK\x03\x04") ||
-         path.ends_with(".npz");
+bool sniff_npy(const std::string&, std::string_view first_bytes) {
+  return first_bytes.starts_with("\x93NUMPY");
 }
 
 }  // namespace

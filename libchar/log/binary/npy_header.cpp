@@ -309,8 +309,7 @@ void check_magic(std::string_view bytes, const std::string& file) {
   };
   if (bytes.empty()) refuse("is empty, a .npy file was expected", "");
   if (bytes.starts_with("PK\x03\x04"))
-    refuse("is a ZIP archive (.npz), not one array",
-           "save one array: numpy.save('log.npy', archive['NAME'])");
+    refuse("is a ZIP archive (.npz), not one array", "`format` npz reads it");
   if (!bytes.starts_with("\x93NUMPY")) refuse("does not begin like a .npy file", "");
 }
 

@@ -9,6 +9,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/file_hash.hpp"
+#include "libchar/log/binary/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/time/time_column.hpp"
@@ -21,21 +22,6 @@ constexpr std::size_t kOrderProbe = 4096;  // rows looked at for a wrong byte or
 
 bool is_integer(const BinaryColumn& column) {
   return !is_float(column.number.type) && column.scale == 1 && column.offset == 0;
-}
-
-// Stamps stored as integers, number * scale + offset in whole nanoseconds: then they are exact, even where a
-// double could not hold them.
-struct WholeStamps {
-  std::int64_t scale_ns = 1, offset_ns = 0;
-};
-
-std::optional<WholeStamps> whole_stamps(const BinaryColumn& column, std::int64_t unit_ns) {
-  if (is_float(column.number.type)) return std::nullopt;
-  const double scale = column.scale * static_cast<double>(unit_ns),
-               offset = column.offset * static_cast<double>(unit_ns);
-  const auto whole = [](double x) { return std::abs(x) < 0x1p63 && x == std::trunc(x); };
-  if (!whole(scale) || !whole(offset)) return std::nullopt;
-  return WholeStamps{static_cast<std::int64_t>(scale), static_cast<std::int64_t>(offset)};
 }
 
 // A column that is read: where its values of the current block stand in memory.
@@ -106,7 +92,7 @@ class BinaryRows final : public RowSource {
     if (!layout_.column_major) read_interleaved(block.rows);
     for (std::size_t c = 0; c < values_.size(); ++c)
       read_values(values_[c], block.columns[c], block.rows, warnings);
-    if (time_) read_stamps(block);
+    if (time_) read_times(block);
     next_row_ += rows_in_file_block_;
     bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_
                                        : layout_.data_byte + next_row_ * stride();
@@ -259,56 +245,16 @@ class BinaryRows final : public RowSource {
     return first;
   }
 
-  [[noreturn]] void refuse_stamp(std::size_t i, double got) const {
-    throw Error({ErrorKind::input,
-                 "E0314",
-                 fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i)),
-                 "a time stamp does not fit 64-bit nanoseconds",
-                 shortest(got),
-                 "is the time unit right? `time_unit` says it"});
-  }
-
-  void read_stamps(RowBlock& block) {
+  void read_times(RowBlock& block) {
     block.time_ns.resize(block.rows);
-    if (const auto whole = whole_stamps(*time_, nanoseconds_))
-      read_whole_stamps(*whole, block);
-    else
-      read_real_stamps(block);
-  }
-
-  void read_whole_stamps(const WholeStamps& line, RowBlock& block) {
-    const BinaryColumn& column = *time_;
-    const std::byte* first = locate(column, block.rows);
-    if (const auto bad = read_integers(
-            first, static_cast<std::size_t>(column.stride), column.number, block.time_ns))
-      refuse_stamp(*bad, 1.8e19);
-    for (std::size_t i = 0; i < block.rows; ++i) {
-      std::int64_t& stamp = block.time_ns[i];
-      const auto stored = static_cast<double>(stamp);
-      if (__builtin_mul_overflow(stamp, line.scale_ns, &stamp) ||
-          __builtin_add_overflow(stamp, line.offset_ns, &stamp))
-        refuse_stamp(i, stored * column.scale + column.offset);
-    }
-  }
-
-  void read_real_stamps(RowBlock& block) {
-    const BinaryColumn& column = *time_;
-    stamps_.resize(block.rows);
-    const std::byte* first = locate(column, block.rows);
-    read_numbers(first, static_cast<std::size_t>(column.stride), column.number, stamps_);
-    for (std::size_t i = 0; i < block.rows; ++i) {
-      if (std::isnan(stamps_[i]))
-        throw Error({ErrorKind::input,
-                     "E0313",
-                     fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
-                     "missing time stamp",
-                     "nan",
-                     "`time_column` none and `rate_hz` HZ ignore the stamps"});
-      stamps_[i] = stamps_[i] * column.scale + column.offset;
-      const double ns = stamps_[i] * static_cast<double>(nanoseconds_);
-      if (!(std::abs(ns) < 9.2e18)) refuse_stamp(i, stamps_[i]);
-      block.time_ns[i] = std::llround(ns);
-    }
+    const std::byte* first = locate(*time_, block.rows);
+    read_stamps(first,
+                static_cast<std::size_t>(time_->stride),
+                {time_->number, time_->scale, time_->offset, nanoseconds_},
+                block.time_ns,
+                [this](std::size_t i) {
+                  return fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i));
+                });
   }
 
   std::unique_ptr<BinaryFile> file_;
@@ -320,7 +266,6 @@ class BinaryRows final : public RowSource {
   std::size_t rows_per_block_ = 1, rows_in_file_block_ = 0;
   std::uint64_t next_row_ = 0, bytes_read_ = 0;
   std::vector<std::byte> bytes_;
-  std::vector<double> stamps_;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::string> missing_places_;
   bool overflow_as_missing_ = false;
