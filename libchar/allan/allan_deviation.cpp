@@ -12,7 +12,10 @@
 //   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
 //                 ends by reflection about the end point; that is, the rate is mirrored
 //
-// Where samples of a rate are missing all but TOTDEV take means over what is present (detail/missing_samples.cpp); of phase each term
+// The other families are in detail/parabolic.cpp (PDEV), detail/extended.cpp (MTOT, TTOT, HTOT), detail/theo.cpp (Theo1, TheoBR, TheoH)
+// and detail/time_interval.cpp (MTIE, TIE rms).
+//
+// Where samples of a rate are missing all of these but TOTDEV take means over what is present (detail/missing_samples.cpp); of phase each term
 // that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts, added in order, so that the result does not
 // depend on the number of threads.
 
@@ -27,6 +30,7 @@
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/detail/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
 #include "libchar/core/decimal.hpp"
@@ -167,11 +171,15 @@ IndexRange longest(std::span<const double> record) {
   return best;
 }
 
-/// Total deviation of the longest gap-free stretch only: reflection has no meaning at a gap.
-std::span<const double> without_gaps(std::span<const double> record, AllanCurve& curve) {
+/// Of the longest gap-free stretch only: reflection has no meaning at a gap.
+std::span<const double> without_gaps(std::span<const double> record,
+                                     const DeviationRow& row,
+                                     AllanCurve& curve) {
   const IndexRange s = longest(record);
   if (s.end - s.begin == record.size()) return record;
-  curve.notes.push_back("total deviation of the longest stretch without gaps only, samples " +
+  curve.notes.push_back((row.family == DeviationFamily::differences ? std::string("total deviation")
+                                                                    : std::string(row.title)) +
+                        " of the longest stretch without gaps only, samples " +
                         std::to_string(s.begin) + " to " + std::to_string(s.end) + " of " +
                         std::to_string(record.size()));
   return record.subspan(s.begin, s.end - s.begin);
@@ -240,6 +248,49 @@ AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summe
                                 : anchored_phase_of_phase(record, summed);
 }
 
+FamilyPoints maker_of(DeviationFamily family) {
+  switch (family) {
+    case DeviationFamily::parabola:
+      return parabolic_points;
+    case DeviationFamily::extended:
+      return extended_points;
+    case DeviationFamily::theo:
+      return theo_points;
+    case DeviationFamily::interval:
+      return interval_points;
+    case DeviationFamily::differences:
+      break;
+  }
+  return nullptr;
+}
+
+/// An equal share for each point of a long list.
+std::uint64_t share_of_work(const AllanOptions& options, std::size_t points) {
+  constexpr std::uint64_t kPointsInFull = 32;
+  if (options.work_a_point == 0 || points <= kPointsInFull) return options.work_a_point;
+  return std::max<std::uint64_t>(1, options.work_a_point / points * kPointsInFull);
+}
+
+std::vector<AllanPoint> points_of_family(std::span<const double> used,
+                                         const DeviationRow& row,
+                                         const AllanOptions& options,
+                                         const std::vector<std::uint64_t>& factors,
+                                         AllanCurve& curve) {
+  FamilyInput input{used, options.data, curve.dt_s, balancing_scale(used), {}, 0};
+  input.work_a_point = share_of_work(options, factors.size());
+  for (std::uint64_t begin = 0; begin < used.size(); ++begin) {
+    const std::uint64_t end = begin + finite_run(used.subspan(begin));
+    if (end > begin) input.stretches.push_back({begin, end});
+    begin = end;
+  }
+  return maker_of(row.family)(input, row, factors, curve.notes);
+}
+
+/// Takes no gaps: the longest stretch without one is used.
+bool of_one_stretch(const DeviationRow& row) {
+  return row.reflected || row.family == DeviationFamily::theo;
+}
+
 }  // namespace
 
 AllanCurve allan_deviation(std::span<const double> record,
@@ -255,14 +306,17 @@ AllanCurve allan_deviation(std::span<const double> record,
   curve.dt_s = dt_s;
   curve.samples = rate_samples(record.size());
   curve.missing = not_finite(record);
-  const bool total = f.reflected;
-  const auto used = total ? without_gaps(record, curve) : record;
-  const auto factors = averaging_factors(options, dt_s, rate_samples(used.size()), curve.notes);
-  if (rate_samples(used.size()) < f.span(1)) too_short(f, curve.samples);
+  const bool total = f.reflected, family = f.family != DeviationFamily::differences;
+  const auto used = of_one_stretch(f) ? without_gaps(record, f, curve) : record;
+  curve.used = rate_samples(used.size());
+  const auto factors = averaging_factors(options, dt_s, curve.used, curve.notes);
+  if (curve.used < f.span(1)) too_short(f, curve.samples);
   const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
   const int cores = processors_given();
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.execute([&] {
+    if (family)
+      return fill_points(points_of_family(used, f, options, factors, curve), factors, curve);
     if (curve.missing > 0 && options.data == DataKind::rate && of_window_means(f))
       return fill_points(points_of_present(used, f, factors, dt_s), factors, curve);
     const AnchoredPhase phase =

@@ -15,14 +15,15 @@ namespace libchar {
 
 /// rate: N samples averaged over dt; phase: N + 1 points of the integral of the rate
 enum class DataKind { rate, phase };
-/// m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); as listed
-enum class TauGrid { octave, decade, dense, list };
+/// m = 1,2,4…; 1,2,4,10,20,40…; every m (log-thinned above 1000); as listed; every m
+enum class TauGrid { octave, decade, dense, list, all };
 
 template <>
 inline constexpr auto enum_table<TauGrid> = enum_words<TauGrid>({{TauGrid::octave, "octave"},
                                                                  {TauGrid::decade, "decade"},
                                                                  {TauGrid::dense, "dense"},
-                                                                 {TauGrid::list, "list"}});
+                                                                 {TauGrid::list, "list"},
+                                                                 {TauGrid::all, "all"}});
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor
@@ -35,6 +36,7 @@ struct AllanPoint {
   bool reliable = true;  ///< edf >= 5
   double inflation = 1;  ///< of the relative standard deviation, by missing samples
   double added = 0;      ///< to the variance by missing samples, as white noise would; taken off
+  double bias = 1;       ///< by which `add_intervals` has divided the variance (confidence.hpp)
 };
 
 struct AllanCurve {
@@ -42,6 +44,7 @@ struct AllanCurve {
   double dt_s = 1;
   std::uint64_t samples = 0;  ///< rate samples, missing ones included
   std::uint64_t missing = 0;
+  std::uint64_t used = 0;  ///< rate samples of the stretch that was used: `samples`, or fewer
   /// 0: full overlap; 4: for m >= 8 only every (m/4)-th term was used (its whole part)
   std::uint64_t stride_divisor = 0;
   std::vector<AllanPoint> points;
@@ -55,9 +58,13 @@ struct AllanOptions {
   /// for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
   std::vector<double> taus_s;
   double tau_min_s = 0;  ///< 0 = dt
-  double tau_max_s = 0;  ///< 0 = T/2 (each type's own limit is applied as well)
+  /// 0 = T/2, of the Theo family 3/4 T (each type's own limit is applied as well)
+  double tau_max_s = 0;
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
   std::uint64_t stride_divisor = 0;
+  /// Operations that an averaging time of the Theo family and of the extended total deviations (O(N m)) may cost; beyond them terms start
+  /// every m/16 samples or less, and a note says so. 0: no limit
+  std::uint64_t work_a_point = std::uint64_t{1} << 28U;
   int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };
 

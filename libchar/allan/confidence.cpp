@@ -3,9 +3,11 @@
 #include "libchar/allan/confidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
+#include "libchar/allan/detail/family_dof.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/decimal.hpp"
 
@@ -29,20 +31,41 @@ void note_total_bias(AllanCurve& curve, const Mixture& theta) {
       " % at the longest averaging time (not corrected); its degrees of freedom are approximate");
 }
 
+void take_bias_out(AllanPoint& point, double bias) {
+  point.deviation *= std::sqrt(point.bias / bias);
+  point.bias = bias;
+}
+
+void note_bias(AllanCurve& curve) {
+  double least = 1;
+  for (const AllanPoint& point : curve.points) least = std::min(least, point.bias);
+  if (least < 1)
+    curve.notes.push_back("the variances are divided by their expected bias, down to " +
+                          significant(least, 3) + " (SP 1065, for the noise that is there)");
+}
+
 }  // namespace
 
 void add_intervals(AllanCurve& curve, const Mixture& theta) {
+  const DeviationRow& row = deviation_row(curve.type);
+  if (row.without_interval()) return;
+  const bool differences = row.family == DeviationFamily::differences;
   for (AllanPoint& point : curve.points) {
+    take_bias_out(point, family_bias(row, theta, point, curve.dt_s));
     Mixture with_added = theta;
     with_added[static_cast<std::size_t>(Term::white)] += point.added * point.tau_s;
-    point.edf = equivalent_dof(
-        curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s);
+    point.edf =
+        differences
+            ? equivalent_dof(
+                  curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s)
+            : family_dof(row, theta, point, curve.used, curve.dt_s);
     point.edf = std::max(1.0, point.edf / (point.inflation * point.inflation));
     point.ci68 = chi_square_interval(point.deviation, point.edf, kOneSigma);
     point.ci95 = chi_square_interval(point.deviation, point.edf, kTwoSided);
     point.reliable = point.edf >= kReliableDof;
   }
-  if (deviation_row(curve.type).reflected) note_total_bias(curve, theta);
+  if (differences && row.reflected) note_total_bias(curve, theta);
+  note_bias(curve);
 }
 
 }  // namespace libchar

@@ -11,9 +11,35 @@
 
 namespace libchar {
 
-enum class DeviationType { adev, oadev, mdev, tdev, hdev, ohdev, totdev };
+enum class DeviationType {
+  adev,
+  oadev,
+  mdev,
+  tdev,
+  hdev,
+  ohdev,
+  totdev,
+  pdev,
+  mtotdev,
+  ttotdev,
+  htotdev,
+  theo1,
+  theobr,
+  theoh,
+  mtie,
+  tierms
+};
 
-/// With the phase x, its running sum W and the averaging factor m, a term is the difference of
+/// How a statistic is made; each has a file of its own.
+enum class DeviationFamily {
+  differences,  ///< allan_deviation.cpp
+  parabola,     ///< detail/parabolic.cpp: differences of fitted slopes
+  extended,     ///< detail/extended.cpp: windows of 3m, each continued by reflection
+  theo,         ///< detail/theo.cpp: m even, tau = 3/4 m dt
+  interval      ///< detail/time_interval.cpp: of phase, whose offset in frequency counts
+};
+
+/// With the phase x, its running sum W and the averaging factor m, a term of `differences` is the difference of
 /// `order` at step m of x, or of W / m; the deviation is sqrt(mean of squares / divisor) / tau.
 struct DeviationRow {
   DeviationType type;
@@ -25,11 +51,18 @@ struct DeviationRow {
   bool overlapping;  ///< terms at every sample, else at multiples of m
   bool as_time;      ///< times tau / sqrt(3)
   bool reflected;    ///< terms at every inner point of the record continued by reflection
+  DeviationFamily family = DeviationFamily::differences;
 
-  /// Samples that one term spans at averaging factor m.
+  /// Rate samples that one term spans at averaging factor m (at the smallest that there is, where m is below).
   std::uint64_t span(std::uint64_t m) const;
   /// Its square is the Allan variance, whose curves and covariance are known exactly.
-  bool is_allan() const { return order == 2 && !reflected; }
+  bool is_allan() const {
+    return order == 2 && !reflected && family == DeviationFamily::differences;
+  }
+  /// A constant rate counts; else the statistic is blind to it.
+  bool sees_offset() const { return family == DeviationFamily::interval; }
+  /// Nothing states how well it is known.
+  bool without_interval() const { return family == DeviationFamily::interval; }
 };
 
 /// In the order of `DeviationType`.

@@ -65,6 +65,7 @@ struct CharacterizeOptions {
   /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
   std::string temperature;
   AllanOptions allan;
+  std::vector<DeviationType> more_types;  ///< besides `allan.type`, of the same samples
   WelchOptions spectrum;
   double segment_s =
       0;  ///< length of a segment where spectrum.segment is 0; 0 = a quarter of the record
@@ -101,7 +102,8 @@ struct ChannelResult {
   Motion motion;           ///< stretches in which the sensor was moved, where that was looked for
   AllanCurve
       allan;  ///< with intervals for the fitted mixture; no points when the record is too short
-  Spectrum spectrum;  ///< log-binned for plots and curves.csv, at most 400 bins
+  std::vector<AllanCurve> more_allan;  ///< of `more_types`; no points where a record is too short
+  Spectrum spectrum;                   ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<NoiseType>

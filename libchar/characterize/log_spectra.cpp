@@ -83,13 +83,18 @@ LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, P
   return result;
 }
 
-LogSpectra spectra_of(const RecordingView& recording, const WelchOptions& welch_options) {
+LogSpectra spectra_of(const RecordingView& recording,
+                      const WelchOptions& welch_options,
+                      SegmentAverage average) {
   LogSpectra result;
   result.log = recording.info;
   WelchWorkspace workspace;
   for (std::size_t c = 0; c < recording.samples.size(); ++c)
     try_channel(result, recording.info.channels[c], [&] {
-      return welch(recording.samples[c], recording.info.time.rate_hz, welch_options, &workspace);
+      const double rate_hz = recording.info.time.rate_hz;
+      return average == SegmentAverage::median
+                 ? median_welch(recording.samples[c], rate_hz, welch_options)
+                 : welch(recording.samples[c], rate_hz, welch_options, &workspace);
     });
   return result;
 }
@@ -99,9 +104,9 @@ LogSpectra spectra_of(const RecordingView& recording, const WelchOptions& welch_
 LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& options) {
   check_rate_known(recording.info);
   WelchOptions welch = welch_options(options);
-  if (options.segment_s > 0)
+  if (welch.segment == 0 && options.segment_s > 0)
     welch.segment = segment_samples(options.segment_s, recording.info.time.rate_hz);
-  LogSpectra result = spectra_of(recording, welch);
+  LogSpectra result = spectra_of(recording, welch, options.average);
   const auto [shortest, longest] = std::minmax_element(
       result.channels.begin(), result.channels.end(), [](const auto& a, const auto& b) {
         return a.spectrum.segment < b.spectrum.segment;
@@ -111,7 +116,7 @@ LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& option
   std::vector<std::string> notes = std::move(result.notes);
   notes.push_back(fmt::format(
       "all channels: segments of {} samples, the shortest that one of them needs", welch.segment));
-  result = spectra_of(recording, welch);
+  result = spectra_of(recording, welch, options.average);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   return result;
 }
@@ -137,7 +142,8 @@ LogSpectra finished(LogSpectra result, const LogSpectraOptions& options) {
 LogSpectra log_spectra(const std::string& path,
                        const LogSpectraOptions& options,
                        Progress& progress) {
-  if (segment_given(options)) return finished(streamed(path, options, progress), options);
+  if (segment_given(options) && options.average == SegmentAverage::mean)
+    return finished(streamed(path, options, progress), options);
   const Recording recording = read_recording(path, options.reading, progress);
   return finished(whole(view_of(recording), options), options);
 }

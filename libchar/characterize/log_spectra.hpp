@@ -8,6 +8,7 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording_view.hpp"
 #include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/median_spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
@@ -16,7 +17,8 @@ struct LogSpectraOptions {
   ReadOptions reading;    ///< its `threads` serve the spectra too
   WelchOptions spectrum;  ///< a segment of 0: a quarter of the record
   double segment_s = 0;   ///< length of a segment instead of `spectrum.segment`; 0: as that says
-  bool lines = false;     ///< find the spectral lines
+  SegmentAverage average = SegmentAverage::mean;  ///< median: the samples are kept
+  bool lines = false;                             ///< find the spectral lines
   std::uint64_t bins =
       0;  ///< average into at most so many on a logarithmic axis of frequency; 0: do not
 };

@@ -123,6 +123,8 @@ TEST_CASE("as many samples as one term spans make one point, one fewer none") {
     AllanOptions options;
     options.type = row.type;
     std::vector<double> record(row.span(1));
+    options.grid = TauGrid::all;
+    options.tau_max_s = 1000;
     for (std::size_t i = 0; i < record.size(); ++i) record[i] = static_cast<double>(i * i);
     CHECK(allan_deviation(record, 1, options).points.size() >= 1);
     record.pop_back();
@@ -225,7 +227,8 @@ TEST_CASE(
     options.tau_max_s = 1000;
     const std::uint64_t last = allan_deviation(y, 1, options).points.back().m;
     CHECK(row.span(last) <= 101);
-    CHECK(row.span(last + 1) > 101);
+    const bool even = row.family == DeviationFamily::theo;  // the next one has two more
+    CHECK(row.span(last + (even ? 2 : 1)) > 101);
   }
 }
 

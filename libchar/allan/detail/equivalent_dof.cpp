@@ -77,17 +77,6 @@ double discrete_dof(
   return std::clamp(terms * terms * (1 + mu) * (1 + mu) / total, 1.0, kCertain);
 }
 
-/// Share of each random term in the Allan variance at tau.
-PerTerm shares(const Mixture& theta, double m, double dt) {
-  PerTerm share{};
-  double sum = 0;
-  for (std::size_t t = 0; t < kRandomTerms; ++t)
-    sum += share[t] = theta[t] * unit_allan_variance(static_cast<Term>(t), m, dt);
-  if (sum > 0)
-    for (double& s : share) s /= sum;
-  return share;
-}
-
 double total_dof(const Mixture& theta, double m, double terms, double dt) {
   constexpr PerTerm kSlope = {1.500, 1.168, 0.927, 1.500}, kOffset = {0, 0.222, 0.358, 0};
   constexpr PerTerm kGain = {2.185, 1.542, 1.162, 0};  // over the overlapping deviation, m >> 1
@@ -95,7 +84,7 @@ double total_dof(const Mixture& theta, double m, double terms, double dt) {
   const double overlapping_terms = samples - 2 * m + 1;
   const double overlapping =
       overlapping_terms >= 1 ? discrete_dof({}, theta, m, overlapping_terms, 1, dt) : 0;
-  const PerTerm share = shares(theta, m, dt);
+  const PerTerm share = allan_shares(theta, m, dt);
   double gain = 0, limit = 0;
   for (std::size_t t = 0; t < kRandomTerms; ++t) {
     gain += share[t] * kGain[t];
@@ -106,6 +95,16 @@ double total_dof(const Mixture& theta, double m, double terms, double dt) {
 }
 
 }  // namespace
+
+PerTerm allan_shares(const Mixture& theta, double m, double dt) {
+  PerTerm share{};
+  double sum = 0;
+  for (std::size_t t = 0; t < kRandomTerms; ++t)
+    sum += share[t] = theta[t] * unit_allan_variance(static_cast<Term>(t), m, dt);
+  if (sum > 0)
+    for (double& s : share) s /= sum;
+  return share;
+}
 
 double equivalent_dof(DeviationType type,
                       const Mixture& theta,

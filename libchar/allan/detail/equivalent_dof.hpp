@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
@@ -17,5 +18,8 @@ double equivalent_dof(DeviationType type,
                       std::uint64_t terms,
                       std::uint64_t stride,
                       double dt_s);
+
+/// Share of each random term in the Allan variance at m samples; nothing where there is none.
+PerTerm allan_shares(const Mixture& theta, double m, double dt_s);
 
 }  // namespace libchar

@@ -57,7 +57,7 @@ MissingSamples octaves_below(const PresentSums& sums, std::uint64_t largest) {
 }  // namespace
 
 bool of_window_means(const DeviationRow& row) {
-  return !row.reflected;
+  return !row.reflected && row.family == DeviationFamily::differences;
 }
 
 std::vector<AllanPoint> points_of_present(std::span<const double> rate,

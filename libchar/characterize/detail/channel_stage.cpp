@@ -27,7 +27,8 @@ namespace {
 constexpr std::size_t kPlottedBins =
     400;  // enough for a log–log plot, small enough for a page of many channels
 constexpr std::size_t kFewestForMotion = 2048;
-constexpr std::size_t kLongRecord = std::size_t{1} << 23U;  // whose spectrum may use it up
+constexpr std::size_t kLongRecord = std::size_t{1} << 23U;      // whose spectrum may use it up
+constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
 constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
@@ -49,13 +50,13 @@ void add_spectrum(ChannelResult& result, const Spectrum& spectrum, const Quantiz
 }
 
 // Octaves of the overlapping deviation: what the streaming form gives.
-bool octaves_only(const AllanOptions& allan) {
-  return allan.type == DeviationType::oadev && allan.grid == TauGrid::octave;
+bool octaves_only(const AllanOptions& allan, DeviationType type) {
+  return type == DeviationType::oadev && allan.grid == TauGrid::octave;
 }
 
 // A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
 template <class Step>
-void attempt(ChannelResult& result, const char* what, Step&& step) {
+void attempt(ChannelResult& result, std::string_view what, Step&& step) {
   try {
     step();
   } catch (const Error& error) {
@@ -70,8 +71,10 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
   if (options.data == SampleKind::phase) return "phase data";
   if (!options.temperature.empty()) return "a correction for temperature";
   if (!options.wanted.allan) return "";
-  if (options.allan.type != DeviationType::oadev)
-    return fmt::format("the deviation {}", name_of(options.allan.type));
+  std::vector<DeviationType> types = options.more_types;
+  types.insert(types.begin(), options.allan.type);
+  for (const DeviationType type : types)
+    if (type != DeviationType::oadev) return fmt::format("the deviation {}", name_of(type));
   if (options.allan.grid != TauGrid::octave) return "a curve at other times than octaves";
   return options.full_overlap ? "a curve with full overlap" : "";
 }
@@ -173,19 +176,39 @@ AllanCurve ChannelStage::octaves_of_kept(double rate_hz) const {
   return pyramid_deviation(kept_, 1 / rate_hz);
 }
 
-AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves, double rate_hz) const {
+AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves,
+                                        DeviationType type,
+                                        double rate_hz) const {
   const bool is_long = kept_.size() > options_->exact_samples;
-  if (octaves_only(options_->allan) && !(is_long && options_->full_overlap)) {
+  if (octaves_only(options_->allan, type) && !(is_long && options_->full_overlap)) {
     AllanCurve curve = limited(octaves, options_->allan);
     if (options_->ten_a_decade)
       add_ten_a_decade(kept_, options_->allan, options_->exact_samples, curve);
     return curve;
   }
   AllanOptions allan = options_->allan;
+  allan.type = type;
   allan.data = DataKind::rate;  // `as_rate` has differenced phase data
-  if (allan.grid == TauGrid::dense && is_long && !options_->full_overlap)
-    allan.stride_divisor = kPyramidStride;
+  const bool many_times = (allan.grid == TauGrid::dense && is_long) ||
+                          (allan.grid == TauGrid::all && kept_.size() > kLongForAll);
+  if (many_times && !options_->full_overlap) allan.stride_divisor = kPyramidStride;
+  if (options_->full_overlap) allan.work_a_point = 0;
   return allan_deviation(kept_, 1 / rate_hz, allan);
+}
+
+void ChannelStage::add_curves(const AllanCurve& octaves,
+                              double rate_hz,
+                              ChannelResult& result) const {
+  attempt(result, "Allan deviation", [&] {
+    result.allan = wanted_of_kept(octaves, options_->allan.type, rate_hz);
+  });
+  for (const DeviationType type : options_->more_types) {
+    result.more_allan.push_back({});
+    result.more_allan.back().type = type;
+    attempt(result, name_of(type), [&] {
+      result.more_allan.back() = wanted_of_kept(octaves, type, rate_hz);
+    });
+  }
 }
 
 // Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
@@ -330,9 +353,7 @@ void ChannelStage::curve_and_fit(ChannelResult& curve, ChannelResult& result, do
     });
   tbb::parallel_invoke(
       [&] {
-        if (there)
-          attempt(
-              curve, "Allan deviation", [&] { curve.allan = wanted_of_kept(octaves, rate_hz); });
+        if (there) add_curves(octaves, rate_hz, curve);
       },
       [&] { fit_kept(octaves, rate_hz, result); });
 }
@@ -361,6 +382,7 @@ void ChannelStage::finish_kept(ChannelResult& result, double rate_hz) {
     });
   });
   result.allan = std::move(curve.allan);
+  result.more_allan = std::move(curve.more_allan);
   result.spectrum = std::move(spectrum.spectrum);
   result.lines = std::move(spectrum.lines);
   auto at = result.problems.begin() + static_cast<std::ptrdiff_t>(before);
@@ -470,10 +492,12 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   if (options_->data == SampleKind::frequency) noise_types_ = types_of_kept(rate_hz);
   keeping_ ? finish_kept(result, rate_hz) : finish_streams(result, rate_hz);
   name_noise_types(result);
-  if (result.fit)
-    add_fit_intervals(result.allan, *result.fit);
-  else
-    add_intervals(result.allan, white_alone(result.allan));
+  const auto add_to = [&](AllanCurve& curve) {
+    result.fit ? add_fit_intervals(curve, *result.fit)
+               : add_intervals(curve, white_alone(result.allan));
+  };
+  add_to(result.allan);
+  for (AllanCurve& curve : result.more_allan) add_to(curve);
   drop();
   despiked_ = {};
   series_.reset();

@@ -78,7 +78,8 @@ class ChannelStage {
   void push_cleaned(std::span<const double> samples);
   bool wants_fit() const;
   AllanCurve octaves_of_kept(double rate_hz) const;
-  AllanCurve wanted_of_kept(const AllanCurve& octaves, double rate_hz) const;
+  AllanCurve wanted_of_kept(const AllanCurve& octaves, DeviationType type, double rate_hz) const;
+  void add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const;
   void difference_kept(double rate_hz);
   std::vector<NoiseType> types_of_kept(double rate_hz) const;
   void name_noise_types(ChannelResult& result) const;

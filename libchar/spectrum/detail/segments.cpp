@@ -198,11 +198,18 @@ Periodogram::Periodogram(const WelchOptions& options, const std::vector<double>&
     : detrend_(options.detrend), window_(window), fft_(window.size()) {}
 
 bool Periodogram::add(const double* x, double* power) {
+  const auto bins = transform(x);
+  if (bins.empty()) return false;
+  add_power(reinterpret_cast<const double*>(bins.data()), bins.size(), power);
+  return true;
+}
+
+std::span<const std::complex<double>> Periodogram::transform(const double* x) {
   const std::size_t n = window_.size();
   const double length = static_cast<double>(n);
   Trend trend;
   const double sum = sum_about(x, n, x[0]);
-  if (!std::isfinite(sum)) return false;
+  if (!std::isfinite(sum)) return {};
   double* in = fft_.input().data();
   if (detrend_ != Detrend::none) {
     trend.first = x[0];
@@ -215,9 +222,7 @@ bool Periodogram::add(const double* x, double* power) {
   } else {
     subtract_and_window(x, window_.data(), n, trend.first, trend.mean, in);
   }
-  const auto bins = fft_.transform();
-  add_power(reinterpret_cast<const double*>(bins.data()), bins.size(), power);
-  return true;
+  return fft_.transform();
 }
 
 Average::Average(const WelchOptions& options, const Layout& layout)
@@ -277,6 +282,17 @@ void Average::check_powers() const {
        "give them in another unit"});
 }
 
+double Average::degrees_of_freedom(const std::vector<double>& window) const {
+  const double count = static_cast<double>(used_);
+  // Of the Hann window with itself half its length away: 1/6.
+  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6}
+                                : window_correlation(window, layout_.hop, recent_.size());
+  double correlated = count;
+  for (std::size_t lag = 1; lag < r.size(); ++lag)
+    correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];
+  return 2 * count * (count / correlated);
+}
+
 Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) const {
   check_powers();
   count_work(WorkKind::segments, used_ + dropped_);
@@ -302,13 +318,7 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   out.enbw_hz = rate_hz * energy / (amplitude * amplitude);
   out.neighbour_correlation = neighbour_correlation(options_.window, layout_, used_, pairs_);
 
-  // Of the Hann window with itself half its length away: 1/6.
-  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6}
-                                : window_correlation(window, layout_.hop, recent_.size());
-  double correlated = count;
-  for (std::size_t lag = 1; lag < r.size(); ++lag)
-    correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];
-  const double dof = 2 * count * (count / correlated);
+  const double dof = degrees_of_freedom(window);
 
   const bool density = options_.scaling == Scaling::psd || options_.scaling == Scaling::lsd;
   const bool root = options_.scaling == Scaling::lsd || options_.scaling == Scaling::ls;

@@ -2,6 +2,7 @@
 // What welch() and WelchStream share: one segment at a time into a sum of power, and the sum into a
 // spectrum.
 
+#include <complex>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -37,6 +38,8 @@ class Periodogram {
   /// Adds |X_k|^2 of the segment to `power` (n/2 + 1 values); false, and nothing added, when a
   /// sample is missing.
   bool add(const double* x, double* power);
+  /// X_0 … X_{n/2} of the segment, valid until the next call; none when a sample is missing.
+  std::span<const std::complex<double>> transform(const double* x);
 
  private:
   Detrend detrend_;
@@ -55,6 +58,8 @@ class Average {
   void note_samples(std::span<const double> samples);
   std::uint64_t used() const { return used_; }
   std::uint64_t dropped() const { return dropped_; }
+  /// Degrees of freedom of the average of the segments so far, at a bin that is neither the first nor the last.
+  double degrees_of_freedom(const std::vector<double>& window) const;
   /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers are no numbers, or too small for one
   /// and the samples not constant.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;

@@ -1,0 +1,105 @@
+#include "libchar/characterize/log_devices.hpp"
+
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+
+namespace libchar {
+namespace {
+
+/// The samples as rates or phases, with the options and units for them.
+struct Prepared {
+  Recording recording;
+  AllanOptions allan;
+  double dt_s = 0;
+};
+
+Prepared prepared(const std::string& path, const LogAllanOptions& options, Progress& progress) {
+  Prepared out{read_recording(path, options.reading, progress), options.allan, 0};
+  LogInfo& log = out.recording.info;
+  if (!(log.time.rate_hz > 0))
+    throw Error({ErrorKind::numeric,
+                 "E0402",
+                 log.file,
+                 "the sampling rate is not known",
+                 "",
+                 "a log without time stamps needs `rate_hz`"});
+  out.dt_s = 1 / log.time.rate_hz;
+  out.allan.threads = options.reading.threads;
+  const double nominal = options.nominal_frequency;
+  if (options.data == SampleKind::phase) out.allan.data = DataKind::phase;
+  if (options.data == SampleKind::frequency && nominal != 0)
+    for (auto& samples : out.recording.samples)
+      for (double& f : samples) f = (f - nominal) / nominal;
+  for (Channel& channel : log.channels) {
+    if (options.data == SampleKind::phase)
+      channel.unit = channel.unit == "s" ? "1" : channel.unit.empty() ? "" : channel.unit + "/s";
+    if (options.data == SampleKind::frequency && nominal != 0) channel.unit = "1";
+  }
+  return out;
+}
+
+void check_units(const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels)
+    if (channel.unit != channels[0].unit)
+      throw Error({ErrorKind::usage,
+                   "E0870",
+                   "",
+                   "the devices of a cornered hat must be in one unit; " + channels[0].name +
+                       " is in " + channels[0].unit,
+                   channel.name + " in " + channel.unit,
+                   "choose the `channels` that measure the same"});
+}
+
+/// "a - b", "b - c", "c - a" name three devices; other names are of differences.
+std::vector<Channel> devices_of(const std::vector<Channel>& differences) {
+  std::vector<Channel> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Channel device = differences[i];
+    device.name = "in " + differences[i].name + " and " + differences[(i + 2) % 3].name;
+    out.push_back(device);
+  }
+  return out;
+}
+
+}  // namespace
+
+LogHat log_cornered_hat(const std::string& path,
+                        const LogAllanOptions& options,
+                        bool differences,
+                        Progress& progress) {
+  const Prepared input = prepared(path, options, progress);
+  LogHat out;
+  out.log = input.recording.info;
+  out.channels = out.log.channels;
+  check_units(out.channels);
+  const auto& samples = input.recording.samples;
+  out.hat = differences ? cornered_hat_of_differences(samples, input.dt_s, input.allan)
+                        : cornered_hat(samples, input.dt_s, input.allan);
+  if (differences) out.channels = devices_of(out.channels);
+  return out;
+}
+
+LogDynamic log_dynamic_deviation(const std::string& path,
+                                 const LogAllanOptions& options,
+                                 const DynamicTimes& times,
+                                 Progress& progress) {
+  const Prepared input = prepared(path, options, progress);
+  const auto samples_of = [&](double seconds) {
+    const double samples = std::round(seconds / input.dt_s);
+    return static_cast<std::uint64_t>(std::min(samples, 1e15));
+  };
+  DynamicOptions dynamic;
+  dynamic.window = samples_of(times.window_s);
+  if (times.step_s > 0) dynamic.step = std::max<std::uint64_t>(1, samples_of(times.step_s));
+  LogDynamic out;
+  out.log = input.recording.info;
+  for (std::size_t c = 0; c < input.recording.samples.size(); ++c) {
+    out.channels.push_back(out.log.channels[c]);
+    out.deviations.push_back(
+        dynamic_deviation(input.recording.channel(c), input.dt_s, dynamic, input.allan));
+  }
+  return out;
+}
+
+}  // namespace libchar

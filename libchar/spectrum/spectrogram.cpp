@@ -1,0 +1,77 @@
+// Short-time spectra: the periodograms whose mean is Welch's spectrum, segments.cpp.
+
+#include "libchar/spectrum/spectrogram.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/spectrum/detail/segments.hpp"
+
+namespace libchar {
+namespace {
+
+using namespace welch_detail;
+
+constexpr double kMostCellBytes = 2147483648.0;
+
+void check_cells(std::uint64_t samples, const Layout& layout) {
+  const auto refuse = [](const std::string& what, const std::string& hint) {
+    throw Error({ErrorKind::usage, "E0875", "`segment`", what, "", hint});
+  };
+  if (layout.segment > samples)
+    refuse(fmt::format(
+               "a segment of {} samples is longer than the record of {}", layout.segment, samples),
+           "");
+  const double cells =
+      static_cast<double>(layout.count(samples)) * static_cast<double>(layout.segment / 2 + 1);
+  if (cells * sizeof(double) > kMostCellBytes)
+    refuse("the spectrogram would take more than 2 GiB",
+           "give less `overlap`, or read less with `from_s`, `to_s`");
+}
+
+}  // namespace
+
+Spectrogram spectrogram(std::span<const double> record,
+                        double rate_hz,
+                        const WelchOptions& options) {
+  check_options(options);
+  check_rate(rate_hz);
+  const Layout layout = layout_of(options.segment, options.overlap);
+  check_cells(record.size(), layout);
+  const std::vector<double> window = window_values(options.window, layout.segment);
+  double amplitude = 0, energy = 0;
+  for (const double w : window) {
+    amplitude += w;
+    energy += w * w;
+  }
+  const bool density = options.scaling == Scaling::psd || options.scaling == Scaling::lsd;
+  const bool root = options.scaling == Scaling::lsd || options.scaling == Scaling::ls;
+  const double scale = 1 / (density ? rate_hz * energy : amplitude * amplitude);
+  Spectrogram out{
+      options.sides, options.scaling, options.window, rate_hz, layout.segment, {}, {}, {}};
+  const std::size_t bins = layout.segment / 2 + 1;
+  for (std::size_t k = 0; k < bins; ++k)
+    out.frequency_hz.push_back(static_cast<double>(k) * rate_hz /
+                               static_cast<double>(layout.segment));
+  out.value.resize(layout.count(record.size()));
+  for (std::size_t i = 0; i < out.value.size(); ++i)
+    out.time_s.push_back(
+        (static_cast<double>(i * layout.hop) + static_cast<double>(layout.segment) / 2) / rate_hz);
+  tbb::parallel_for(std::size_t{0}, out.value.size(), [&](std::size_t i) {
+    Periodogram periodogram(options, window);
+    std::vector<double> power(bins, 0.0);
+    if (!periodogram.add(record.data() + i * layout.hop, power.data())) return;
+    for (std::size_t k = 0; k < bins; ++k) {
+      const bool edge = k == 0 || 2 * k == layout.segment;
+      power[k] *= scale * (options.sides == Sides::one && !edge ? 2 : 1);
+      if (root) power[k] = std::sqrt(power[k]);
+    }
+    out.value[i] = std::move(power);
+  });
+  return out;
+}
+
+}  // namespace libchar
