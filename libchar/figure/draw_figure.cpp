@@ -1,0 +1,33 @@
+#include "libchar/figure/draw_figure.hpp"
+
+#include <fmt/format.h>
+
+#include "libchar/core/error.hpp"
+#include "libchar/figure/detail/cairo_pages.hpp"
+#include "libchar/figure/detail/sheet.hpp"
+
+namespace libchar {
+
+bool draws_with_cairo() {
+  return has_cairo();
+}
+
+std::string draw_figure(const Chart& figure,
+                        FigureFormat format,
+                        const DrawingOptions& options,
+                        Warnings& warnings) {
+  if (format != FigureFormat::svg && !has_cairo())
+    throw Error(
+        {ErrorKind::usage,
+         "E0980",
+         "",
+         fmt::format("{} is drawn by Cairo, which this program was built without", name_of(format)),
+         "",
+         "ask for .svg, or build with Debian's package libcairo2-dev"});
+  const Drawing drawing = lay_out(figure, options);
+  if (format == FigureFormat::svg) return svg_of(drawing);
+  if (format == FigureFormat::pdf) return pdf_of(drawing, warnings);
+  return png_of(drawing, options.dpi, warnings);
+}
+
+}  // namespace libchar

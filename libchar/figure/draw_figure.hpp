@@ -1,0 +1,51 @@
+#pragma once
+// A figure as a file: SVG is written here, PDF and PNG are drawn by Cairo, all three from one list of lines and texts.
+
+#include <string>
+
+#include "libchar/core/enum_table.hpp"
+#include "libchar/core/warnings.hpp"
+#include "libchar/figure/figure.hpp"
+
+namespace libchar {
+
+enum class LegendPlace {
+  automatic,  ///< in a corner where no curve is, else below
+  inside,
+  below,
+  none,
+};
+template <>
+inline constexpr auto enum_table<LegendPlace> =
+    enum_words<LegendPlace>({{LegendPlace::automatic, "auto"},
+                             {LegendPlace::inside, "inside"},
+                             {LegendPlace::below, "below"},
+                             {LegendPlace::none, "none"}});
+
+enum class FigureFormat { svg, pdf, png };
+template <>
+inline constexpr auto enum_table<FigureFormat> = enum_words<FigureFormat>(
+    {{FigureFormat::svg, "svg"}, {FigureFormat::pdf, "pdf"}, {FigureFormat::png, "png"}});
+
+inline constexpr double kOneColumnMm = 85, kTwoColumnsMm = 178;
+
+struct DrawingOptions {
+  double width_mm = kOneColumnMm;
+  double height_mm = 0;  ///< 0: what suits the width
+  LegendPlace legend = LegendPlace::automatic;
+  bool grey = false;  ///< no colour at all
+  double dpi = 300;   ///< of PNG
+};
+
+/// Whether PDF and PNG can be drawn: the library was built with Cairo.
+bool draws_with_cairo();
+
+/// The bytes of the file: the same for the same figure and options. Text is text, in Liberation Sans, which has the widths of Arial and
+/// Helvetica; a PDF embeds what it uses of it. Where the font is not installed, PDF and PNG take another one and `warnings` says so
+/// (SVG names both). Throws Error(usage) for a PDF or PNG without Cairo and for sizes that nothing can be drawn in.
+std::string draw_figure(const Chart& figure,
+                        FigureFormat format,
+                        const DrawingOptions& options,
+                        Warnings& warnings);
+
+}  // namespace libchar

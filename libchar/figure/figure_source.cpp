@@ -1,0 +1,155 @@
+#include "libchar/figure/figure_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "libchar/characterize/reported_characterization.hpp"
+#include "libchar/core/document_file.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/json_reader.hpp"
+#include "libchar/core/not_known.hpp"
+#include "libchar/figure/detail/curve_sources.hpp"
+#include "libchar/figure/detail/report_values.hpp"
+#include "libchar/fit/curve_table.hpp"
+#include "libchar/model/model_json.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr const char* kReadable =
+    "plot draws report.json of characterize or replay (or its folder), what allan and psd print, "
+    "curves.csv, and sensor models";
+
+std::string format_in(const Document& document) {
+  const DocumentEntry* entry =
+      document.kind == Document::Kind::map ? document.find("format") : nullptr;
+  return entry != nullptr && entry->value.kind == Document::Kind::text ? entry->value.text : "";
+}
+
+std::string name_for(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string stem = file.stem().string();
+  const std::string folder = file.parent_path().filename().string();
+  const bool plain = stem == "report" || stem == "runs" || stem == "curves";
+  if (plain && !folder.empty() && folder != "." && folder != "..") return folder;
+  return stem.ends_with(".sensor") ? stem.substr(0, stem.size() - 7) : stem;
+}
+
+[[noreturn]] void refuse_document(const std::string& file, const std::string& format) {
+  const bool scene = format == "scene" || format == "fusion-scene";
+  throw Error({ErrorKind::input,
+               "E0975",
+               file,
+               format.empty() ? "a document that names no format"
+                              : "a document of a format that is not drawn",
+               format,
+               scene
+                   ? fmt::format("sensorchar replay {} -o DIR makes a report, which is drawn", file)
+                   : kReadable});
+}
+
+[[noreturn]] void refuse_log(const std::string& file) {
+  throw Error(
+      {ErrorKind::input,
+       "E0975",
+       file,
+       "is no report, curve or sensor model; is it a log?",
+       "",
+       fmt::format("sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar "
+                   "characterize {0} -o DIR a report: plot these",
+                   file)});
+}
+
+void read_document(FigureSource& out, const Document& document, const std::string& file) {
+  const std::string format = format_in(document);
+  if (format == "replay-report") {
+    check_format(document, file, format, 1);
+    out.replay = std::make_shared<const Document>(document);
+    return;
+  }
+  const bool known = format == "characterization" || format == "allan" || format == "spectrum" ||
+                     format == "noise-fit" || format == "pooled-runs";
+  if (!known) refuse_document(file, format);
+  check_format(document, file, format, 1);
+  const MapReader map = open_report(document, file, "");
+  if (format == "allan") return add_allan_curves(out, map);
+  if (format == "spectrum") return add_spectra(out, map);
+  if (format == "noise-fit") return add_residuals(out, map);
+  if (map.has("allan")) add_allan_curves(out, open_report(map, "allan"));
+  if (map.has("spectrum")) add_spectra(out, open_report(map, "spectrum"));
+  if (map.has("fit")) {
+    add_residuals(out, open_report(map, "fit"));
+    add_fit_to_curves(out, open_report(map, "fit"));
+  }
+  if (map.has("trace")) add_traces(out, open_report(map, "trace"));
+  if (map.has("verification")) add_simulated(out, open_report(map, "verification"));
+}
+
+bool ends_like_a_document(const std::string& path) {
+  return path.ends_with(".json") || path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+void refuse_empty(const FigureSource& source) {
+  if (source.replay || !source.curves.empty() || !source.residuals.empty() ||
+      !source.traces.empty())
+    return;
+  throw Error({ErrorKind::input,
+               "E0975",
+               source.file,
+               "holds no curve that could be drawn",
+               "",
+               kReadable});
+}
+
+void read_table(FigureSource& out, const std::string& file) {
+  const std::string held = curve_in_header(file);
+  if (held.empty()) {
+    add_wide_spectra(out, file);
+    if (out.curves.empty()) refuse_log(file);
+  }
+  for (const bool is_allan : {true, false}) {
+    if (held.find(is_allan ? "allan" : "psd") == std::string::npos) continue;
+    try {
+      add_table(out, file, is_allan);
+    } catch (const Error& error) {
+      // A table that may hold both holds one of them at least.
+      if (error.problem().code != "E0802" || (!is_allan && out.curves.empty())) throw;
+    }
+  }
+}
+
+}  // namespace
+
+FigureSource parse_figure_source(std::string_view text, const std::string& path) {
+  FigureSource out;
+  out.file = path;
+  out.name = name_for(path);
+  read_document(out, parse_json_document(text, path), path);
+  refuse_empty(out);
+  return out;
+}
+
+FigureSource read_figure_source(const std::string& path) {
+  FigureSource out;
+  out.file = report_file(path);
+  out.name = name_for(out.file);
+  if (!ends_like_a_document(out.file)) {
+    read_table(out, out.file);
+    refuse_empty(out);
+    return out;
+  }
+  const std::string text = read_document_text(out.file);
+  const Document document = parse_document(text, out.file);
+  if (format_in(document) == "sensor-model" || document.kind == Document::Kind::list) {
+    for (const SensorModel& model : read_model_list(out.file)) add_model(out, model);
+  } else {
+    read_document(out, document, out.file);
+  }
+  refuse_empty(out);
+  return out;
+}
+
+}  // namespace libchar

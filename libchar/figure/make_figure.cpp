@@ -1,0 +1,124 @@
+#include "libchar/figure/make_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/spelling.hpp"
+#include "libchar/figure/detail/curve_figures.hpp"
+#include "libchar/figure/detail/figure_parts.hpp"
+#include "libchar/figure/detail/replay_figures.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr FigureKind kKinds[] = {
+    {"allan", "Allan deviation: interval, model, terms, coefficients", false, allan_figure},
+    {"psd", "spectrum: interval, model, terms", false, psd_figure},
+    {"residuals", "residuals of the fit, in standard deviations", false, residuals_figure},
+    {"trace", "the record, and what was found in it", false, trace_figure},
+    {"front", "error against run time, and who is beaten in neither", true, front_figure},
+    {"memory", "error against memory", true, memory_figure},
+    {"ranking", "error of each method with its interval", true, ranking_figure},
+    {"timeline", "reference, estimate and best sensor over the run", true, timeline_figure},
+    {"error", "error of the estimate and of the best sensor over the run", true, error_figure},
+    {"window", "error in a moving window, a line a method", true, window_figure},
+    {"weights", "weights over the run, a line a sensor", true, weights_figure},
+    {"variances", "noise variances as estimated, a line a sensor", true, variances_figure},
+    {"faults", "known faults and findings, a row a sensor", true, faults_figure},
+    {"error-allan", "Allan deviation of the error, a line a method", true, error_allan_figure},
+};
+
+std::string first_kind(std::span<const FigureSource> sources) {
+  const FigureSource& first = sources[0];
+  if (first.replay) return "front";
+  for (const SourceCurve& curve : first.curves)
+    if (curve.is_allan) return "allan";
+  return !first.curves.empty() ? "psd" : !first.residuals.empty() ? "residuals" : "trace";
+}
+
+const FigureKind& kind_of(const std::string& word) {
+  for (const FigureKind& kind : kKinds)
+    if (kind.word == word) return kind;
+  throw Error(
+      {ErrorKind::usage,
+       "E0978",
+       "`kind`",
+       "no such figure",
+       word,
+       did_you_mean(nearest(word, figure_words()), "there are " + first_names(figure_words()))});
+}
+
+void refuse_mixed(std::span<const FigureSource> sources, const FigureKind& kind) {
+  for (const FigureSource& source : sources) {
+    if (kind.of_replay && !source.replay)
+      refuse_kind(source, kind.word, "it is of replays, and this is the report of none");
+    if (!kind.of_replay && source.replay)
+      refuse_kind(source,
+                  kind.word,
+                  "this is the report of a replay, which has front, ranking, timeline and others");
+  }
+  if (kind.of_replay && sources.size() > 1)
+    throw Error({ErrorKind::usage,
+                 "E0978",
+                 sources[1].file,
+                 "a figure of a replay is of one report",
+                 "",
+                 "sensorchar compare A B holds two replays against each other"});
+}
+
+/// Files of one name in several folders are told apart by these.
+std::vector<FigureSource> with_names_apart(std::span<const FigureSource> sources) {
+  std::vector<FigureSource> out(sources.begin(), sources.end());
+  for (FigureSource& one : out) {
+    const auto alike = std::count_if(
+        sources.begin(), sources.end(), [&](const FigureSource& s) { return s.name == one.name; });
+    if (alike < 2) continue;
+    const std::filesystem::path file(one.file);
+    const std::string folder = file.parent_path().filename().string();
+    one.name = folder.empty() || folder == one.name ? file.string() : folder + "/" + one.name;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::span<const FigureKind> figure_kinds() {
+  return kKinds;
+}
+
+std::vector<std::string> figure_words() {
+  std::vector<std::string> out;
+  for (const FigureKind& kind : kKinds) out.emplace_back(kind.word);
+  return out;
+}
+
+Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
+  if (sources.empty()) throw Error({ErrorKind::usage, "E0205", "plot", "FILE is required", "", ""});
+  if (options.labels.size() > sources.size())
+    throw Error({ErrorKind::usage,
+                 "E0979",
+                 "`labels`",
+                 fmt::format("{} labels for {} files", options.labels.size(), sources.size()),
+                 "",
+                 "one a file, in their order"});
+  const FigureKind& kind = kind_of(options.kind.empty() ? first_kind(sources) : options.kind);
+  refuse_mixed(sources, kind);
+  Chart out = kind.make(with_names_apart(sources), options);
+  for (const auto* axis : {&out.x, &out.y})
+    if (axis->log && !(axis->low > 0))
+      throw Error({ErrorKind::usage,
+                   "E0981",
+                   axis == &out.x ? "`x_range`" : "`y_range`",
+                   "this axis is logarithmic: its range begins above zero",
+                   "",
+                   ""});
+  out.kind = kind.word;
+  out.title = options.title;
+  if (!options.title.empty()) out.about = options.title;
+  return out;
+}
+
+}  // namespace libchar

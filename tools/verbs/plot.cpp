@@ -1,0 +1,215 @@
+// plot FILE…: a figure of reports, curves and models as SVG, PDF, PNG, as a script for gnuplot, or as its numbers.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/output_files.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/figure/draw_figure.hpp"
+#include "libchar/figure/figure_data.hpp"
+#include "libchar/figure/make_figure.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct PlotVerb {
+  std::vector<std::string> files;
+  std::string output, gnuplot, csv, width, height, x_range, y_range, format;
+  FigureOptions figure;
+  DrawingOptions drawing;
+  bool force = false, list = false;
+};
+
+/// "85mm", "3.3in", "12cm", "240pt", or a column of a journal.
+double length_mm(const std::string& flag, const std::string& text) {
+  if (text == "one-column") return kOneColumnMm;
+  if (text == "two-columns") return kTwoColumnsMm;
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
+  for (const auto& [unit, factor] : kUnits) {
+    if (!text.ends_with(unit)) continue;
+    const auto value = parse_double(text.substr(0, text.size() - unit.size()));
+    if (value && *value > 0) return *value * factor;
+  }
+  throw Error({ErrorKind::usage,
+               "E0981",
+               flag,
+               "a length was expected: a number above zero with mm, cm, in or pt, or one-column, "
+               "two-columns",
+               text,
+               "such as 85mm"});
+}
+
+std::optional<Interval> range_of(const std::string& flag, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t dots = text.find("..");
+  if (dots != std::string::npos) {
+    const auto low = parse_double(text.substr(0, dots)), high = parse_double(text.substr(dots + 2));
+    if (low && high && *low < *high) return Interval{*low, *high};
+  }
+  throw Error({ErrorKind::usage,
+               "E0981",
+               flag,
+               "a range was expected: two numbers, the smaller first, with two dots between",
+               text,
+               "such as 0.01..100"});
+}
+
+FigureFormat format_of(const PlotVerb& verb) {
+  if (!verb.format.empty()) return *find_enum<FigureFormat>(verb.format);
+  if (verb.output == "-") return FigureFormat::svg;
+  const std::size_t dot = verb.output.rfind('.');
+  const std::string ending =
+      dot == std::string::npos ? "" : ascii_lower(verb.output.substr(dot + 1));
+  if (const auto known = find_enum<FigureFormat>(ending)) return *known;
+  throw Error({ErrorKind::usage,
+               "E0979",
+               "--output",
+               "the name ends neither in .svg nor in .pdf or .png",
+               verb.output,
+               "or say --format svg"});
+}
+
+void print_kinds() {
+  std::string text;
+  for (const FigureKind& kind : figure_kinds())
+    text += fmt::format("{:<12} {}{}\n", kind.word, kind.title, kind.of_replay ? " (replay)" : "");
+  print(text);
+}
+
+void refuse_nothing_asked(const PlotVerb& verb) {
+  if (verb.files.empty())
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "plot",
+                 "FILE is required",
+                 "",
+                 "sensorchar plot --list names the figures"});
+  if (verb.output.empty() && verb.gnuplot.empty() && verb.csv.empty())
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "plot",
+                 "-o, --gnuplot or --csv is required: where the figure goes",
+                 "",
+                 "such as -o figure.pdf; - is standard output"});
+  const auto dashes =
+      (verb.output == "-" ? 1 : 0) + (verb.gnuplot == "-" ? 1 : 0) + (verb.csv == "-" ? 1 : 0);
+  if (dashes > 1)
+    throw Error(
+        {ErrorKind::usage, "E0205", "plot", "only one output can go to standard output", "", ""});
+}
+
+void deliver(const std::vector<OutputFile>& made, bool force) {
+  std::vector<OutputFile> files;
+  for (const OutputFile& one : made)
+    if (one.path != "-") files.push_back(one);
+  for (const OutputFile& one : files) check_output(one.path, force);
+  for (const OutputFile& one : files) write_whole_file(one.path, one.text, force);
+  for (const OutputFile& one : made)
+    if (one.path == "-") print(one.text);
+}
+
+void run_plot(Session& session, PlotVerb& verb) {
+  if (verb.list) return print_kinds();
+  refuse_nothing_asked(verb);
+  if (!verb.width.empty()) verb.drawing.width_mm = length_mm("--width", verb.width);
+  if (!verb.height.empty()) verb.drawing.height_mm = length_mm("--height", verb.height);
+  verb.figure.x_range = range_of("--x-range", verb.x_range);
+  verb.figure.y_range = range_of("--y-range", verb.y_range);
+  const FigureFormat format = verb.output.empty() ? FigureFormat::svg : format_of(verb);
+  for (const std::string* path : {&verb.output, &verb.gnuplot, &verb.csv})
+    if (!path->empty() && *path != "-") foresee_output(*path, verb.files, verb.force);
+  std::vector<FigureSource> sources;
+  for (const std::string& file : verb.files) sources.push_back(read_figure_source(file));
+  const Chart figure = make_figure(sources, verb.figure);
+  std::vector<OutputFile> made;
+  Warnings warnings;
+  if (!verb.output.empty())
+    made.push_back({verb.output, draw_figure(figure, format, verb.drawing, warnings)});
+  if (!verb.gnuplot.empty()) made.push_back({verb.gnuplot, figure_gnuplot(figure, verb.drawing)});
+  if (!verb.csv.empty()) made.push_back({verb.csv, figure_csv(figure)});
+  deliver(made, verb.force);
+  session.terminal.warn(warnings, verb.output);
+}
+
+void add_looks(VerbOptions& options, PlotVerb& verb) {
+  options
+      .add_text(
+          "--width",
+          verb.width,
+          "one-column (85 mm, the default), two-columns (178 mm), or a length such as 88mm, 7in")
+      .value_name("LENGTH");
+  options.add_text("--height", verb.height, "a length (default: what suits width and legend)")
+      .value_name("LENGTH");
+  options.add_enum("--legend",
+                   verb.drawing.legend,
+                   "where names stand (auto: in a corner without curves, else below)");
+  options.add_text(
+      "--title", verb.figure.title, "above the plot (default: none, for a caption says it)");
+  options.add_flag("--grey", verb.drawing.grey, "greys in place of colours");
+  options.add_number("--dpi", verb.drawing.dpi, "resolution of a PNG (300)", 10, 4800);
+  options.add_text("--x-range", verb.x_range, "ends of the horizontal axis")
+      .value_name("LOW..HIGH");
+  options.add_text("--y-range", verb.y_range, "ends of the vertical axis").value_name("LOW..HIGH");
+}
+
+std::function<void()> plot_options(VerbOptions& options, Session& session) {
+  const auto verb = std::make_shared<PlotVerb>();
+  options.add_texts(
+      "FILE",
+      verb->files,
+      "report.json of characterize or replay (or its folder), what allan or psd print, "
+      "curves.csv, sensor models; several are drawn over each other");
+  options
+      .add_text(
+          "-o,--output", verb->output, "the figure: .svg, .pdf or .png (- is standard output)")
+      .value_name("FILE");
+  options.add_choice("--kind",
+                     verb->figure.kind,
+                     figure_words(),
+                     "which figure (default: allan of a characterization, front of a replay)");
+  options.add_flag("--list", verb->list, "the figures that there are");
+  options
+      .add_texts(
+          "-c,--channel",
+          verb->figure.channels,
+          "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*' (all)")
+      .separated_by_commas();
+  options.add_text("--algorithm",
+                   verb->figure.algorithm,
+                   "of a replay: whose weights, variances and findings (the best that has them)");
+  options.add_text(
+      "--input", verb->figure.input, "of a replay with several true inputs: which (the first)");
+  options.add_texts("--label", verb->figure.labels, "a name for each FILE in the legend")
+      .separated_by_commas();
+  add_looks(options, *verb);
+  options.add_text("--gnuplot", verb->gnuplot, "the numbers in a script for gnuplot")
+      .value_name("FILE");
+  options.add_text("--csv", verb->csv, "the numbers that are drawn, as a table").value_name("FILE");
+  options.add_choice(
+      "--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
+  options.add_flag("--force", verb->force, "overwrite the output files");
+  return [&session, verb] { run_plot(session, *verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_plot() {
+  return {9,
+          "plot",
+          "A figure of reports, curves and models: SVG, PDF, PNG, gnuplot, CSV",
+          plot_options,
+          {{"the Allan deviation of one channel for a paper",
+            "sensorchar plot report -c gyro_z -o gyro_z.pdf"},
+           {"which method of a replay to use",
+            "sensorchar plot array-replay --kind ranking -o ranking.svg"}}};
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,78 @@
+// report FILE: what a report found as a table for a paper or a page.
+
+#include <memory>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/report/report_table.hpp"
+#include "verb.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+struct ReportVerb {
+  std::string file, output;
+  std::vector<std::string> channels;
+  bool latex = false, markdown = false, csv = false, force = false;
+};
+
+void run_report(const ReportVerb& verb) {
+  if (!verb.output.empty() && verb.output != "-")
+    foresee_output(verb.output, {report_file(verb.file)}, verb.force);
+  const TableFormat format = verb.latex ? TableFormat::latex
+                             : verb.csv ? TableFormat::csv
+                                        : TableFormat::markdown;
+  std::string text;
+  if (is_characterization_report(verb.file)) {
+    text = coefficient_table(read_characterization_report(verb.file), verb.channels, format);
+  } else {
+    const ReplaySummary replay = read_replay_report(verb.file);
+    if (!verb.channels.empty())
+      throw Error({ErrorKind::usage,
+                   "E0205",
+                   "--channel",
+                   "goes with the report of a characterization, and this is one of a replay",
+                   "",
+                   ""});
+    text = ranking_table(replay, format);
+  }
+  if (verb.output.empty() || verb.output == "-") return print(text);
+  write_whole_file(verb.output, text, verb.force);
+}
+
+std::function<void()> report_options(VerbOptions& options, Session& /*session*/) {
+  const auto verb = std::make_shared<ReportVerb>();
+  options
+      .add_text("FILE",
+                verb->file,
+                "report.json of characterize or replay (runs.json of pooled runs, what fit --json "
+                "prints), or the folder that holds it")
+      .required();
+  options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
+  const Option latex =
+      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package");
+  options.add_flag("--csv", verb->csv, "a column a number, all digits").excludes(latex);
+  options
+      .add_texts(
+          "-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (all)")
+      .separated_by_commas();
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
+      .value_name("FILE");
+  options.add_flag("--force", verb->force, "overwrite the output file");
+  return [verb] { run_report(*verb); };
+}
+
+}  // namespace
+
+VerbEntry verb_report() {
+  return {9,
+          "report",
+          "The table of a report: Markdown, LaTeX or CSV",
+          report_options,
+          {{"the coefficients as a table for LaTeX", "sensorchar report report --latex"},
+           {"the ranking of a replay", "sensorchar report array-replay"}}};
+}
+
+}  // namespace sensorchar
