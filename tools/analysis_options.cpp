@@ -39,22 +39,10 @@ void read_taus(const std::string& text, AllanOptions& allan) {
     for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
   } catch (const Error&) {
     refuse("--taus",
-           "octave, decade, dense, ten or a list of times was expected",
+           "octave, decade, dense, all, ten or a list of times was expected",
            text,
            "for example --taus 0.1s,1s,10s");
   }
-}
-
-// "4096" counts samples; "20s" is a time, which becomes samples when the rate is known; "N/4" is a
-// quarter of the record.
-void read_segment(const std::string& text, WelchOptions& spectrum, double& segment_s) {
-  spectrum.segment = 0;
-  segment_s = 0;
-  if (text.empty() || text == "N/4") return;
-  if (text.find_first_not_of("0123456789") == std::string::npos)
-    spectrum.segment = parse_count(text, 8);
-  else
-    segment_s = parse_duration_s(text);
 }
 
 std::array<bool, kTerms> read_terms(const std::string& text) {
@@ -86,6 +74,18 @@ void read_still(const std::string& text, StillOptions& still) {
 
 }  // namespace
 
+// "4096" counts samples; "20s" is a time, which becomes samples when the rate is known; "N/4" is a
+// quarter of the record.
+void read_segment(const std::string& text, WelchOptions& spectrum, double& segment_s) {
+  spectrum.segment = 0;
+  segment_s = 0;
+  if (text.empty() || text == "N/4") return;
+  if (text.find_first_not_of("0123456789") == std::string::npos)
+    spectrum.segment = parse_count(text, 8);
+  else
+    segment_s = parse_duration_s(text);
+}
+
 void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
       "--still",
@@ -114,8 +114,13 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
 }
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choice(
-      "--type", a.type, deviation_words(), "deviation (default: oadev, overlapping Allan)");
+  verb.add_choices("--type",
+                   a.types,
+                   deviation_words(),
+                   a.several_types
+                       ? "statistic, or several of one reading: oadev,mdev (default: oadev, "
+                         "overlapping Allan)"
+                       : "deviation (default: oadev, overlapping Allan)");
   verb.add_parsed(
       "--taus",
       "TEXT",
@@ -123,9 +128,9 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
         a.options.ten_a_decade = a.ten_asked = text == "ten";
         read_taus(text == "ten" ? "octave" : text, a.options.allan);
       },
-      "averaging times: octave, decade, dense, ten (a decade and the octaves; octaves alone where "
-      "a "
-      "log streams), or a list such as 0.1s,1s,1min (default: " +
+      "averaging times: octave, decade, dense, all (every multiple of the interval), ten (a decade "
+      "and the octaves; octaves alone where a log streams), or a list such as 0.1s,1s,1min "
+      "(default: " +
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
   verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
@@ -133,7 +138,8 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
       "--full-overlap",
       a.options.full_overlap,
       "use every term however long the record is (default: octaves and dense times take every "
-      "(m/4)th term beyond 4 million samples)");
+      "(m/4)th term beyond 4 million samples, all times beyond 131072; Theo1 and the total "
+      "deviations of windows every (m/16)th or less where they would take seconds a time)");
 }
 
 void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s) {
@@ -181,12 +187,19 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
   if (a.nominal_frequency && o.data != SampleKind::frequency)
     refuse("--nominal-frequency", "goes with --data frequency only", "", "");
   o.nominal_frequency = a.nominal_frequency.value_or(0);
-  o.allan.type = deviation_type(a.type).value_or(DeviationType::oadev);
-  if (a.ten_asked && o.allan.type != DeviationType::oadev)
-    refuse("--taus",
-           "ten a decade goes with the overlapping Allan deviation only",
-           "ten with --type " + a.type,
-           "--taus decade or dense serve every type");
+  if (a.types.size() > 1 && !a.several_types)
+    refuse(
+        "--type", "one statistic was expected here", a.types[1], "sensorchar allan takes several");
+  o.allan.type = deviation_type(a.types[0]).value_or(DeviationType::oadev);
+  o.more_types.clear();
+  for (std::size_t i = 1; i < a.types.size(); ++i)
+    o.more_types.push_back(*deviation_type(a.types[i]));
+  for (const std::string& type : a.types)
+    if (a.ten_asked && type != "oadev")
+      refuse("--taus",
+             "ten a decade goes with the overlapping Allan deviation only",
+             "ten with --type " + type,
+             "--taus decade or dense serve every type");
   o.allan.tau_min_s = a.tau_min_s.value_or(0);
   o.allan.tau_max_s = a.tau_max_s.value_or(0);
   o.fit.remedies = !a.no_remedies;

@@ -10,9 +10,10 @@ namespace sensorchar {
 /// What the flags say; `finish` checks what only all of them together show.
 struct AnalysisOptions {
   libchar::CharacterizeOptions options;
-  std::string type = "oadev";
+  std::vector<std::string> types = {"oadev"};
   std::optional<double> nominal_frequency, tau_min_s, tau_max_s;
-  bool ten_asked = false;  ///< --taus ten
+  bool ten_asked = false;      ///< --taus ten
+  bool several_types = false;  ///< the verb takes them
   bool no_remedies = false, no_second_opinion = false;
 };
 
@@ -25,6 +26,8 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
 /// segment when a time was given for it, 0 otherwise.
 void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s);
+/// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or "N/4".
+void read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
 /// --terms, --threshold, --no-remedies, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 

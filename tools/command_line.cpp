@@ -58,6 +58,24 @@ std::string say_unknown(const CLI::App& app) {
   return line;
 }
 
+// A file in the place of the verb is looked at.
+std::vector<std::string> with_verb(const CLI::App& app, const std::vector<std::string>& command) {
+  std::vector<std::string> full = command;
+  if (command.size() < 2) return full;
+  const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  const bool verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* sub) {
+    return sub->get_name() == command[1];
+  });
+  const bool inspects = std::any_of(
+      verbs.begin(), verbs.end(), [](const CLI::App* sub) { return sub->get_name() == "inspect"; });
+  struct stat status {};
+  const bool log =
+      command[1] == "-" || (!command[1].starts_with('-') &&
+                            ::stat(command[1].c_str(), &status) == 0 && !S_ISDIR(status.st_mode));
+  if (!verb && log && inspects) full.insert(full.begin() + 1, "inspect");
+  return full;
+}
+
 // A word in the place of the verb that is none: its nearest verb, or what to do with a file.
 void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
   std::vector<std::string> verbs;
@@ -132,6 +150,17 @@ OptionUsage usage_of_option(const CLI::Option& option, const KnownWords& words) 
   for (const CLI::Option* other : option.get_excludes())
     usage.excludes.push_back("--" + other->get_lnames().front());
   return usage;
+}
+
+void check_word(const std::string& text, const std::vector<std::string>& words) {
+  if (std::find(words.begin(), words.end(), text) != words.end()) return;
+  const auto near = libchar::nearest(text, words);
+  throw Error({ErrorKind::usage,
+               "E0202",
+               "",
+               fmt::format("expected one of {}", fmt::join(words, ", ")),
+               text,
+               near ? fmt::format("did you mean {}?", *near) : ""});
 }
 
 }  // namespace
@@ -261,6 +290,12 @@ Option VerbOptions::add_bytes(const std::string& names,
   return add_parsed(names, "BYTES", read, help);
 }
 
+Option VerbOptions::add_document_output(std::string& path) {
+  const auto read = [&path](const std::string& text) { path = text == "-" ? "" : text; };
+  return add_parsed(
+      "-o,--output", "FILE", read, "write there instead of to stdout, which is - too");
+}
+
 Option VerbOptions::add_choice(const std::string& names,
                                std::string& value,
                                std::vector<std::string> words,
@@ -269,21 +304,33 @@ Option VerbOptions::add_choice(const std::string& names,
       names, std::move(words), help, [&value](const std::string& word) { value = word; });
 }
 
+Option VerbOptions::add_choices(const std::string& names,
+                                std::vector<std::string>& values,
+                                std::vector<std::string> words,
+                                const std::string& help) {
+  const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
+  const auto read = [words, &values](const std::string& text) {
+    values.clear();
+    for (std::size_t from = 0; from <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', from), text.size());
+      const std::string word = text.substr(from, comma - from);
+      check_word(word, words);
+      if (std::find(values.begin(), values.end(), word) != values.end())
+        throw Error({ErrorKind::usage, "E0205", "", "a word stands twice in the list", word, ""});
+      values.push_back(word);
+      from = comma + 1;
+    }
+  };
+  return add_parsed(names, value_name, read, help).known_words(std::move(words));
+}
+
 Option VerbOptions::add_word(const std::string& names,
                              std::vector<std::string> words,
                              const std::string& help,
                              std::function<void(const std::string&)> use) {
   const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
   const auto read = [words, use = std::move(use)](const std::string& text) {
-    if (std::find(words.begin(), words.end(), text) == words.end()) {
-      const auto near = libchar::nearest(text, words);
-      throw Error({ErrorKind::usage,
-                   "E0202",
-                   "",
-                   fmt::format("expected one of {}", fmt::join(words, ", ")),
-                   text,
-                   near ? fmt::format("did you mean {}?", *near) : ""});
-    }
+    check_word(text, words);
     use(text);
   };
   return add_parsed(names, value_name, read, help).known_words(std::move(words));
@@ -355,8 +402,9 @@ std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv
     throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
   };
   try {
-    check_verb(*app_, argv);
-    std::vector<std::string> last_first(argv.rbegin(), argv.rend() - 1);
+    const std::vector<std::string> command = with_verb(*app_, argv);
+    check_verb(*app_, command);
+    std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
     app_->parse(last_first);
   } catch (const CLI::Success& answer) {  // --help, --version
     std::ostringstream out, err;

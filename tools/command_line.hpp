@@ -99,11 +99,18 @@ class VerbOptions {
       value = *libchar::find_enum<Enum>(word);
     });
   }
+  /// -o FILE of a verb that writes one document; "" is stdout, and so is -.
+  Option add_document_output(std::string& path);
   /// One of a few words; a wrong one is refused with the nearest right one.
   Option add_choice(const std::string& names,
                     std::string& value,
                     std::vector<std::string> words,
                     const std::string& help);
+  /// One or more of them, separated by commas, none twice.
+  Option add_choices(const std::string& names,
+                     std::vector<std::string>& values,
+                     std::vector<std::string> words,
+                     const std::string& help);
 
  private:
   Option add_word(const std::string& names,

@@ -16,6 +16,26 @@ struct HelpRow {
   std::string left, right;
 };
 
+/// A long list of words, "--type adev|oadev|…", goes on in the next line behind one of its bars.
+std::string broken_at_bars(std::string_view left, std::size_t width) {
+  constexpr std::string_view kMargin = "      ";
+  std::string text;
+  std::size_t used = 2;
+  while (!left.empty()) {
+    const std::size_t bar = left.find('|');
+    const std::string_view piece = left.substr(0, bar == std::string_view::npos ? bar : bar + 1);
+    const std::size_t places = libchar::width_of(piece);
+    if (used + places > width && used > kMargin.size()) {
+      text += fmt::format("\n{}", kMargin);
+      used = kMargin.size();
+    }
+    text += piece;
+    used += places;
+    left.remove_prefix(piece.size());
+  }
+  return text;
+}
+
 /// The left column is as wide as its words, up to a third of the page: what is wider stands on a line of its own.
 std::string help_rows(const std::vector<HelpRow>& rows, std::size_t width) {
   std::size_t column = 0;
@@ -27,7 +47,7 @@ std::string help_rows(const std::vector<HelpRow>& rows, std::size_t width) {
   std::string text;
   for (const HelpRow& row : rows) {
     const std::size_t places = libchar::width_of(row.left);
-    text += "  " + row.left;
+    text += "  " + broken_at_bars(row.left, width);
     if (row.right.empty()) {
       text += "\n";
       continue;

@@ -35,6 +35,13 @@ std::string italic(std::string_view text) {
   return "\\fI" + roff(text) + "\\fP";
 }
 
+// A list of words, "adev|oadev|…", may be broken behind its bars.
+std::string breakable(std::string text) {
+  for (std::size_t bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar + 3))
+    text.insert(bar + 1, "\\:");
+  return text;
+}
+
 std::string head(const ProgramUsage& program, const std::string& page, const std::string& what) {
   std::string title;
   for (const char c : page) title += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -54,7 +61,7 @@ std::string tagged(const std::string& tag, const std::string& text) {
 std::string option_entry(const OptionUsage& option) {
   std::string tag;
   for (const std::string& flag : option.flags) tag += (tag.empty() ? "" : ", ") + bold(flag);
-  if (!option.name.empty()) tag += (tag.empty() ? "" : " ") + italic(option.name);
+  if (!option.name.empty()) tag += (tag.empty() ? "" : " ") + breakable(italic(option.name));
   std::string text = roff(option.help);
   if (option.required && !option.flags.empty()) text += " (required)";
   if (!option.excludes.empty())

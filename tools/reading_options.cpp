@@ -44,15 +44,62 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group("Reading");
   verb.add_choice("--time-unit",
                   options.time_unit,
-                  {"auto", "s", "ms", "us", "ns"},
+                  {"auto", "s", "ms", "us", "ns", "100us"},
                   "unit of the time column (default: auto)")
       .group("Reading");
+}
+
+void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
+  verb.add_texts("--scale",
+                 options.channel_scale,
+                 "factor of channels by name or pattern, such as 'gyro*=1/16.4'; repeat it or "
+                 "separate by commas (default: 1, or the number in the unit)")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("NAME=FACTOR")
+      .group("Reading");
+  verb.add_texts(
+          "--unit",
+          options.channel_unit,
+          "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is "
+          "their scale (0.05 deg/s); repeat it or separate by commas (default: as in the log)")
+      .separated_by_commas()
+      .one_value_each()
+      .value_name("NAME=UNIT")
+      .group("Reading");
+}
+
+void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
+  const std::string csv = "Reading CSV";
+  verb.add_texts("--where",
+                 options.where,
+                 "only the rows with this value, such as sensor=Gyroscope; repeat it for several "
+                 "columns (default: all rows)")
+      .one_value_each()
+      .value_name("COLUMN=VALUE")
+      .group(csv);
+  verb.add_text("--group-by",
+                options.group_by,
+                "column whose values become channels of their own (default: none)")
+      .value_name("COLUMN")
+      .group(csv);
+  verb.add_choice("--date-order",
+                  options.date_order,
+                  {"auto", "day", "month"},
+                  "what stands first in 05/01/2024 (default: auto)")
+      .group(csv);
 }
 
 void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
   verb.add_choice(
           "--format", options.format, libchar::format_words(), "format of the log (default: auto)")
+      .group("Reading");
+  verb.add_text("--preset",
+                options.preset,
+                "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, "
+                "NAVCHIP_FLT")
+      .value_name("NAME")
       .group("Reading");
   verb.add_parsed(
           "--delimiter",
@@ -82,6 +129,7 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
                   {"utf-8", "latin1"},
                   "encoding of the header (default: utf-8)")
       .group(csv);
+  add_long_format_options(verb, options);
   verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")
       .group(csv);
 }
@@ -142,6 +190,7 @@ void add_reading_options_without_channel(VerbOptions& verb,
       .one_value_each()
       .value_name("UNIT,…")
       .group("Reading");
+  add_channel_values(verb, options);
   add_time_options(verb, options);
   add_dialect_options(verb, options);
   add_accepting_flag(verb,
@@ -198,6 +247,11 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   list("-c", options.channels);
   list("--names", options.names);
   list("--units", options.units);
+  list("--scale", options.channel_scale);
+  list("--unit", options.channel_unit);
+  for (const std::string& where : options.where) flags += " --where " + shell_word(where);
+  word("--group-by", options.group_by, usual.group_by);
+  word("--date-order", options.date_order, usual.date_order);
   number("--from", options.from_s, "s");
   number("--to", options.to_s, "s");
   number("--rate", options.rate_hz, "Hz");
@@ -205,6 +259,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   word("--time-column", guessed ? info.time.column : options.time_column, usual.time_column);
   word("--time-unit", guessed ? info.time.unit : options.time_unit, usual.time_unit);
   word("--format", options.format, usual.format);
+  word("--preset", options.preset, usual.preset);
   word("--delimiter", options.delimiter, usual.delimiter);
   word("--decimal", options.decimal, usual.decimal);
   word("--header", options.header, usual.header);

@@ -2,13 +2,14 @@
 # library that is there is linked by its plain name, so that who links the installed archive needs nothing but the library.
 # libchar_optional_header() writes that header when all have been asked for.
 function(libchar_optional word header library)
-  find_path(LIBCHAR_${word}_INCLUDE ${header})
+  find_path(LIBCHAR_${word}_INCLUDE ${header} PATH_SUFFIXES hdf5/serial)
   find_library(LIBCHAR_${word}_LIBRARY ${library})
   mark_as_advanced(LIBCHAR_${word}_INCLUDE LIBCHAR_${word}_LIBRARY)
   set(have 0)
   if(LIBCHAR_${word}_INCLUDE AND LIBCHAR_${word}_LIBRARY)
     set(have 1)
     target_link_libraries(libchar_curves PRIVATE ${library})
+    target_include_directories(libchar_curves SYSTEM PRIVATE "${LIBCHAR_${word}_INCLUDE}")
   else()
     message(STATUS "built without ${library}: ${header} is not installed")
   endif()

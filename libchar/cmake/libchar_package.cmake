@@ -68,6 +68,11 @@ foreach(variable IN LISTS variables)
   endif()
 endforeach()
 
+if(CAIRO_FOUND)
+  string(APPEND optional_packages ", libcairo2-dev, pkg-config")
+  # What figures have their text in; without it PDF and PNG take another font.
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS fonts-liberation2)
+endif()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libchar-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "libchar/allan/deviation_types.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/log/text_table.hpp"
 
 namespace libchar {
@@ -42,7 +44,7 @@ std::string unit_under_density(std::string unit) {
 
 struct Columns {
   std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative,
-      absolute;
+      absolute, low95, high95, model;
   bool percent = false;  // the relative error is written in percent
 };
 
@@ -63,6 +65,9 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
   c.dof = find(header, {"edf", "dof"});
   c.low = find(header, {"low68"});
   c.high = find(header, {"high68"});
+  c.low95 = find(header, {"low95"});
+  c.high95 = find(header, {"high95"});
+  c.model = find(header, {"model"});
   c.relative = find(header,
                     {"rel_err",
                      "relative_error",
@@ -111,8 +116,8 @@ class Reader {
     const std::string kind = text(columns_.kind);
     if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan"))
       return;
-    NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve",
-                                  unit_under_density(text(columns_.unit)));
+    NamedCurve& target =
+        curve_of(columns_.channel ? text(columns_.channel) : "curve", text(columns_.unit), kind);
     const bool by_root = columns_.root.has_value();
     const double x = number(row, *columns_.x),
                  y = number(row, by_root ? *columns_.root : *columns_.power);
@@ -121,6 +126,11 @@ class Reader {
     target.curve.x.push_back(x);
     target.curve.y.push_back(y);
     if (const auto sd = relative_sd(row, y)) target.curve.relative_sd.push_back(*sd);
+    keep(target.low68, row, columns_.low);
+    keep(target.high68, row, columns_.high);
+    keep(target.low95, row, columns_.low95);
+    keep(target.high95, row, columns_.high95);
+    keep(target.model, row, columns_.model);
   }
 
   std::vector<NamedCurve> finish() {
@@ -130,6 +140,13 @@ class Reader {
   }
 
  private:
+  /// A row of this `curve` is of an Allan curve, not of a relative of it, where one is read; else of none of these.
+  bool wanted(const std::string& kind) const {
+    const auto type = deviation_type(kind);
+    const bool deviation = type || kind.find("dev") != std::string::npos || kind == "allan";
+    return is_allan_ ? deviation && (!type || deviation_row(*type).is_allan()) : !deviation;
+  }
+
   double number(const TextRow& row, std::size_t c) const {
     const TextCell& cell = row.cells[c];
     if (const auto value = number_in(cell, decimal_)) return *value;
@@ -156,12 +173,23 @@ class Reader {
     return std::nullopt;
   }
 
-  NamedCurve& curve_of(const std::string& name, const std::string& unit) {
-    const auto found = std::find_if(
-        curves_.begin(), curves_.end(), [&](const NamedCurve& c) { return c.name == name; });
+  void keep(std::vector<double>& values,
+            const TextRow& row,
+            const std::optional<std::size_t>& column) const {
+    if (column) values.push_back(number_in(row.cells[*column], decimal_).value_or(kNone));
+  }
+
+  NamedCurve& curve_of(const std::string& name, const std::string& unit, const std::string& kind) {
+    const auto found = std::find_if(curves_.begin(), curves_.end(), [&](const NamedCurve& c) {
+      return c.name == name && c.kind == kind;
+    });
     if (found != curves_.end()) return *found;
-    curves_.push_back({name, unit, {}});
-    curves_.back().curve.is_allan = is_allan_;
+    NamedCurve& added = curves_.emplace_back();
+    added.name = name;
+    added.unit = unit_under_density(unit);
+    added.curve.is_allan = is_allan_;
+    added.kind = kind;
+    added.value_unit = unit;
     return curves_.back();
   }
 

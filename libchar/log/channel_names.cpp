@@ -44,6 +44,8 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path,
                                                     const std::vector<std::string>& except) {
   ReadOptions head = options;
   head.channels.clear();
+  head.channel_scale.clear();
+  head.channel_unit.clear();
   head.units.clear();  // one a channel that is chosen: not known yet
   head.hash = false;
   const std::vector<std::string> all =

@@ -17,6 +17,10 @@
   FORMAT(mcap)                      \
   FORMAT(bag)                       \
   FORMAT(db3)                       \
+  FORMAT(npz)                       \
+  FORMAT(hdf5)                      \
+  FORMAT(matlab)                    \
+  FORMAT(imu)                       \
   FORMAT(raw)                       \
   FORMAT(csv)
 

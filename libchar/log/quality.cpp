@@ -378,6 +378,7 @@ struct QualityMeter::State {
   void process_held();
   void process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks);
   void runs(const double* x, const double* before, std::size_t n, bool repeats);
+  bool may_saturate(std::size_t levels) const;
 };
 
 void QualityMeter::State::push(std::span<const double> samples) {
@@ -560,6 +561,17 @@ void suggest(ChannelQuality& q) {
 
 }  // namespace
 
+// Ends of a range are told from values that simply stand: of few levels, of a channel that stands most of the time wherever it is
+// (coarse steps, slow changes), of a counter or a clock.
+bool QualityMeter::State::may_saturate(std::size_t levels) const {
+  constexpr std::size_t kFewLevels = 8;
+  if (levels <= kFewLevels || !counter.sentence().empty()) return false;
+  const double ends = static_cast<double>(top.count + bottom.count);
+  const double others = values.n - ends;
+  const double repeats = static_cast<double>(repeated) - ends;
+  return repeats < 0.5 * others;
+}
+
 ChannelQuality QualityMeter::finish() const {
   State state = *state_;
   state.process_held();
@@ -581,7 +593,7 @@ ChannelQuality QualityMeter::finish() const {
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
   q.repeats = state.repeated;
-  if (state.top.value > -state.bottom.value)
+  if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();
   q.difference_sd = state.differences.standard_deviation();

@@ -11,14 +11,19 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/pattern.hpp"
+#include "libchar/core/spelling.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/work.hpp"
 #include "libchar/log/channel_names.hpp"
+#include "libchar/log/csv/unpacker.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/reading_fields.hpp"
@@ -58,6 +63,19 @@ std::string front_of(const std::string& path) {
   return bytes;
 }
 
+// Of compressed files only text is read, whatever the name in front of ".gz" says; a name that says otherwise is refused.
+const Format& packed_format(const std::string& path) {
+  const Format* const text = find_format("csv");
+  const Format* const named = format_by_suffix(path.substr(0, path.rfind('.')));
+  if (named == nullptr || named == text) return *text;
+  throw Error({ErrorKind::input,
+               "E0330",
+               path,
+               fmt::format("compressed {} is not read, only compressed text is", named->about.name),
+               "",
+               "unpack it first: gunzip, unzstd or unxz"});
+}
+
 // A magic number decides before the name, and the name before what else the content looks like: a .csv that holds something else is
 // told so by the CSV reader.
 const Format& format_of(const std::string& path, const ReadOptions& options) {
@@ -78,6 +96,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
       if (format.about.from_pipes) return format;
   }
   const std::string front = front_of(path);
+  if (csv::packing_of(front) != csv::Packing::none) return packed_format(path);
   for (const Format& format : formats())
     if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;
@@ -121,9 +140,83 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   }
 }
 
+// "NAME=VALUE" of `channel_scale` and `channel_unit`: the value of the last word that fits the channel.
+std::optional<std::string> value_for(const std::vector<std::string>& words,
+                                     const std::string& channel) {
+  std::optional<std::string> found;
+  for (const std::string& word : words) {
+    const std::size_t sign = word.rfind('=');
+    if (sign == std::string::npos || sign == 0 || sign + 1 == word.size())
+      throw Error({ErrorKind::usage,
+                   "E0331",
+                   "",
+                   "expected NAME=VALUE for a channel",
+                   word,
+                   "such as `channel_scale` gx=1/16.4 or `channel_unit` 'gyro*=deg/s'"});
+    if (matches(word.substr(0, sign), channel)) found = word.substr(sign + 1);
+  }
+  return found;
+}
+
+using ScaleNotes =
+    std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
+
+// Counts become values: by `channel_scale`, else by a number in the unit. Returns the factors, and says in `notes` what was done.
+std::vector<double> scale_channels(std::vector<Channel>& channels,
+                                   const ReadOptions& options,
+                                   ScaleNotes* notes) {
+  std::vector<double> factors(channels.size(), 1);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Channel& channel = channels[c];
+    if (const auto unit = value_for(options.channel_unit, channel.name)) channel.unit = *unit;
+    const auto counts = count_unit(channel.unit);
+    if (counts) {
+      channel.unit = counts->unit;
+      factors[c] = counts->factor;
+    }
+    if (const auto scale = value_for(options.channel_scale, channel.name)) {
+      const auto factor = parse_factor(*scale);
+      if (!factor)
+        throw Error({ErrorKind::usage,
+                     "E0331",
+                     "`channel_scale`",
+                     "the factor of a channel is no number other than 0",
+                     *scale,
+                     "such as 0.05 or 1/16.4"});
+      factors[c] = *factor;
+    }
+    if (factors[c] == 1) continue;
+    channel.integer = false;
+    if (notes != nullptr)
+      (*notes)[fmt::format("one count is {}{}{}",
+                           significant(factors[c], 6),
+                           channel.unit.empty() ? "" : " ",
+                           printable(channel.unit))]
+          .push_back(printable(channel.name));
+  }
+  return factors;
+}
+
+// A slip in the name of a channel must not pass.
+void warn_of_unused(const std::vector<Channel>& channels,
+                    const ReadOptions& options,
+                    Warnings& warnings) {
+  for (const auto* words : {&options.channel_scale, &options.channel_unit})
+    for (const std::string& word : *words)
+      if (std::none_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+            return matches(word.substr(0, word.rfind('=')), channel.name);
+          }))
+        warnings.add("unused_option",
+                     "`channel_scale` and `channel_unit` for channels that are not read",
+                     word);
+}
+
 // Some quantities have units that no list has; a slip must not look like one of them.
 void warn_of_units(const ReadOptions& options, Warnings& warnings) {
-  for (const std::string& unit : options.units)
+  std::vector<std::string> units = options.units;
+  for (const std::string& word : options.channel_unit)
+    units.push_back(word.substr(word.rfind('=') + 1));
+  for (const std::string& unit : units)
     if (!find_unit(unit))
       warnings.add("unknown_unit",
                    "units in `units` that are not known: kept as written, nothing is converted",
@@ -148,17 +241,37 @@ struct Watch final : BlockSink {
     seen.assign(so_far.channels.size(), false);
     LogInfo named = so_far;
     name_channels(named.channels, options);
+    factors = scale_channels(named.channels, options, nullptr);
+    scales = std::any_of(factors.begin(), factors.end(), [](double f) { return f != 1; });
+    scaled.resize(scales ? factors.size() : 0);
     next.begin(named);
   }
   void block(const SampleBlock& samples) override {
     for (std::size_t c = 0; c < seen.size(); ++c)
       for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
         seen[c] = !std::isnan(samples.channels[c][i]);
-    next.block(samples);
+    if (scales)
+      next.block(scaled_block(samples));
+    else
+      next.block(samples);
+  }
+  SampleBlock scaled_block(const SampleBlock& samples) {
+    SampleBlock out = samples;
+    for (std::size_t c = 0; c < factors.size(); ++c) {
+      if (factors[c] == 1) continue;
+      scaled[c].resize(std::max(scaled[c].size(), samples.rows));
+      for (std::size_t i = 0; i < samples.rows; ++i)
+        scaled[c][i] = samples.channels[c][i] * factors[c];
+      out.channels[c] = scaled[c].data();
+    }
+    return out;
   }
   BlockSink& next;
   const ReadOptions& options;
   std::vector<bool> seen;
+  std::vector<double> factors;  // of the channels
+  bool scales = false;          // one of them is not 1
+  std::vector<std::vector<double>> scaled;
 };
 
 }  // namespace
@@ -166,6 +279,7 @@ struct Watch final : BlockSink {
 LogInfo read_log_head(const std::string& path, const ReadOptions& options) {
   LogInfo info = open_rows(format_of(path, options), path, options)->info();
   name_channels(info.channels, options);
+  scale_channels(info.channels, options, nullptr);
   return info;
 }
 
@@ -267,6 +381,11 @@ LogInfo read_log(const std::string& path,
   source->finish(warnings);
   LogInfo info = source->info();
   name_channels(info.channels, options);
+  ScaleNotes scaled;
+  scale_channels(info.channels, options, &scaled);
+  for (const auto& [count, names] : scaled)
+    info.dialect.push_back(count + ": " + first_names(names));
+  warn_of_unused(info.channels, options, warnings);
   take_grid(known, info);
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);

@@ -24,14 +24,23 @@ struct ReadOptions {
       names;  ///< new names of the channels read, in order; empty = as in the log
   std::vector<std::string>
       units;  ///< units of the channels read, in order, or one for all; empty = as in the log
+  std::vector<std::string>
+      channel_scale;  ///< "gx=1/16.4", "gyro*=0.05": factors of channels, by name or pattern; the last that fits wins
+  std::vector<std::string> channel_unit;  ///< "gx=deg/s": units of channels, likewise
+  std::vector<std::string>
+      where;  ///< "sensor=Gyroscope": only rows with this in that column (CSV); all of them must hold
+  std::string group_by;  ///< a column whose values become channels of their own (CSV); "" = none
+  std::string date_order =
+      "auto";                    ///< "auto", "day", "month": which stands first in 05/01/2024 (CSV)
   std::optional<double> from_s;  ///< first instant to use, seconds after the first stamp
   std::optional<double> to_s;    ///< first instant not to use
   std::optional<double>
       rate_hz;  ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
   std::string time_column =
       "auto";  ///< "auto", "none", a name, or c0-style position among all columns
-  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns"
+  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns", "100us"
   std::string format = "auto";     ///< "auto" or a name of the table of formats
+  std::string preset;  ///< which instrument wrote a .imu file, which does not say: "IMAR", "LN200"…
   std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character
   std::string decimal = "auto";    ///< "auto", "point", "comma"
   std::string header = "auto";     ///< "auto", "yes", "no"

@@ -9,7 +9,8 @@ constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
 constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"utf-8"}, {"latin1"}};
 constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
-constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}};
+constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}};
+constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}};
 
 // auto and the names of the table of formats.
 const std::vector<Word>& format_choices() {
@@ -54,6 +55,23 @@ const Fields<ReadOptions>& reading_fields() {
           "names", {.meaning = "new names of the channels", .otherwise = "as in the log"}),
       field<&ReadOptions::units>(
           "units", {.meaning = "of the channels, or one for all", .otherwise = "as in the log"}),
+      field<&ReadOptions::channel_scale>(
+          "channel_scale",
+          {.meaning = "factors of channels, NAME=1/16.4, by name or pattern", .otherwise = "none"}),
+      field<&ReadOptions::channel_unit>(
+          "channel_unit",
+          {.meaning = "units of channels, NAME=UNIT, by name or pattern",
+           .otherwise = "as in the log"}),
+      field<&ReadOptions::where>(
+          "where", {.meaning = "COLUMN=VALUE: only rows with it (CSV)", .otherwise = "all rows"}),
+      field<&ReadOptions::group_by>(
+          "group_by",
+          {.meaning = "column whose values become channels of their own (CSV)",
+           .otherwise = "none"}),
+      field<&ReadOptions::date_order>("date_order",
+                                      {.words = kDateOrders,
+                                       .meaning = "number of a date that stands first (CSV)",
+                                       .otherwise = "auto"}),
       field<&ReadOptions::time_column>(
           "time_column", {.meaning = "auto, none, a name or c0", .otherwise = "auto"}),
       field<&ReadOptions::time_unit>(
@@ -62,6 +80,9 @@ const Fields<ReadOptions>& reading_fields() {
           "skip_rows", {.meaning = "lines in front of the header (CSV)", .otherwise = "0"}),
       field<&ReadOptions::format>(
           "format", {.words = format_choices(), .meaning = "of the file", .otherwise = "auto"}),
+      field<&ReadOptions::preset>(
+          "preset",
+          {.meaning = "which instrument wrote a .imu file, as LN200", .otherwise = "none"}),
       field<&ReadOptions::from_s>("from_s",
                                   {.unit = "s",
                                    .range = kNotNegative,

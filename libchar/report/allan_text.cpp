@@ -14,28 +14,50 @@ namespace libchar {
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
   std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n";
   for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c)
-    for (const AllanPoint& p : curves[c].points)
+    for (const AllanPoint& p : curves[c].points) {
+      const bool stated = !deviation_row(curves[c].type).without_interval();
+      const auto or_empty = [&](double value) { return stated ? shortest(value) : ""; };
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
                           csv_cell(channels[c].name),
                           csv_cell(channels[c].unit),
                           shortest(p.tau_s),
                           shortest(p.deviation),
-                          shortest(p.ci68.low),
-                          shortest(p.ci68.high),
-                          shortest(p.ci95.low),
-                          shortest(p.ci95.high),
-                          shortest(p.edf),
+                          or_empty(p.ci68.low),
+                          or_empty(p.ci68.high),
+                          or_empty(p.ci95.low),
+                          or_empty(p.ci95.high),
+                          or_empty(p.edf),
                           p.terms,
                           name_of(curves[c].type));
+    }
   return text;
 }
 
+namespace {
+
+/// In the order in which they come.
+std::vector<DeviationType> types_of(const std::vector<AllanCurve>& curves) {
+  std::vector<DeviationType> types;
+  for (const AllanCurve& curve : curves)
+    if (std::find(types.begin(), types.end(), curve.type) == types.end())
+      types.push_back(curve.type);
+  return types;
+}
+
+}  // namespace
+
 Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
   Json out = json_frame("allan");
-  out["type"] = name_of(curves.empty() ? DeviationType::oadev : curves[0].type);
+  const std::vector<DeviationType> types = types_of(curves);
+  out["type"] = name_of(types.empty() ? DeviationType::oadev : types[0]);
+  if (types.size() > 1) {
+    out["types"] = Json::array();
+    for (const DeviationType type : types) out["types"].push_back(name_of(type));
+  }
   out["channels"] = Json::array();
   for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
     out["channels"].push_back(allan_channel_json(channels[i], curves[i], nullptr));
+    if (types.size() > 1) out["channels"].back()["type"] = name_of(curves[i].type);
   }
   return out;
 }

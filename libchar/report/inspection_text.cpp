@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "libchar/core/decimal.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
+#include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
@@ -23,7 +25,9 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
   const double noise = q.standard_deviation;
   const bool constant = q.samples > 1 && q.minimum == q.maximum;
   return {printable(channel.name, 40),
-          channel.unit.empty() ? "-" : printable(channel.unit, 20),
+          channel.unit.empty()          ? "-"
+          : dimensionless(channel.unit) ? ""
+                                        : printable(channel.unit, 20),
           std::to_string(q.missing),
           beside_noise(q.mean, noise),
           constant                             ? "constant"
@@ -64,15 +68,90 @@ std::string some_fields(const LogTopic& topic) {
   return text;
 }
 
+std::vector<std::string> topic_row(const LogTopic& topic) {
+  return {printable(topic.name, 60),
+          topic.type.empty() ? "-" : printable(topic.type, 40),
+          std::to_string(topic.rows),
+          topic.rate_hz > 0 ? significant(topic.rate_hz, 4) + " Hz" : "-",
+          some_fields(topic)};
+}
+
+// What sensors write first, what cannot be read last.
 std::string topic_table(const LogInfo& info, std::size_t width) {
+  const auto rank = [](const LogTopic& topic) {
+    return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1;
+  };
   std::vector<std::vector<std::string>> rows = {{"topic", "type", "rows", "rate", "fields"}};
-  for (const LogTopic& topic : info.topics)
-    rows.push_back({printable(topic.name, 60),
-                    topic.type.empty() ? "-" : printable(topic.type, 40),
-                    std::to_string(topic.rows),
-                    topic.rate_hz > 0 ? significant(topic.rate_hz, 4) + " Hz" : "-",
-                    some_fields(topic)});
+  for (const int wanted : {0, 1, 2})
+    for (const LogTopic& topic : info.topics)
+      if (rank(topic) == wanted) rows.push_back(topic_row(topic));
   return text_table(rows, "  ", true, width);
+}
+
+// A remark as words and the numbers between them.
+struct RemarkParts {
+  std::vector<std::string> words, numbers;
+};
+
+RemarkParts parts_of(const std::string& remark) {
+  RemarkParts out{{""}, {}};
+  for (std::size_t i = 0; i < remark.size();) {
+    std::size_t end = i;
+    while (end < remark.size() &&
+           std::string_view("0123456789.+-e").find(remark[end]) != std::string_view::npos)
+      ++end;
+    std::string number = remark.substr(i, end - i);
+    while (!number.empty() && !parse_double(number)) number.pop_back();
+    if (number.empty()) {
+      out.words.back() += remark[i++];
+      continue;
+    }
+    out.numbers.push_back(number);
+    out.words.emplace_back();
+    i += number.size();
+  }
+  return out;
+}
+
+// The same remark on several channels, its numbers as ranges.
+struct RemarkGroup {
+  std::vector<std::string> channels;
+  std::vector<std::string> words, least, most;
+
+  void add(const std::string& channel, const RemarkParts& parts) {
+    channels.push_back(channel);
+    for (std::size_t k = 0; k < parts.numbers.size(); ++k) {
+      const double value = *parse_double(parts.numbers[k]);
+      if (value < *parse_double(least[k])) least[k] = parts.numbers[k];
+      if (value > *parse_double(most[k])) most[k] = parts.numbers[k];
+    }
+  }
+  std::string line() const {
+    std::string text = "  " + first_names(channels) + ": " + words[0];
+    for (std::size_t k = 0; k < least.size(); ++k)
+      text += (least[k] == most[k] ? least[k] : least[k] + "…" + most[k]) + words[k + 1];
+    return text + "\n";
+  }
+};
+
+// One line a kind of remark, not one a channel.
+std::string remarks(const Inspection& inspection) {
+  std::vector<RemarkGroup> groups;
+  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
+    for (const std::string& suggestion : inspection.quality[c].suggestions) {
+      const RemarkParts parts = parts_of(printable(suggestion));
+      const auto known = std::find_if(groups.begin(), groups.end(), [&](const RemarkGroup& group) {
+        return group.words == parts.words;
+      });
+      RemarkGroup& group =
+          known != groups.end()
+              ? *known
+              : groups.emplace_back(RemarkGroup{{}, parts.words, parts.numbers, parts.numbers});
+      group.add(printable(inspection.info.channels[c].name, 40), parts);
+    }
+  std::string text;
+  for (const RemarkGroup& group : groups) text += group.line();
+  return text;
 }
 
 }  // namespace
@@ -89,11 +168,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   for (const Warning& warning : info.warnings.list())
     text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
   text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
-  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    for (const std::string& suggestion : inspection.quality[c].suggestions)
-      text +=
-          fmt::format("  {}: {}\n", printable(info.channels[c].name, 40), printable(suggestion));
-  return text;
+  return text + remarks(inspection);
 }
 
 }  // namespace libchar

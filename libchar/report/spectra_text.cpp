@@ -61,6 +61,7 @@ Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options) {
   document["sides"] = name_of(options.spectrum.sides);
   document["scaling"] = name_of(options.spectrum.scaling);
   document["window"] = name_of(options.spectrum.window);
+  if (options.average == SegmentAverage::median) document["average"] = name_of(options.average);
   document["overlap"] = options.spectrum.overlap;
   document["detrend"] = name_of(options.spectrum.detrend);
   document["rate_hz"] = spectra.log.time.rate_hz;

@@ -21,6 +21,9 @@ IMU = "imu.csv"
 RUNS = [
     ["inspect", IMU], ["inspect", IMU, "dirty.csv"], ["inspect", "noisy.npy", "--rate", "10"],
     ["allan", IMU], ["allan", IMU, "-c", "gyro_z", "--type", "mdev", "--taus", "dense"], ["allan", IMU, "--data", "phase"],
+    ["allan", IMU, "--type", "oadev,mtotdev,mtie", "--taus", "1s,10s"], ["allan", IMU, "--dynamic", "100s,300s"],
+    ["psd", IMU, "--coherence", "gyro_z,accel_z", "--segment", "1000"], ["psd", IMU, "--average", "median", "--segment", "1000"],
+    ["psd", IMU, "--spectrogram", "100s", "--overlap", "0"],
     ["psd", IMU], ["psd", IMU, "--lines", "--sides", "two", "--scaling", "lsd"], ["psd", IMU, "--log-bins", "30", "--lines"],
     ["fit", IMU], ["fit", IMU, "--terms", "N,B,K,R,quantization", "--still", "10..500"], ["fit", "curve.csv", "--curve", "allan", "--duration", "600"],
     ["fit", "curve.csv", "--curve", "psd"], ["fit", IMU, "--data", "phase"],
@@ -33,6 +36,7 @@ RUNS = [
     ["model", "report/gyro_z.sensor.yaml", "--to", "matlab", "--axes", "z"],
     ["simulate", "report/gyro_z.sensor.yaml", "--devices", "3", "--duration", "2min", "--truth", "sine,amplitude=5,frequency_hz=0.01", "--fault",
      "gyro_z2:bias=0.3@20..60", "-o", "array.csv"],
+    ["allan", "array.csv", "--hat", "-c", "gyro*"],
     ["simulate", "report/gyro_z.sensor.yaml", "--duration", "2min", "--no-scene", "-o", "one.f64"],
     ["replay", "array.csv", "--sensors", "gyro*", "--reference", "truth", "--learning", "0..60", "-o", "replay", "--write-scene", "said.yaml"],
     ["replay", "array.scene.yaml", "-o", "replay-scene", "--no-timing"],

@@ -118,7 +118,7 @@ TEST_CASE("a table cut to a width says the same numbers") {
   CHECK(wide.out == test::run({"fit", bench.log}).out);  // a pipe has any width
 }
 
-TEST_CASE("--quiet: nothing but errors where the results stand in files") {
+TEST_CASE("quiet: nothing but errors where the results stand in files") {
   const TerminalBench bench;
   const std::vector<std::vector<std::string>> commands = {
       {"characterize", bench.log, "-o", bench.path("report")},

@@ -147,6 +147,11 @@ def seeds(program):
     for path in files(KNOWN / "npy", ".npy") + files(ROOT / "fixtures" / "npy", ".npy"):
         for piece in cut(path.read_bytes(), generator):
             yield "npy", bytes([generator.randrange(256)]) + piece
+    for target, *ends in (("npz", ".npz"), ("matlab", ".mat"), ("imu", ".imu"), ("hdf5", ".h5", ".mat")):
+        for path in files(ROOT / "fixtures" / "arrays", *ends):
+            for piece in cut(path.read_bytes(), generator):
+                yield target, bytes([generator.randrange(16) * 16] * (2 if target == "imu" else 1)) + piece
+                yield target, bytes([generator.randrange(256)] * (2 if target == "imu" else 1)) + piece
     for path in files(KNOWN / "raw", ".json"):
         data = path.with_suffix("")
         for piece in cut(data.read_bytes() if data.exists() else b"", generator):

@@ -58,7 +58,7 @@ TEST_CASE("bag: topics are listed by the index, or by a look at everything") {
   }
 }
 
-TEST_CASE("bag: any message by its definition; stamps of 0 give way to the time of recording") {
+TEST_CASE("bag: any message by its definition, stamps of 0 give way to the time of recording") {
   const test::Rows load =
       test::read_rows("bag", test::ros("ros1_lz4.bag"), test::of_topic("/load"));
   CHECK(test::channel_names(load.info) ==
@@ -91,7 +91,7 @@ TEST_CASE("bag: cut at every 1000th byte, whole messages are read and the loss i
     test::check_cuts("bag", name, "/imu/data_raw");
 }
 
-TEST_CASE("bag: a broken chunk is left out and said; other versions are refused") {
+TEST_CASE("bag: a broken chunk is left out and said, other versions are refused") {
   const test::TemporaryFolder folder;
   for (const char* name : {"ros1_lz4.bag", "ros1_bz2.bag"}) {
     INFO(name);

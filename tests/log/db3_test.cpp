@@ -21,7 +21,7 @@ TEST_CASE("db3: an IMU of Humble by the definitions that the program brings") {
   CHECK(level.time_ns[39] == test::kRosStart + 975000000 + 1000000);
 }
 
-TEST_CASE("db3: a type that nobody defines is said; since Iron the file defines it") {
+TEST_CASE("db3: a type that nobody defines is said, since Iron the file defines it") {
   const LogInfo humble = log_listing(test::ros("humble.db3").string(), {});
   REQUIRE(humble.topics.size() == 4);
   for (const LogTopic& topic : humble.topics) {

@@ -192,7 +192,7 @@ TEST_CASE("MCAP: of a cut file every whole message in front of the cut is read")
   }
 }
 
-TEST_CASE("MCAP: a broken chunk is left out, said and counted; a changed byte outside too") {
+TEST_CASE("MCAP: a broken chunk is left out, said and counted, a changed byte outside too") {
   const test::TemporaryFolder folder;
   for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap"}) {
     INFO(name);

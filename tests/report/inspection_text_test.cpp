@@ -41,3 +41,16 @@ TEST_CASE("an inspection in text: how it was read, guesses, repairs, a line a ch
   CHECK_THAT(squeezed(text), Contains("still - 0 0 constant "));
   CHECK_THAT(text, Contains("  still: is it connected?\n"));
 }
+
+TEST_CASE("one line a kind of remark: the channels together, their numbers as ranges") {
+  Inspection inspection;
+  inspection.info.file = "log.csv";
+  inspection.info.channels = {{"gx", "deg/s", false}, {"gy", "deg/s", false}, {"n", "1", false}};
+  inspection.quality.resize(3);
+  inspection.quality[0].suggestions = {"kurtosis 12.5 (3 for noise)"};
+  inspection.quality[1].suggestions = {"kurtosis 1e3 (3 for noise)", "is it connected?"};
+  const std::string text = inspection_text(inspection);
+  CHECK_THAT(text, Contains("  gx, gy: kurtosis 12.5…1e3 (3 for noise)\n"));
+  CHECK_THAT(text, Contains("  gy: is it connected?\n"));
+  CHECK_THAT(squeezed(text), Contains("n 0 "));  // the unit of numbers without one is not printed
+}

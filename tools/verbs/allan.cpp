@@ -5,12 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/log_devices.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/allan_text.hpp"
+#include "libchar/report/devices_text.hpp"
 #include "reading_options.hpp"
+#include "terminal_plot.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -20,12 +24,75 @@ using namespace libchar;
 
 struct AllanVerb {
   std::string log, output;
-  bool json = false, force = false;
+  bool json = false, force = false, plot = false;
+  bool hat = false, hat_of_differences = false;
+  std::optional<DynamicTimes> dynamic;
   AnalysisOptions analysis;
 };
 
+// "1h" or "1h,10min".
+DynamicTimes read_dynamic(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  DynamicTimes times;
+  times.window_s = parse_duration_s(text.substr(0, comma));
+  if (comma != std::string::npos) times.step_s = parse_duration_s(text.substr(comma + 1));
+  return times;
+}
+
+LogAllanOptions devices_options(const AllanVerb& verb) {
+  const CharacterizeOptions all = finish(verb.analysis);
+  if (!all.more_types.empty())
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "--type",
+                 "one statistic at a time goes with --hat, --hat-pairs and --dynamic",
+                 std::string(name_of(all.more_types[0])),
+                 ""});
+  LogAllanOptions options{all.reading, all.data, all.nominal_frequency, all.allan};
+  if (all.full_overlap) options.allan.work_a_point = 0;
+  return options;
+}
+
+void write_devices(Session& session,
+                   const AllanVerb& verb,
+                   const LogInfo& log,
+                   const std::string& format,
+                   const Json& json,
+                   const std::string& csv) {
+  report_warnings(session, log);
+  std::string text = csv;
+  if (verb.json) {
+    Json document = document_head(session, format, {&log});
+    document.update(json);
+    text = dump_json(document);
+  }
+  if (verb.output.empty()) return print(text);
+  write_whole_file(verb.output, text, verb.force);
+}
+
+void run_hat(Session& session, const AllanVerb& verb) {
+  const LogHat hat =
+      log_cornered_hat(verb.log, devices_options(verb), verb.hat_of_differences, session.terminal);
+  session.terminal.clear();
+  for (const std::string& note : hat.hat.notes) session.terminal.note(note);
+  write_devices(session, verb, hat.log, "cornered-hat", hat_json(hat), hat_csv(hat));
+}
+
+void run_dynamic(Session& session, const AllanVerb& verb) {
+  const LogDynamic dynamic =
+      log_dynamic_deviation(verb.log, devices_options(verb), *verb.dynamic, session.terminal);
+  session.terminal.clear();
+  for (std::size_t c = 0; c < dynamic.channels.size(); ++c)
+    for (const std::string& note : dynamic.deviations[c].notes)
+      session.terminal.note(printable(dynamic.channels[c].name) + ": " + note);
+  write_devices(
+      session, verb, dynamic.log, "dynamic-allan", dynamic_json(dynamic), dynamic_csv(dynamic));
+}
+
 void run_allan(Session& session, const AllanVerb& verb) {
   foresee_output(verb.output, {verb.log}, verb.force);
+  if (verb.hat || verb.hat_of_differences) return run_hat(session, verb);
+  if (verb.dynamic) return run_dynamic(session, verb);
   CharacterizeOptions options = finish(verb.analysis);
   options.wanted = {.quality = false, .allan = true, .spectrum = false, .fit = false};
   options.fit.second_opinion = false;
@@ -36,13 +103,19 @@ void run_allan(Session& session, const AllanVerb& verb) {
   std::vector<AllanCurve> curves;
   bool any = false;
   for (const ChannelResult& c : result.channels) {
-    any = any || !c.allan.points.empty();
-    channels.push_back(c.channel);
-    curves.push_back(c.allan);
-    for (const std::string& problem : c.problems)
-      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
-    for (const std::string& note : c.allan.notes)
-      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(note)));
+    const auto note = [&](const std::string& text) {
+      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(text)));
+    };
+    const auto take = [&](const AllanCurve& curve) {
+      any = any || !curve.points.empty();
+      channels.push_back(c.channel);
+      curves.push_back(curve);
+      const std::string which = c.more_allan.empty() ? "" : std::string(name_of(curve.type)) + ": ";
+      for (const std::string& text : curve.notes) note(which + text);
+    };
+    for (const std::string& problem : c.problems) note(problem);
+    take(c.allan);
+    for (const AllanCurve& curve : c.more_allan) take(curve);
   }
   if (!any)
     throw Error({ErrorKind::numeric,
@@ -54,7 +127,12 @@ void run_allan(Session& session, const AllanVerb& verb) {
                      ? ""
                      : "the sampling rate is not known: a log without time stamps needs --rate"});
   std::string text;
-  if (verb.json) {
+  if (verb.plot) {
+    std::vector<SourceCurve> drawn;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      drawn.push_back(source_curve(channels[c].name, channels[c].unit, curves[c]));
+    text = terminal_plots(drawn);
+  } else if (verb.json) {
     Json document = document_head(session, "allan", {&result.log});
     document.update(allan_json(channels, curves));
     text = dump_json(document);
@@ -71,12 +149,33 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
       .add_text(
           "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
-      .value_name("FILE");
+  options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
-  options.add_flag("--json", verb->json, "one JSON document instead of CSV");
+  const Option json = options.add_flag("--json", verb->json, "one JSON document instead of CSV");
+  const Option hat = options.add_flag("--hat",
+                                      verb->hat,
+                                      "single devices from the differences of three or more "
+                                      "channels that measure the same at once: "
+                                      "the three-cornered hat, or any number of corners");
+  Option pairs = options.add_flag(
+      "--hat-pairs",
+      verb->hat_of_differences,
+      "the same where three channels are differences a - b, b - c, c - a, each measured by itself");
+  pairs.excludes(hat);
+  Option dynamic = options.add_parsed(
+      "--dynamic",
+      "WINDOW[,STEP]",
+      [verb = verb.get()](const std::string& text) { verb->dynamic = read_dynamic(text); },
+      "a curve for every window of this length, as it moves on by STEP (default: half of it)");
+  options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV")
+      .excludes(json)
+      .excludes(hat)
+      .excludes(pairs)
+      .excludes(dynamic);
+  dynamic.excludes(hat).excludes(pairs);
   add_reading_options(options, session, verb->analysis.options.reading);
   add_data_options(options, verb->analysis);
+  verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
   return [&session, verb] { run_allan(session, *verb); };
 }
@@ -86,7 +185,7 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
 VerbEntry verb_allan() {
   return {3,
           "allan",
-          "Allan deviation of every channel, with chi-square intervals, as CSV or JSON",
+          "Allan deviation and its relatives of every channel, with intervals, as CSV or JSON",
           allan_options,
           {{"a few averaging times of one channel",
             "sensorchar allan imu.csv -c gyro_z --taus 0.1s,1s,10s"},

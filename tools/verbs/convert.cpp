@@ -35,7 +35,17 @@ std::uint64_t bytes_of(const std::string& file) {
   return stream ? static_cast<std::uint64_t>(std::streamoff{stream.tellg()}) : 0;
 }
 
-void run_convert(Session& session, const ConvertVerb& verb) {
+// "-" is standard output, and CSV where nothing else is asked for.
+libchar::WriteOptions options_for(const ConvertVerb& verb) {
+  libchar::WriteOptions options = write_options(verb.writing);
+  if (verb.output == "-" && options.format == "auto") options.format = "csv";
+  return options;
+}
+
+void run_convert(Session& session, const ConvertVerb& given) {
+  ConvertVerb verb = given;
+  verb.writing.options = options_for(given);
+  if (verb.output == "-") verb.output = "/dev/stdout";
   const libchar::Conversion result =
       libchar::convert_log(verb.log,
                            verb.output,

@@ -191,8 +191,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   options.add_duration("--duration",
                        verb->duration_s,
                        "length of the record behind a --curve allan: gives honest intervals");
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
-      .value_name("FILE");
+  options.add_document_output(verb->output);
   options
       .add_text("--models",
                 verb->models,

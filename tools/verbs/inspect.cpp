@@ -37,9 +37,7 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
                        info.rows == 1 ? "gives" : "give");
   if (info.time.rate_hz <= 0)
     return fmt::format(
-        "  next: say the sampling rate, such as sensorchar inspect {}{} --rate 200Hz\n",
-        log,
-        flags);
+        "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
   const std::string folder = std::filesystem::path(info.file).stem().string();
   return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
                      log,

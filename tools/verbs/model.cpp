@@ -211,8 +211,7 @@ std::function<void()> model_options(VerbOptions& options, Session& session) {
       .value_name("NAME")
       .known_words(target_words());
   options.add_flag("--list", verb->list, "the targets, each with its convention");
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
-      .value_name("FILE");
+  options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
   options.add_flag("--json", verb->json, "one JSON document instead of text");
   add_choices(options, *verb);

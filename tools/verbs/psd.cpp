@@ -1,14 +1,21 @@
 // psd LOG: power spectra of every channel as a table or JSON, or the lines in them.
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/log_pair_spectra.hpp"
 #include "libchar/characterize/log_spectra.hpp"
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
+#include "libchar/report/pair_spectra_text.hpp"
 #include "libchar/report/spectra_text.hpp"
 #include "reading_options.hpp"
+#include "terminal_plot.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -19,17 +26,81 @@ using namespace libchar;
 struct PsdVerb {
   std::string log, output;
   LogSpectraOptions options;
-  bool json = false, force = false;
+  bool json = false, force = false, plot = false;
+  std::vector<std::string> cross, coherence;
+  std::string spectrogram;
 };
+
+void write_spectra(Session& session,
+                   const PsdVerb& verb,
+                   const LogInfo& log,
+                   const std::string& format,
+                   const Json& json,
+                   const std::string& csv) {
+  report_warnings(session, log);
+  std::string text = csv;
+  if (verb.json) {
+    Json document = document_head(session, format, {&log});
+    document.update(json);
+    text = dump_json(document);
+  }
+  if (verb.output.empty()) return print(text);
+  write_whole_file(verb.output, text, verb.force);
+}
+
+void run_cross(Session& session, const PsdVerb& verb) {
+  const bool density = !verb.cross.empty();
+  const std::vector<std::string>& pair = density ? verb.cross : verb.coherence;
+  if (pair.size() != 2)
+    throw Error({ErrorKind::usage,
+                 "E0873",
+                 density ? "--cross" : "--coherence",
+                 "two channels were expected",
+                 std::to_string(pair.size()),
+                 "for example --coherence gyro_x,gyro_y"});
+  const LogCrossSpectrum cross =
+      log_cross_spectrum(verb.log, pair[0], pair[1], verb.options, session.terminal);
+  session.terminal.clear();
+  for (const std::string& note : cross.cross.notes) session.terminal.note(note);
+  session.terminal.note(fmt::format(
+      "coherence of independent channels stays below {} with 95 % ({} segments, as {} independent)",
+      significant(cross.cross.significant_coherence, 3),
+      cross.cross.segments,
+      significant(cross.cross.effective_segments, 3)));
+  write_spectra(session,
+                verb,
+                cross.log,
+                "cross-spectrum",
+                cross_json(cross),
+                density ? cross_csv(cross) : coherence_csv(cross));
+}
+
+void run_spectrogram(Session& session, const PsdVerb& verb) {
+  const LogSpectrograms spectrograms = log_spectrograms(verb.log, verb.options, session.terminal);
+  session.terminal.clear();
+  write_spectra(session,
+                verb,
+                spectrograms.log,
+                "spectrogram",
+                spectrograms_json(spectrograms),
+                spectrograms_csv(spectrograms));
+}
 
 void run_psd(Session& session, const PsdVerb& verb) {
   foresee_output(verb.output, {verb.log}, verb.force);
+  if (!verb.cross.empty() || !verb.coherence.empty()) return run_cross(session, verb);
+  if (!verb.spectrogram.empty()) return run_spectrogram(session, verb);
   const LogSpectra spectra = log_spectra(verb.log, verb.options, session.terminal);
   session.terminal.clear();
   for (const std::string& note : spectra.notes) session.terminal.note(note);
   report_warnings(session, spectra.log);
   std::string text;
-  if (verb.json) {
+  if (verb.plot) {
+    std::vector<SourceCurve> drawn;
+    for (const ChannelSpectrum& c : spectra.channels)
+      drawn.push_back(source_curve(c.channel.name, c.channel.unit, c.spectrum));
+    text = terminal_plots(drawn);
+  } else if (verb.json) {
     Json document = document_head(session, "spectrum", {&spectra.log});
     document.update(spectra_json(spectra, verb.options));
     text = dump_json(document);
@@ -46,14 +117,48 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       .add_text(
           "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
-      .value_name("FILE");
+  options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
-  options.add_flag(
+  const Option json = options.add_flag(
       "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
+  Option plot = options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV");
+  plot.excludes(json);
   options.add_flag(
       "--lines", verb->options.lines, "list the spectral lines (with --json: beside the spectra)");
   add_spectrum_options(options, verb->options.spectrum, verb->options.segment_s);
+  options.add_enum("--average",
+                   verb->options.average,
+                   "mean of the segments, or their median without its bias: bursts do not count "
+                   "(default: mean)");
+  const Option cross = options
+                           .add_texts("--cross",
+                                      verb->cross,
+                                      "cross spectrum of two channels A,B: density, phase of B "
+                                      "less that of A, coherence")
+                           .value_name("A,B")
+                           .separated_by_commas()
+                           .one_value_each();
+  Option coherence = options
+                         .add_texts("--coherence",
+                                    verb->coherence,
+                                    "coherence of two channels A,B, and where it is significant")
+                         .value_name("A,B")
+                         .separated_by_commas()
+                         .one_value_each();
+  coherence.excludes(cross);
+  plot.excludes(cross).excludes(coherence);
+  options
+      .add_parsed(
+          "--spectrogram",
+          "N|TIME",
+          [verb = verb.get()](const std::string& text) {
+            verb->spectrogram = text;
+            read_segment(text, verb->options.spectrum, verb->options.segment_s);
+          },
+          "the spectrum of every segment of this length by itself, instead of their average")
+      .excludes(cross)
+      .excludes(coherence)
+      .excludes(plot);
   options.add_count(
       "--log-bins",
       verb->options.bins,
@@ -69,7 +174,7 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
 VerbEntry verb_psd() {
   return {4,
           "psd",
-          "power spectrum of every channel (Welch), as CSV or JSON",
+          "power spectra (Welch), cross spectra, coherence, spectrograms, as CSV or JSON",
           psd_options,
           {{"a spectrum of segments of 20 s, into a table",
             "sensorchar psd imu.csv -c gyro_z --segment 20s -o psd.csv"},

@@ -25,6 +25,106 @@ Exact difference(const std::vector<Exact>& x, std::size_t i, std::size_t m, int 
   return difference(x, i + m, m, 2) - difference(x, i, m, 2);
 }
 
+/// Of `points` values of a series from i on, reflected at both ends after its trend is out: mean square of second differences of means of m.
+Exact reflected_window(const std::vector<Exact>& series, std::size_t i, std::size_t m) {
+  const std::size_t points = 3 * m, half = points / 2;
+  Exact low = 0, high = 0;
+  for (std::size_t k = 0; k < half; ++k) {
+    low += series[i + k] - series[i];
+    high += series[i + points - 1 - k] - series[i];
+  }
+  const Exact slope = (high - low) / static_cast<Exact>(half) / static_cast<Exact>(points - half);
+  std::vector<Exact> e(3 * points);
+  for (std::size_t k = 0; k < points; ++k) {
+    const Exact value = (series[i + k] - series[i]) - slope * static_cast<Exact>(k);
+    e[points + k] = e[points - 1 - k] = e[3 * points - 1 - k] = value;
+  }
+  Exact sum = 0;
+  for (std::size_t j = 0; j < 6 * m; ++j) {
+    Exact term = 0;
+    for (std::size_t k = j; k < j + m; ++k) term += (e[k + 2 * m] - e[k + m]) - (e[k + m] - e[k]);
+    sum += term * term;
+  }
+  return sum / static_cast<Exact>(6 * m) / static_cast<Exact>(m * m);
+}
+
+Exact exact_extended(const std::vector<Exact>& x, const DeviationRow& row, std::uint64_t m) {
+  std::vector<Exact> series = x;
+  if (!row.of_sum) {
+    for (std::size_t i = 0; i + 1 < x.size(); ++i) series[i] = x[i + 1] - x[i];
+    series.pop_back();
+    if (m == 1) {
+      Exact sum = 0;
+      for (std::size_t i = 0; i + 3 < x.size(); ++i)
+        sum += difference(x, i, 1, 3) * difference(x, i, 1, 3);
+      return std::sqrt(sum / static_cast<Exact>(x.size() - 3) / 6);
+    }
+  }
+  Exact sum = 0;
+  const std::size_t starts = series.size() - 3 * m + 1;
+  for (std::size_t i = 0; i < starts; ++i) sum += reflected_window(series, i, m);
+  const Exact v = sum / static_cast<Exact>(starts) / Exact(row.divisor);
+  return std::sqrt(v) / (row.of_sum ? Exact(m) : 1);
+}
+
+Exact exact_parabolic(const std::vector<Exact>& x, std::uint64_t m) {
+  Exact sum = 0;
+  const std::size_t terms = x.size() - 2 * m;
+  for (std::size_t i = 0; i < terms; ++i) {
+    Exact term = 0;
+    for (std::size_t k = 0; k < m; ++k)
+      term += (Exact(m - 1) / 2 - static_cast<Exact>(k)) * (x[i + k] - x[i + m + k]);
+    if (m == 1) term = difference(x, i, 1, 2) / 12;  // the Allan deviation, by convention
+    sum += term * term;
+  }
+  const Exact factor(m);
+  return std::sqrt(72 * sum / static_cast<Exact>(terms)) / (factor * factor * factor);
+}
+
+Exact exact_theo1(const std::vector<Exact>& x, std::uint64_t m) {
+  Exact sum = 0;
+  const std::size_t half = m / 2, starts = x.size() - m;
+  for (std::size_t c = half; c < half + starts; ++c)
+    for (std::size_t d = 0; d < half; ++d) {
+      const Exact term = (x[c - half] - x[c - d]) + (x[c + half] - x[c + d]);
+      sum += term * term / static_cast<Exact>(half - d);
+    }
+  return std::sqrt(sum / (Exact(0.75) * static_cast<Exact>(starts))) / Exact(m);
+}
+
+Exact exact_theo(const std::vector<Exact>& x, DeviationType type, std::uint64_t m) {
+  const auto allan = [&](std::size_t factor) {
+    Exact sum = 0;
+    const std::size_t terms = x.size() - 2 * factor;
+    for (std::size_t i = 0; i < terms; ++i)
+      sum += difference(x, i, factor, 2) * difference(x, i, factor, 2);
+    return std::sqrt(sum / static_cast<Exact>(terms) / 2) / static_cast<Exact>(factor);
+  };
+  if (type == DeviationType::theoh && m <= (x.size() - 1) / 5) return allan(m);
+  if (type == DeviationType::theo1) return exact_theo1(x, m);
+  Exact ratios = 0;
+  const std::size_t last = x.size() / 6 - 3;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Exact theo = exact_theo1(x, 12 + 4 * i), plain = allan(9 + 3 * i);
+    ratios += theo > 0 ? plain / theo * (plain / theo) : 1;
+  }
+  return exact_theo1(x, m) * std::sqrt(ratios / static_cast<Exact>(last + 1));
+}
+
+/// The offset counts here.
+Exact exact_interval(std::span<const double> y, DeviationType type, std::uint64_t m) {
+  std::vector<Exact> x{0};
+  for (const double v : y) x.push_back(x.back() + Exact(v));
+  Exact most = 0, squares = 0;
+  for (std::size_t i = 0; i + m < x.size(); ++i) {
+    const auto first = x.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(m) + 1);
+    most = std::max(most, *high - *low);
+    squares += (x[i + m] - x[i]) * (x[i + m] - x[i]);
+  }
+  return type == DeviationType::mtie ? most : std::sqrt(squares / static_cast<Exact>(x.size() - m));
+}
+
 std::vector<Exact> without_mean(std::span<const double> y) {
   Exact sum = 0;
   for (const double v : y) sum += Exact(v) - Exact(y[0]);
@@ -32,6 +132,24 @@ std::vector<Exact> without_mean(std::span<const double> y) {
   for (const double v : y)
     out.push_back((Exact(v) - Exact(y[0])) - sum / static_cast<Exact>(y.size()));
   return out;
+}
+
+Exact exact_of_family(std::span<const double> y,
+                      double dt_s,
+                      const DeviationRow& row,
+                      std::uint64_t m) {
+  const std::vector<Exact> x = phase_of(y, 0);
+  const Exact dt(dt_s);
+  switch (row.family) {
+    case DeviationFamily::parabola:
+      return exact_parabolic(x, m);
+    case DeviationFamily::extended:
+      return exact_extended(x, row, m) * (row.as_time ? Exact(m) * dt / std::sqrt(Exact(3)) : 1);
+    case DeviationFamily::theo:
+      return exact_theo(x, row.type, m);
+    default:
+      return exact_interval(y, row.type, m) * dt;
+  }
 }
 
 }  // namespace
@@ -42,6 +160,7 @@ Exact exact_deviation(std::span<const double> y,
                       std::uint64_t m,
                       std::uint64_t stride) {
   const DeviationRow& row = deviation_row(type);
+  if (row.family != DeviationFamily::differences) return exact_of_family(y, dt_s, row, m);
   const std::size_t reflected = row.reflected ? m - 1 : 0;
   const std::vector<Exact> x = phase_of(y, reflected);
   const std::size_t reach = 2 * m + (row.of_sum ? m - 1 : (row.order - 2) * m);

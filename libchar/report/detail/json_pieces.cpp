@@ -78,6 +78,12 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const M
     out["ci68"].push_back(known ? interval_json(p.ci68) : Json(nullptr));
     out["reliable"].push_back(p.reliable);
   }
+  if (std::any_of(curve.points.begin(), curve.points.end(), [](const AllanPoint& p) {
+        return p.bias != 1;
+      })) {
+    out["bias"] = Json::array();
+    for (const AllanPoint& p : curve.points) out["bias"].push_back(p.bias);
+  }
   if (model != nullptr && !curve.points.empty()) add_model(out, *model);
   out["dt_s"] = curve.dt_s;
   out["samples"] = curve.samples;
