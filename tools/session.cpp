@@ -58,6 +58,23 @@ libchar::Json document_head(const Session& session,
   return document;
 }
 
+void write_document(Session& session,
+                    const libchar::LogInfo& log,
+                    const std::string& format,
+                    const libchar::Json& json,
+                    const std::string& csv,
+                    const DocumentOutput& output) {
+  report_warnings(session, log);
+  std::string text = csv;
+  if (output.json) {
+    libchar::Json document = document_head(session, format, {&log});
+    document.update(json);
+    text = libchar::dump_json(document);
+  }
+  if (output.path.empty()) return print(text);
+  libchar::write_whole_file(output.path, text, output.force);
+}
+
 void print_beside(const Session& session, const std::string& text) {
   if (!session.terminal.quiet()) print_text(text);
 }

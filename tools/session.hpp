@@ -38,6 +38,20 @@ void print_beside(const Session& session, const std::string& text);
 /// What memory that is refused is answered with: what this verb can do about it.
 void set_memory_hint(const Session& session);
 
+/// Where a verb's one document goes, and as what.
+struct DocumentOutput {
+  std::string path;  ///< "" is stdout
+  bool json = false, force = false;
+};
+
+/// The keys of `json` behind the head of a document of this format, or `csv`; the log's warnings are said before.
+void write_document(Session& session,
+                    const libchar::LogInfo& log,
+                    const std::string& format,
+                    const libchar::Json& json,
+                    const std::string& csv,
+                    const DocumentOutput& output);
+
 /// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 

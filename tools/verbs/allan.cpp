@@ -53,29 +53,17 @@ LogAllanOptions devices_options(const AllanVerb& verb) {
   return options;
 }
 
-void write_devices(Session& session,
-                   const AllanVerb& verb,
-                   const LogInfo& log,
-                   const std::string& format,
-                   const Json& json,
-                   const std::string& csv) {
-  report_warnings(session, log);
-  std::string text = csv;
-  if (verb.json) {
-    Json document = document_head(session, format, {&log});
-    document.update(json);
-    text = dump_json(document);
-  }
-  if (verb.output.empty()) return print(text);
-  write_whole_file(verb.output, text, verb.force);
-}
-
 void run_hat(Session& session, const AllanVerb& verb) {
   const LogHat hat =
       log_cornered_hat(verb.log, devices_options(verb), verb.hat_of_differences, session.terminal);
   session.terminal.clear();
   for (const std::string& note : hat.hat.notes) session.terminal.note(note);
-  write_devices(session, verb, hat.log, "cornered-hat", hat_json(hat), hat_csv(hat));
+  write_document(session,
+                 hat.log,
+                 "cornered-hat",
+                 hat_json(hat),
+                 hat_csv(hat),
+                 {verb.output, verb.json, verb.force});
 }
 
 void run_dynamic(Session& session, const AllanVerb& verb) {
@@ -85,8 +73,12 @@ void run_dynamic(Session& session, const AllanVerb& verb) {
   for (std::size_t c = 0; c < dynamic.channels.size(); ++c)
     for (const std::string& note : dynamic.deviations[c].notes)
       session.terminal.note(printable(dynamic.channels[c].name) + ": " + note);
-  write_devices(
-      session, verb, dynamic.log, "dynamic-allan", dynamic_json(dynamic), dynamic_csv(dynamic));
+  write_document(session,
+                 dynamic.log,
+                 "dynamic-allan",
+                 dynamic_json(dynamic),
+                 dynamic_csv(dynamic),
+                 {verb.output, verb.json, verb.force});
 }
 
 void run_allan(Session& session, const AllanVerb& verb) {

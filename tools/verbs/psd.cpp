@@ -31,23 +31,6 @@ struct PsdVerb {
   std::string spectrogram;
 };
 
-void write_spectra(Session& session,
-                   const PsdVerb& verb,
-                   const LogInfo& log,
-                   const std::string& format,
-                   const Json& json,
-                   const std::string& csv) {
-  report_warnings(session, log);
-  std::string text = csv;
-  if (verb.json) {
-    Json document = document_head(session, format, {&log});
-    document.update(json);
-    text = dump_json(document);
-  }
-  if (verb.output.empty()) return print(text);
-  write_whole_file(verb.output, text, verb.force);
-}
-
 void run_cross(Session& session, const PsdVerb& verb) {
   const bool density = !verb.cross.empty();
   const std::vector<std::string>& pair = density ? verb.cross : verb.coherence;
@@ -67,23 +50,23 @@ void run_cross(Session& session, const PsdVerb& verb) {
       significant(cross.cross.significant_coherence, 3),
       cross.cross.segments,
       significant(cross.cross.effective_segments, 3)));
-  write_spectra(session,
-                verb,
-                cross.log,
-                "cross-spectrum",
-                cross_json(cross),
-                density ? cross_csv(cross) : coherence_csv(cross));
+  write_document(session,
+                 cross.log,
+                 "cross-spectrum",
+                 cross_json(cross),
+                 density ? cross_csv(cross) : coherence_csv(cross),
+                 {verb.output, verb.json, verb.force});
 }
 
 void run_spectrogram(Session& session, const PsdVerb& verb) {
   const LogSpectrograms spectrograms = log_spectrograms(verb.log, verb.options, session.terminal);
   session.terminal.clear();
-  write_spectra(session,
-                verb,
-                spectrograms.log,
-                "spectrogram",
-                spectrograms_json(spectrograms),
-                spectrograms_csv(spectrograms));
+  write_document(session,
+                 spectrograms.log,
+                 "spectrogram",
+                 spectrograms_json(spectrograms),
+                 spectrograms_csv(spectrograms),
+                 {verb.output, verb.json, verb.force});
 }
 
 void run_psd(Session& session, const PsdVerb& verb) {

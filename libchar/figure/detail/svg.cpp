@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libchar/core/markup.hpp"
 #include "libchar/figure/detail/drawing.hpp"
 
 namespace libchar {
@@ -19,28 +20,6 @@ std::string number(double value) {
 std::string hex(const Colour& c) {
   const auto part = [](double v) { return static_cast<int>(std::lround(255 * v)); };
   return fmt::format("#{:02x}{:02x}{:02x}", part(c.red), part(c.green), part(c.blue));
-}
-
-// text_runs has made an escape of whatever XML has no place for.
-std::string xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
 }
 
 std::string looks(const DrawnPath& p) {
@@ -108,8 +87,8 @@ std::string svg_text(const DrawnText& t) {
     const std::string size =
         run.raised ? fmt::format(" font-size=\"{}\"", number(kRaisedSize * t.size)) : "";
     out += down.empty() && size.empty()
-               ? xml(run.text)
-               : fmt::format("<tspan{}{}>{}</tspan>", down, size, xml(run.text));
+               ? markup_entities(run.text)
+               : fmt::format("<tspan{}{}>{}</tspan>", down, size, markup_entities(run.text));
   }
   return out + "</text>\n";
 }
@@ -130,7 +109,7 @@ std::string svg_of(const Drawing& drawing) {
       number(drawing.width),
       number(drawing.height),
       kFigureFont,
-      xml(about),
+      markup_entities(about),
       number(f.left),
       number(f.top),
       number(f.right - f.left),

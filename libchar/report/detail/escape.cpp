@@ -2,46 +2,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/markup.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
-namespace {
-
-std::string entities(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string html_text(std::string_view text) {
-  return entities(printable(text));
+  return markup_entities(printable(text));
 }
 
 std::string html_attribute(std::string_view text) {
-  return entities(printable(text));
+  return markup_entities(printable(text));
 }
 
 std::string json_in_script(const Json& document) {
