@@ -113,3 +113,15 @@ TEST_CASE("bag: a broken chunk is left out and said, other versions are refused"
       test::refusal("bag", changed_bag(folder, std::string("#ROSBAG V2.0\n\0\0\0\x80zzzz", 21))),
       Catch::Contains("E0426"));
 }
+
+TEST_CASE("bag: cut in front of its first whole message, where it ends and inside what is said") {
+  const test::TemporaryFolder folder;
+  const std::string bytes = test::slurp(test::ros("ros1_bz2.bag"));
+  CHECK_THAT(
+      test::refusal("bag", changed_bag(folder, bytes.substr(0, 5000))),
+      Catch::Contains("E0426") &&
+          Catch::Contains("holds no whole message: the file ends at byte 5000 inside a chunk"));
+  CHECK_THAT(test::refusal("bag", changed_bag(folder, bytes.substr(0, 12))),
+             Catch::Contains("ends at byte 12, inside the 13 bytes that mark a bag") &&
+                 !Catch::Contains("version"));
+}

@@ -218,3 +218,10 @@ TEST_CASE("DataFlash: a .bin with a sidecar stays raw, one without that is no lo
   options.format = "dataflash";
   CHECK_THROWS_WITH(read_recording(path, options), Catch::Contains("E0485"));
 }
+
+TEST_CASE("DataFlash: cut in front of its first whole message it is told to be cut") {
+  const test::MemoryLog log(std::string_view(test::slurp(bin("copter.bin"))).substr(0, 100));
+  CHECK_THROWS_WITH(read_recording(log.path(), {}),
+                    Catch::Contains("E0426") &&
+                        Catch::Contains("the log ends inside a message: its last 11 bytes"));
+}

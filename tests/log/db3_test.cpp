@@ -74,3 +74,19 @@ TEST_CASE("db3: another database, and a recording that was not closed, are told"
       << std::string("SQLite format 3\0", 16) + std::string(84, '\1');
   CHECK_THAT(test::refusal("db3", path), Catch::Contains("E0446"));
 }
+
+TEST_CASE("db3: cut in front of its first message it is told to be cut, and where") {
+  const std::string bytes = test::slurp(test::ros("humble.db3"));
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "cut.db3";
+  const auto cut_at = [&](std::size_t cut) {
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes.substr(0, cut);
+    return test::refusal("db3", path);
+  };
+  CHECK_THAT(cut_at(0), Catch::Contains("E0446") && Catch::Contains("is empty"));
+  CHECK_THAT(cut_at(50), Catch::Contains("ends at byte 50, inside the header"));
+  CHECK_THAT(cut_at(1000),
+             Catch::Contains("E0446") && Catch::Contains("ends at byte 1000 of 110592"));
+  CHECK_THAT(cut_at(5000), Catch::Contains("E0426") && Catch::Contains("ends at byte 5000 of"));
+  CHECK_THAT(cut_at(17000), Catch::Contains("E0426") && Catch::Contains("ends at byte 17000 of"));
+}

@@ -248,6 +248,7 @@ TEST_CASE("MCAP: what asks for more than there is gets nothing") {
   CHECK_THAT(refused(magic + header + "\5" + std::string(8, '\xff')), Catch::Contains("E0426"));
   CHECK_THAT(refused(magic), Catch::Contains("E0426"));
   CHECK_THAT(refused("MCAP"), Catch::Contains("E0441"));
+  CHECK_THAT(refused("\x89MCA"), Catch::Contains("E0441") && Catch::Contains("ends at byte 4"));
   CHECK_THAT(refused(""), Catch::Contains("E0441"));
 }
 
@@ -266,4 +267,19 @@ TEST_CASE("unpacking stops at what was said, and says what is wrong") {
   CHECK(crc32_of(std::as_bytes(std::span(text))) == 0xcbf43926);  // the check value of CRC-32
   CHECK(crc32_of(std::as_bytes(std::span(text).subspan(4)),
                  crc32_of(std::as_bytes(std::span(text).first(4)))) == 0xcbf43926);
+}
+
+TEST_CASE("MCAP: cut in front of its first whole message, where it ends and inside what is said") {
+  const test::TemporaryFolder folder;
+  const std::string zstd = test::slurp(test::ros("ros2_zstd.mcap"));
+  CHECK_THAT(test::refusal("mcap", changed_mcap(folder, zstd.substr(0, 3000))),
+             Catch::Contains("E0426") &&
+                 Catch::Contains("holds no whole message: the file ends at "
+                                 "byte 3000 inside a chunk") &&
+                 Catch::Contains("begins at byte 55"));
+  CHECK_THAT(test::refusal("mcap", changed_mcap(folder, zstd.substr(0, 8))),
+             Catch::Contains("ends at byte 8 without its end mark"));
+  const std::string plain = test::slurp(test::ros("ros1.mcap"));
+  CHECK_THAT(test::refusal("mcap", changed_mcap(folder, plain.substr(0, 1000))),
+             Catch::Contains("/imu: no messages") || Catch::Contains("ends at byte 1000"));
 }

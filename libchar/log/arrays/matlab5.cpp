@@ -215,9 +215,14 @@ class Matlab5File final : public ArrayContainer {
  public:
   explicit Matlab5File(const std::string& path) : file_(path) {
     const std::string head = file_.head(kHeaderBytes);
-    if (head.size() < kHeaderBytes) refuse_head("is too short for a MATLAB file");
+    if (head.size() < kHeaderBytes)
+      refuse_head(fmt::format("ends at byte {}, inside the {} bytes of a MATLAB file's header",
+                              head.size(),
+                              kHeaderBytes),
+                  "copy it again");
     if (head.substr(126) != "IM" && head.substr(126) != "MI")
-      refuse_head("does not begin like a MATLAB file of version 5 or later");
+      refuse_head("does not begin like a MATLAB file of version 5 or later",
+                  "save it by MATLAB's -v7, SciPy or Octave's -mat7-binary");
     big_endian_ = head.substr(126) == "MI";
     Source top(file_, {0, file_.size(), file_.size(), Packing::stored}, big_endian_);
     top.skip(kHeaderBytes);
@@ -249,13 +254,8 @@ class Matlab5File final : public ArrayContainer {
   }
 
  private:
-  [[noreturn]] void refuse_head(std::string what) const {
-    throw Error({ErrorKind::input,
-                 "E0464",
-                 file_.path(),
-                 std::move(what),
-                 "",
-                 "save it by MATLAB's -v7, SciPy or Octave's -mat7-binary"});
+  [[noreturn]] void refuse_head(std::string what, std::string hint) const {
+    throw Error({ErrorKind::input, "E0464", file_.path(), std::move(what), "", std::move(hint)});
   }
 
   // How long it is unpacked stands in the tag within; no more than that is read.

@@ -6,6 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/utf8.hpp"
+#include "libchar/log/binary/wrong_start.hpp"
 
 namespace libchar {
 namespace {
@@ -299,18 +300,18 @@ class Literal {
 };
 
 void check_magic(std::string_view bytes, const std::string& file) {
-  const auto refuse = [&](const char* what, const char* hint) {
+  const auto refuse = [&](std::string what, const char* hint) {
     throw Error({ErrorKind::input,
                  "E0404",
                  file + " (byte 0)",
-                 what,
+                 std::move(what),
                  std::string(bytes.substr(0, 8)),
                  hint});
   };
-  if (bytes.empty()) refuse("is empty, a .npy file was expected", "");
   if (bytes.starts_with("PK\x03\x04"))
     refuse("is a ZIP archive (.npz), not one array", "`format` npz reads it");
-  if (!bytes.starts_with("\x93NUMPY")) refuse("does not begin like a .npy file", "");
+  constexpr std::string_view kMark = "\x93NUMPY";
+  if (!bytes.starts_with(kMark)) refuse(wrong_start(bytes, kMark, "a .npy file"), "");
 }
 
 }  // namespace

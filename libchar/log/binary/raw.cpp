@@ -59,6 +59,8 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warning
 std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const std::string beside = find_sidecar(path);
+  if (beside.empty() && file->size() == 0)
+    refuse_raw(path, "is empty, and no sidecar stands beside it");
   if (beside.empty())
     refuse_raw(path,
                "is raw binary and has no sidecar that says what it holds",

@@ -312,7 +312,8 @@ bool surely_dataflash(std::string_view first_bytes) {
 
 std::unique_ptr<TopicReader> open_dataflash(const std::string& path, const ReadOptions& options) {
   auto reader = std::make_unique<DataflashReader>(path, options);
-  if (reader->topics().empty())
+  // Of a log that begins as one, what it lost says why (E0426).
+  if (reader->topics().empty() && !surely_dataflash(BinaryFile(path).head(kDataflashFmtLength)))
     throw Error({ErrorKind::input,
                  "E0485",
                  path,

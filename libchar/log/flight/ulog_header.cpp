@@ -7,6 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/binary/wrong_start.hpp"
 
 namespace libchar {
 namespace {
@@ -67,7 +68,7 @@ UlogHeader read_ulog_header(const BinaryFile& file, Warnings& warnings) {
            "is an encrypted ULog",
            "decrypt it first, with PX4's Tools/decrypt_ulog.py");
   if (!head.starts_with(kUlogMagic))
-    refuse("E0480", path, "is no ULog: its first bytes are not ULog's", "");
+    refuse("E0480", path, wrong_start(head, kUlogMagic, "a ULog"), "");
   if (head.size() < kUlogHeader)
     refuse("E0480",
            fmt::format("{} (byte {})", path, head.size()),

@@ -7,6 +7,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/decompress.hpp"
 
@@ -147,9 +148,12 @@ void check_bag(FileWindow& file) {
                  got,
                  std::move(hint)});
   };
-  if (!head.starts_with(kBagMagic))
-    fail("does not begin like a bag", std::string(head), "`format` auto finds out what it is");
-  if (head != "#ROSBAG V2.0\n")
+  constexpr std::string_view kMark = "#ROSBAG V2.0\n";
+  const bool cut = head.size() < kMark.size() && kMark.starts_with(head);
+  if (!head.starts_with(kBagMagic) || cut)
+    fail(
+        wrong_start(head, kMark, "a bag"), std::string(head), "`format` auto finds out what it is");
+  if (head != kMark)
     fail("is a bag of another version than 2.0",
          std::string(head),
          "rosbag fix writes it again as 2.0");
@@ -207,22 +211,15 @@ bool BagScan::next(RawMessage& message, StreamId& connection, Warnings& warnings
   }
 }
 
-BagScan::Step BagScan::cut(Warnings& warnings) {
-  const std::uint64_t bytes = file_.left(at_);
-  warnings.add(
-      "cut_end",
-      fmt::format(
-          "the bag has no index at its end (a recording that was not closed, or a "
-          "copy that was cut): what is whole was read{}",
-          bytes > 0 ? fmt::format(" ({} bytes at the end are no whole record)", bytes) : ""),
-      fmt::format("byte {}", at_));
+BagScan::Step BagScan::cut(Warnings& warnings, std::string_view inside) {
+  add_cut_end(warnings, file_.size(), file_.left(at_) == 0 ? "without its index" : inside, at_);
   return Step::end;
 }
 
 BagScan::Step BagScan::file_record(RawMessage& message, StreamId& connection, Warnings& warnings) {
-  if (at_ >= end_) return closed_ ? Step::end : cut(warnings);
+  if (at_ >= end_) return closed_ ? Step::end : cut(warnings, "");
   const auto record = find_record(file_, at_, end_);
-  if (!record) return cut(warnings);
+  if (!record) return cut(warnings, "inside a record");
   const std::string header = header_of(file_, *record);
   const BagOp op = op_of(header);
   if (op == BagOp::chunk)
@@ -231,7 +228,8 @@ BagScan::Step BagScan::file_record(RawMessage& message, StreamId& connection, Wa
                 std::min<std::uint64_t>(record->data, end_ - record->data_at),
                 at_,
                 warnings);
-  if (!record->whole) return cut(warnings);
+  if (!record->whole)
+    return cut(warnings, op == BagOp::chunk ? "inside a chunk" : "inside a record");
   at_ = record->end;
   if (op == BagOp::chunk) return single_ ? Step::end : Step::other;
   if (record->data > kLargestChunk) return Step::other;

@@ -66,7 +66,7 @@ class BagScan final : public MessageScan {
                     std::span<const std::byte> data,
                     RawMessage& message,
                     StreamId& connection) const;
-  Step cut(Warnings& warnings);
+  Step cut(Warnings& warnings, std::string_view inside);
 
   FileWindow& file_;
   BagCatalog& catalog_;

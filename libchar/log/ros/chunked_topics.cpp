@@ -23,6 +23,18 @@ double rate_seen(const StreamCount& count) {
 
 }  // namespace
 
+void add_cut_end(Warnings& warnings,
+                 std::uint64_t size,
+                 std::string_view inside,
+                 std::uint64_t at) {
+  warnings.add("cut_end",
+               fmt::format("the file ends at byte {} {} (a recording that was not closed, or a "
+                           "copy that was cut): only what is whole is read",
+                           size,
+                           inside),
+               at < size ? fmt::format("which begins at byte {}", at) : std::string());
+}
+
 void ChunkedTopics::look_at(StreamId stream, const RawMessage& message) {
   StreamCount& count = counts_[stream];
   if (!count.piece_ended) {

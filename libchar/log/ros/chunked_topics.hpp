@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,10 @@ class MessageScan {
   /// Byte up to which the file has been read.
   virtual std::uint64_t at() const = 0;
 };
+
+/// Counts the end of a file of `size` bytes that was never written, or copied, to its end: `inside` says of what ("inside a chunk",
+/// "without its index"), which begins at byte `at`.
+void add_cut_end(Warnings& warnings, std::uint64_t size, std::string_view inside, std::uint64_t at);
 
 struct ChunkPlace {
   std::uint64_t at = 0;

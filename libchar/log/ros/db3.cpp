@@ -12,6 +12,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/file.hpp"
+#include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/message_topics.hpp"
@@ -25,6 +26,7 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
+constexpr std::uint64_t kSqliteHeader = 100;
 
 #if LIBCHAR_HAVE_SQLITE
 
@@ -107,16 +109,10 @@ class Db3Reader final : public MessageTopics {
       : MessageTopics(path, options.time_source, false), database_(path) {
     std::error_code none;
     bytes_ = std::filesystem::file_size(path, none);
-    if (!database_.has_table("topics") || !database_.has_table("messages"))
-      throw Error({ErrorKind::input,
-                   "E0446",
-                   path,
-                   "a database of SQLite without the tables of rosbag2 (topics, messages), or a "
-                   "damaged one",
-                   "",
-                   "export its table as CSV (sqlite3 -header -csv FILE 'select …')"});
-    warn_of_journal(path);
     warn_of_missing_pages(path);
+    if (!database_.has_table("topics") || !database_.has_table("messages"))
+      refuse_without_tables(path);
+    warn_of_journal(path);
     read_definitions();
     list();
   }
@@ -180,6 +176,24 @@ class Db3Reader final : public MessageTopics {
     return to;
   }
 
+  [[noreturn]] void refuse_without_tables(const std::string& path) {
+    std::string what =
+        "a database of SQLite without the tables of rosbag2 (topics, messages), or a damaged one";
+    std::string hint = "export its table as CSV (sqlite3 -header -csv FILE 'select …')";
+    const std::string head = BinaryFile(path).head(kSqliteMagic.size());
+    if (head != kSqliteMagic) {
+      what = wrong_start(head, kSqliteMagic, "a database of SQLite");
+      hint = "";
+    } else if (bytes_ < kSqliteHeader) {
+      what = fmt::format("ends at byte {}, inside the header of a database", bytes_);
+      hint = "copy it again";
+    } else if (const Warning* cut = found_early().find("cut_end")) {
+      what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->message);
+      hint = "copy it again";
+    }
+    throw Error({ErrorKind::input, "E0446", path, std::move(what), "", std::move(hint)});
+  }
+
   // What was not yet written into the file itself.
   void warn_of_journal(const std::string& path) {
     for (const char* end : {"-wal", "-journal"}) {
@@ -203,8 +217,13 @@ class Db3Reader final : public MessageTopics {
       return value;
     };
     const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
-    if (bytes_ < page * number(28, 4))
-      found_early().add("cut_end", kDamaged, fmt::format("byte {}", bytes_));
+    const std::uint64_t said = page * number(28, 4);
+    if (bytes_ < said)
+      found_early().add("cut_end",
+                        fmt::format("the database ends at byte {} of {} (a copy that was cut): "
+                                    "messages in front of that are read",
+                                    bytes_,
+                                    said));
   }
 
   void read_definitions() {

@@ -6,6 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/decompress.hpp"
 
@@ -13,9 +14,7 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFirstRecord = 8;  // behind the magic
-constexpr const char* kCutEnd =
-    "the file ends before its end mark (a recording that was not closed, or a copy that was cut): "
-    "what is whole was read";
+constexpr std::string_view kNoEndMark = "without its end mark";
 constexpr const char* kBrokenChunk =
     "chunks that are broken (cannot be unpacked, or not what their checksum says) were left out";
 
@@ -102,7 +101,7 @@ void check_mcap_magic(FileWindow& file) {
   throw Error({ErrorKind::input,
                "E0441",
                file.path() + " (byte 0)",
-               "does not begin like an MCAP file",
+               wrong_start(found, kMcapMagic, "an MCAP file"),
                std::string(found),
                "`format` auto finds out what it is"});
 }
@@ -161,28 +160,25 @@ bool McapScan::next(RawMessage& message, StreamId& channel, Warnings& warnings) 
   }
 }
 
-McapScan::Step McapScan::cut(Warnings& warnings, std::uint64_t bytes) {
-  warnings.add("cut_end",
-               bytes > 0
-                   ? fmt::format("{} ({} bytes at the end are no whole record)", kCutEnd, bytes)
-                   : std::string(kCutEnd),
-               fmt::format("byte {}", file_.size() - bytes));
+McapScan::Step McapScan::cut(Warnings& warnings, std::string_view inside) {
+  add_cut_end(warnings, file_.size(), inside, inside == kNoEndMark ? file_.size() : at_);
   return Step::end;
 }
 
 McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
   const std::uint64_t left = file_.left(at_);
-  if (left < kMcapFront) return cut(warnings, left);
+  if (left < kMcapFront) return cut(warnings, left == 0 ? kNoEndMark : "inside a record");
   const RecordFront front = read_front(file_.view(at_, kMcapFront));
   const std::uint64_t content_at = at_ + kMcapFront, behind = left - kMcapFront;
   if (front.op == McapOp::chunk) {
     enter_chunk(content_at, std::min(front.length, behind), warnings);
     crc_covers_ = false;
-    if (front.length > behind) return cut(warnings, left);
+    if (front.length > behind) return cut(warnings, "inside a chunk");
     at_ = content_at + front.length;
     return single_ ? Step::end : Step::other;
   }
-  if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0) return cut(warnings, left);
+  if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0)
+    return cut(warnings, front.op == McapOp::message ? "inside a message" : "inside a record");
   if (front.op != McapOp::data_end) note_crc(kMcapFront + front.length);
   at_ = content_at + front.length;
   const auto size = static_cast<std::size_t>(std::min(front.length, kLargestChunk + 1));
@@ -205,7 +201,7 @@ McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, War
     }
     case McapOp::data_end:
       if (size >= 4) check_crc(file_.view(content_at, 4), warnings);
-      return ends_well() ? Step::end : cut(warnings, 0);
+      return ends_well() ? Step::end : cut(warnings, kNoEndMark);
     case McapOp::footer:
       return Step::end;
     default:

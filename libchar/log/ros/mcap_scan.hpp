@@ -55,7 +55,7 @@ class McapScan final : public MessageScan {
                     std::span<const std::byte> packed,
                     bool whole,
                     Warnings& warnings);
-  Step cut(Warnings& warnings, std::uint64_t bytes);
+  Step cut(Warnings& warnings, std::string_view inside);
   bool ends_well();
   bool wanted(std::uint16_t channel) const { return streams_.empty() || streams_[channel]; }
   void note_catalog(McapOp op, std::span<const std::byte> content, Warnings& warnings);

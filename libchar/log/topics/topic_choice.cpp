@@ -157,6 +157,29 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
          fmt::format("`topic` {} chooses one", names.front()));
 }
 
+// What a log lost says why nothing of it can be read.
+[[noreturn]] void refuse_unreadable_log(const std::vector<LogTopic>& topics,
+                                        const std::string& file,
+                                        const Warnings& losses) {
+  std::string what, got, hint;
+  if (!topics.empty()) {
+    const std::string& why = topics.front().why_not;
+    what = "none of its topics holds numbers that can be read";
+    got = topics.front().name + (why.empty() ? "" : ": " + why);
+  } else if (losses.empty()) {
+    what = "holds no messages and no arrays";
+    hint = "if it should hold some, it was cut behind its beginning: copy it again";
+  } else {
+    what = "holds no whole message";
+  }
+  if (!losses.empty()) {
+    const Warning& first = losses.list().front();
+    what += ": " + first.message;
+    if (!first.places.empty()) what += fmt::format(" ({})", first.places.front());
+  }
+  throw Error({ErrorKind::input, "E0426", file, std::move(what), std::move(got), std::move(hint)});
+}
+
 }  // namespace
 
 std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
@@ -188,18 +211,11 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
   return choice;
 }
 
-void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file) {
+void refuse_without_topic(const std::vector<LogTopic>& topics,
+                          const std::string& file,
+                          const Warnings& losses) {
   const std::vector<std::string> names = readable_names(topics);
-  if (names.empty()) {
-    const std::string why = topics.empty() ? "" : topics.front().why_not;
-    throw Error({ErrorKind::input,
-                 "E0426",
-                 file,
-                 topics.empty() ? "holds no messages and no arrays"
-                                : "none of its topics holds numbers that can be read",
-                 topics.empty() ? "" : topics.front().name + (why.empty() ? "" : ": " + why),
-                 ""});
-  }
+  if (names.empty()) refuse_unreadable_log(topics, file, losses);
   throw Error(
       {ErrorKind::usage,
        "E0427",

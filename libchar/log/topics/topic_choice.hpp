@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/warnings.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -22,8 +23,10 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
                                         const ReadOptions& options,
                                         const std::string& file);
 
-/// The sentence for a log whose topic has to be chosen first. Throws Error(usage).
+/// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which can be read, Error(input): what it
+/// lost (`losses`) may be the reason.
 [[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,
-                                       const std::string& file);
+                                       const std::string& file,
+                                       const Warnings& losses = {});
 
 }  // namespace libchar

@@ -28,8 +28,13 @@ class TopicRows final : public RowSource {
     info_.bytes = file_.size();
     info_.topics = reader_->topics();
     info_.dialect = reader_->dialect();
-    const auto choice = choose_topic(info_.topics, options, path);
-    if (!choice) refuse_without_topic(info_.topics, path);
+    const auto choice =
+        info_.topics.empty() ? std::nullopt : choose_topic(info_.topics, options, path);
+    if (!choice) {
+      Warnings losses;
+      reader_->finish(losses);
+      refuse_without_topic(info_.topics, path, losses);
+    }
     topic_ = choice->topic;
     describe_topic(*choice);
     ReadOptions chosen = options;
