@@ -124,10 +124,11 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
                   {"auto", "yes", "no"},
                   "is the first row a header? (default: auto)")
       .group(csv);
-  verb.add_choice("--encoding",
-                  options.encoding,
-                  {"utf-8", "latin1"},
-                  "encoding of the header (default: utf-8)")
+  verb.add_choice(
+          "--encoding",
+          options.encoding,
+          {"auto", "utf-8", "latin1", "cp1252"},
+          "encoding of the header (default: auto, UTF-8 or, where it is none, Windows-1252)")
       .group(csv);
   add_long_format_options(verb, options);
   verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")

@@ -1,6 +1,30 @@
 #include "libchar/core/utf8.hpp"
 
+#include <array>
+
 namespace libchar {
+namespace {
+
+// The characters of bytes 0x80 to 0x9F, which ISO 8859-1 leaves to control codes; 0 = none.
+constexpr std::array<std::uint16_t, 32> kWindows1252 = {
+    0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+}  // namespace
+
+void append_utf8(std::string& text, std::uint32_t code) {
+  if (code < 0x80) {
+    text += static_cast<char>(code);
+  } else if (code < 0x800) {
+    text += static_cast<char>(0xC0U | (code >> 6U));
+    text += static_cast<char>(0x80U | (code & 0x3FU));
+  } else {
+    text += static_cast<char>(0xE0U | (code >> 12U));
+    text += static_cast<char>(0x80U | ((code >> 6U) & 0x3FU));
+    text += static_cast<char>(0x80U | (code & 0x3FU));
+  }
+}
 
 std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t& code) {
   const auto byte = [&](std::size_t k) {
@@ -36,14 +60,18 @@ std::size_t first_invalid_utf8(std::string_view text) {
 
 std::string latin1_to_utf8(std::string_view text) {
   std::string out;
+  for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
+  return out;
+}
+
+std::optional<std::string> windows1252_to_utf8(std::string_view text) {
+  std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      out += c;
-    } else {
-      out += static_cast<char>(0xC0U | (byte >> 6U));
-      out += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
+    const bool other = byte >= 0x80 && byte < 0xA0;
+    const std::uint32_t code = other ? kWindows1252[byte - 0x80U] : byte;
+    if (code == 0 && byte != 0) return std::nullopt;
+    append_utf8(out, code);
   }
   return out;
 }

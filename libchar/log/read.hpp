@@ -44,7 +44,7 @@ struct ReadOptions {
   std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character
   std::string decimal = "auto";    ///< "auto", "point", "comma"
   std::string header = "auto";     ///< "auto", "yes", "no"
-  std::string encoding = "utf-8";  ///< "utf-8", "latin1" (CSV header only)
+  std::string encoding = "auto";   ///< "auto", "utf-8", "latin1", "cp1252" (CSV header only)
   std::uint64_t skip_rows = 0;     ///< lines to skip before the header (CSV)
   bool overflow_as_missing =
       false;  ///< a number out of double's range counts as missing instead of ending the reading

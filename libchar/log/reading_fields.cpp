@@ -7,7 +7,7 @@ namespace {
 
 constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
 constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
-constexpr Word kEncodings[] = {{"utf-8"}, {"latin1"}};
+constexpr Word kEncodings[] = {{"auto"}, {"utf-8"}, {"latin1"}, {"cp1252"}};
 constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
 constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}};
 constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}};
@@ -50,7 +50,7 @@ const Fields<ReadOptions>& reading_fields() {
                                    .otherwise = "auto",
                                    .quoted = true}),
       field<&ReadOptions::encoding>(
-          "encoding", {.words = kEncodings, .meaning = "of the header", .otherwise = "utf-8"}),
+          "encoding", {.words = kEncodings, .meaning = "of the header", .otherwise = "auto"}),
       field<&ReadOptions::names>(
           "names", {.meaning = "new names of the channels", .otherwise = "as in the log"}),
       field<&ReadOptions::units>(

@@ -18,6 +18,11 @@ struct Expected {
   std::string file, verdict, place;
 };
 
+// Refused when the table was written, and read since: what is guessed of them is said.
+const std::map<std::string, std::string> kReadSince = {
+    {"csv/036_latin1_header.csv", "ok"},
+};
+
 std::vector<Expected> table() {
   std::vector<Expected> rows;
   std::istringstream in(test::slurp(test::known("badinputs/EXPECT.tsv")));
@@ -28,6 +33,10 @@ std::vector<Expected> table() {
     std::getline(cells, row.file, '\t');
     std::getline(cells, row.verdict, '\t');
     std::getline(cells, row.place, '\t');
+    if (const auto since = kReadSince.find(row.file); since != kReadSince.end()) {
+      row.verdict = since->second;
+      row.place = "-";
+    }
     rows.push_back(row);
   }
   return rows;
@@ -51,7 +60,6 @@ const std::map<std::string, std::string> kReason = {
     {"csv/030_nul_byte.csv", "NUL"},
     {"csv/032_ctrl_z.csv", "0x1A"},
     {"csv/035_npy_named_csv.csv", "NPY"},
-    {"csv/036_latin1_header.csv", "`encoding` latin1"},
     {"csv/038_comma_decimal_comma.csv", "decimal comma"},
     {"csv/041_underscore.csv", "underscore"},
     {"csv/053_overflow_neg.csv", "out of range"},

@@ -221,12 +221,35 @@ TEST_CASE("options that hints name do what they say") {
                         "C\n0,1\n",
                         options)) == Names{"°C"});
   options = {};
+  options.encoding = "cp1252";
+  CHECK(names(read_text("t,\x80/h\n0,1\n", options)) == Names{"€/h"});
+  options = {};
   options.header = "no";
   CHECK(count(read_text("0,7\n1,8\n", options), "no_header") == 0);
   options = {};
   options.decimal = "comma";
   options.delimiter = ";";
   CHECK(read_text("t;x\n0;1\n1;2,5\n", options).samples[0] == std::vector<double>{1, 2.5});
+}
+
+TEST_CASE("a header that is no UTF-8 is read as Windows-1252, which is said") {
+  const auto guessed = [](const Recording& r) {
+    return std::any_of(r.info.guesses.begin(), r.info.guesses.end(), [](const std::string& guess) {
+      return guess.find("Windows-1252") != std::string::npos;
+    });
+  };
+  const Recording excel = read_text(
+      "Zeit [s];Temperatur [\xB0"
+      "C];Strom [\xB5"
+      "A];a [m/s\xB2]\n"
+      "0,0;20,5;1;9,8\n0,1;20,6;2;9,7\n0,2;20,7;3;9,8\n");
+  CHECK(names(excel) == Names{"Temperatur|°C", "Strom|µA", "a|m/s²"});
+  CHECK(guessed(excel));
+  CHECK(excel.info.warnings.empty());
+  const Recording units = read_text("t,x\ns,m/s\xB2\n0,1\n1,2\n2,3\n");
+  CHECK(units.info.channels[0].unit == "m/s²");
+  CHECK(guessed(units));
+  CHECK_FALSE(guessed(read_text("t,x [°C]\n0,1\n1,2\n")));
 }
 
 TEST_CASE("a log cut by a power failure keeps its whole rows and says what was lost") {

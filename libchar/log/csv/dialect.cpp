@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/spelling.hpp"
@@ -278,7 +280,7 @@ struct Study {
                               (unit.front() == '[' && unit.back() == ']')))
         unit = trimmed(unit.substr(1, unit.size() - 2));
       if (unit != "TS" && unit != "RN" && unit != "Sequence" && unit.size() <= 40)
-        dialect.columns[c].unit_below = std::string(unit);
+        dialect.columns[c].unit_below = decoded(std::string(unit)).value_or("");
     }
     info.dialect.push_back(fmt::format("units in line {}", line.number));
   }
@@ -317,7 +319,7 @@ struct Study {
                label_length(std::string(before) + "0") > 0)
         name = before.substr(0, before.size() - 1);
       if (name.empty()) continue;
-      dialect.columns[c].text = std::string(trimmed(name));
+      dialect.columns[c].text = decoded(std::string(trimmed(name))).value_or("");
       labelled_ = true;
     }
     if (labelled_) info.dialect.emplace_back("names in front of the values");
@@ -405,30 +407,43 @@ struct Study {
     }
   }
 
-  std::string header_text(const Field& field, const Line& line, std::size_t indent) const {
-    if (options.encoding == "latin1") return latin1_to_utf8(field.text);
-    if (options.encoding != "utf-8")
+  // Text of the header in UTF-8; nothing when it is not what it is said to be. What is not UTF-8 and does not begin with the mark of it
+  // was written by an older Windows, as a rule.
+  std::optional<std::string> decoded(const std::string& text) {
+    const std::string& encoding = options.encoding;
+    if (encoding == "latin1") return latin1_to_utf8(text);
+    if (encoding == "cp1252") return windows1252_to_utf8(text);
+    if (encoding != "auto" && encoding != "utf-8")
       throw Error({ErrorKind::usage,
                    "E0202",
                    "`encoding`",
                    "unknown encoding",
-                   options.encoding,
-                   "use utf-8 or latin1"});
-    const std::size_t bad = first_invalid_utf8(field.text);
-    const std::size_t column =
-        field.offset + (field.quoted ? 1 : 0) + indent + (bad == std::string::npos ? 0 : bad);
-    if (bad != std::string::npos)
-      fail(line,
-           column,
-           "E0302",
-           fmt::format("invalid UTF-8: byte 0x{:02X} at offset {}",
-                       static_cast<unsigned char>(field.text[bad]),
-                       line.offset + column),
-           field.text,
-           "`encoding` latin1 reads names written in ISO 8859-1");
+                   encoding,
+                   "use auto, utf-8, latin1 or cp1252"});
+    if (first_invalid_utf8(text) == std::string::npos) return text;
+    if (encoding == "utf-8" || marked_utf8_) return std::nullopt;
+    auto guessed = windows1252_to_utf8(text);
+    if (guessed && !std::exchange(encoding_guessed_, true))
+      info.guesses.emplace_back(
+          "encoding: the header is not UTF-8 and read as Windows-1252 (`encoding` chooses)");
+    return guessed;
+  }
+
+  std::string header_text(const Field& field, const Line& line, std::size_t indent) {
     if (field.text.size() > kMaxName)
       fail(line, field.offset + indent, "E0305", "channel name longer than 1024 bytes", field.text);
-    return field.text;
+    if (auto text = decoded(field.text)) return *text;
+    const std::size_t invalid = first_invalid_utf8(field.text);
+    const std::size_t column = field.offset + (field.quoted ? 1 : 0) + indent +
+                               (invalid == std::string::npos ? 0 : invalid);
+    fail(line,
+         column,
+         "E0302",
+         fmt::format("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
+                     static_cast<unsigned char>(field.text[invalid]),
+                     line.offset + column),
+         field.text,
+         "`encoding` latin1 takes every byte for the character of ISO 8859-1");
   }
 
   // LabVIEW names a column of comments that its rows do not have; R names no column of row numbers, which they do.
@@ -601,6 +616,7 @@ struct Study {
     std::uint64_t number = 1;
     if (head.substr(0, 3) == "\xEF\xBB\xBF") {
       offset = 3;
+      marked_utf8_ = true;
       info.dialect.emplace_back("UTF-8 byte-order mark");
     }
     for (std::uint64_t i = 0; i < options.skip_rows && offset < head.size(); ++i) {
@@ -632,6 +648,7 @@ struct Study {
  private:
   std::size_t columns_ = 1;
   bool separator_said_ = false, labelled_ = false;
+  bool marked_utf8_ = false, encoding_guessed_ = false;
   std::vector<Line> preamble_;
   std::vector<Cells> rows_;  // the first ones
   std::vector<ColumnKind> kinds_;
