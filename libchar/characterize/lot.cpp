@@ -10,12 +10,12 @@
 #include <map>
 #include <set>
 
-#include "libchar/allan/noise_curves.hpp"
 #include "libchar/characterize/detail/alike_runs.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
 namespace {
@@ -115,7 +115,7 @@ Values add_values(Devices devices,
       v = k.relative_sd * k.relative_sd;
     } else {
       y = c.quality.mean;
-      v = allan_variance(c.fit->theta, static_cast<double>(c.fit->samples), 1 / c.fit->rate_hz);
+      v = mean_noise_variance(*c.fit);
       if (!(v > 0)) continue;
     }
     values.y.push_back(y);

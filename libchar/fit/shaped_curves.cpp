@@ -100,6 +100,11 @@ double process_allan_variance(const NoiseFit& fit, double m, double dt_s) {
   return sigma * sigma * gauss_markov_allan_variance(*fit.gauss_markov->tau_s.value, m, dt_s);
 }
 
+double mean_noise_variance(const NoiseFit& fit) {
+  const double m = static_cast<double>(fit.samples), dt_s = 1 / fit.rate_hz;
+  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s);
+}
+
 void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
   if (!has_process(fit)) {
     Mixture theta = fit.theta;  // flicker phase has the degrees of freedom of white phase, nearly

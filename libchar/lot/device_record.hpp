@@ -1,0 +1,104 @@
+#pragma once
+// What a lot needs to know of one characterized device, in one line of JSON: a hundred thousand of them are read in seconds.
+//
+//   DeviceRecord record = record_of(characterize("imu7.csv"));
+//   record.device = "imu7";
+//   file << device_record_text(record) << '\n';
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/coefficient.hpp"
+#include "libchar/core/enum_table.hpp"
+#include "libchar/core/not_known.hpp"
+
+namespace libchar {
+
+/// What is known of a channel: the first five are the terms of core/noise_terms.hpp, in their order.
+enum class DeviceQuantity : std::uint8_t {
+  white_noise,
+  bias_instability,
+  random_walk,
+  quantization,
+  rate_ramp,
+  gauss_markov_sigma,
+  gauss_markov_time,
+  turn_on_bias,             ///< mean of the samples
+  temperature_coefficient,  ///< the linear one, at the mean temperature
+};
+template <>
+inline constexpr auto enum_table<DeviceQuantity> = enum_words<DeviceQuantity>(
+    {{DeviceQuantity::white_noise, "white_noise"},
+     {DeviceQuantity::bias_instability, "bias_instability"},
+     {DeviceQuantity::random_walk, "random_walk"},
+     {DeviceQuantity::quantization, "quantization"},
+     {DeviceQuantity::rate_ramp, "rate_ramp"},
+     {DeviceQuantity::gauss_markov_sigma, "gauss_markov_sigma"},
+     {DeviceQuantity::gauss_markov_time, "gauss_markov_time"},
+     {DeviceQuantity::turn_on_bias, "turn_on_bias"},
+     {DeviceQuantity::temperature_coefficient, "temperature_coefficient"}});
+inline constexpr std::size_t kDeviceQuantities = enum_table<DeviceQuantity>.size();
+
+DeviceQuantity quantity_of(Term term);
+std::optional<Term> term_of(DeviceQuantity quantity);
+/// Never negative, and known by a relative uncertainty: compared as logarithm.
+bool in_logarithm(DeviceQuantity quantity);
+/// "White noise", "Turn-on bias"…
+std::string title_of(DeviceQuantity quantity);
+/// Of its values, for a channel in `channel_unit`; the thermometer's unit is K or °C.
+std::string unit_of(DeviceQuantity quantity, std::string_view channel_unit);
+
+/// One quantity of a channel; NaN: not known.
+struct RecordedValue {
+  DeviceQuantity quantity = DeviceQuantity::white_noise;
+  Status status = Status::detected;
+  double value = kNone;            ///< none where it is not detected
+  Interval ci95 = {kNone, kNone};  ///< high infinite: no upper end
+  double sd =
+      kNone;  ///< of ln(value) where the quantity is compared as logarithm, else of the value
+  double upper95 = kNone;  ///< of what is not detected
+  bool operator==(const RecordedValue&) const;
+};
+
+struct RecordedChannel {
+  std::string name, unit;
+  double rate_hz = 0, duration_s = 0;
+  std::uint64_t samples = 0, missing = 0;
+  bool fitted = false;
+  double p = kNone;  ///< goodness of fit
+  std::vector<RecordedValue>
+      values;  ///< in the order of the enum, none twice; a term that was not fitted has none
+  std::vector<std::string> problems;  ///< why something is absent, in sentences
+  const RecordedValue* find(DeviceQuantity quantity) const;
+  bool operator==(const RecordedChannel&) const;
+};
+
+struct DeviceRecord {
+  std::string device, type, batch;
+  std::optional<double> temperature_c;  ///< at which it was recorded
+  std::string log, sha256;              ///< the file, and its digest
+  std::string settings;  ///< what it was characterized with, by a name of the caller's
+  std::string program;   ///< version that characterized it
+  std::string report;    ///< folder of its own report, relative to the page of the lot; "": none
+  std::string limits;    ///< verdict on its data sheet; "": none was held against it
+  std::string problem;   ///< why its log could not be characterized; "": it was
+  std::vector<RecordedChannel> channels;
+  bool operator==(const DeviceRecord&) const = default;
+};
+
+/// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is no bias.
+DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
+
+/// The coefficient again, as far as the record holds it.
+Coefficient coefficient_of(const RecordedValue& value);
+
+/// One line of JSON without its newline: {"format":"device-record",…}. Every number reads back to the same double.
+std::string device_record_text(const DeviceRecord& record);
+/// Keys that are not known are left alone. Throws Error(input) with `path`, line, column and key.
+DeviceRecord parse_device_record(std::string_view text, const std::string& path);
+
+}  // namespace libchar
