@@ -66,6 +66,7 @@ const std::array kUnits = {
     UnitRow{"ns", Quantity::time, 1e-9, "ns|nsec|nanoseconds"},
     UnitRow{"min", Quantity::time, 60, "min|minutes"},
     UnitRow{"h", Quantity::time, 3600, "h|hr|hour|hours"},
+    UnitRow{"day", Quantity::time, 86400, "day|days"},
     UnitRow{"Hz", Quantity::frequency, 1, "hz"},
     UnitRow{"kHz", Quantity::frequency, 1e3, "khz"},
     UnitRow{"MHz", Quantity::frequency, 1e6, "mhz"},

@@ -252,6 +252,54 @@ TEST_CASE("a header that is no UTF-8 is read as Windows-1252, which is said") {
   CHECK_FALSE(guessed(read_text("t,x [°C]\n0,1\n1,2\n")));
 }
 
+TEST_CASE("numbers with their unit behind them: the unit of the column") {
+  // MATLAB's writetimetable, durations in front.
+  const Recording matlab =
+      read_text("Time,gx\n0 sec,1.5\n0.005 sec,-2\n0.01 sec,3e-1\n0.015 sec,4\n");
+  CHECK(matlab.info.time.rate_hz == Approx(200));
+  CHECK(matlab.info.time.unit == "s");
+  CHECK_FALSE(matlab.info.time.unit_guessed);
+  CHECK(matlab.samples[0] == std::vector<double>{1.5, -2, 0.3, 4});
+  CHECK(read_text("Time,x\n0 ms,1\n5 ms,2\n10 ms,3\n").info.time.rate_hz == Approx(200));
+  CHECK(read_text("Time,x\n0 min,1\n1 min,2\n2 min,3\n").info.time.rate_hz == Approx(1.0 / 60));
+  CHECK(read_text("Time,x\n0 hr,1\n1 hr,2\n2 hr,3\n").info.time.rate_hz == Approx(1.0 / 3600));
+  CHECK(read_text("Time,x\n0 days,1\n1 day,2\n2 days,3\n").info.time.rate_hz ==
+        Approx(1.0 / 86400));
+  // Grafana, as it shows the values.
+  const Recording grafana = read_text(
+      "\"Time\",\"temp\",\"a\"\n"
+      "2024-01-05 12:00:00,0.686 °C,12.3 m/s²\n2024-01-05 12:00:01,,12.4 m/s²\n2024-01-05 "
+      "12:00:02,-1.5 °C,NaN\n");
+  CHECK(names(grafana) == Names{"temp|°C", "a|m/s²"});
+  CHECK(grafana.samples[0][2] == -1.5);
+  CHECK(std::isnan(grafana.samples[0][1]));
+  CHECK(grafana.samples[1][0] == 12.3);
+  CHECK(grafana.samples[1][1] == 12.4);
+  CHECK(names(read_text("t;x\n0;1,5 V\n1;2,5 V\n2;3,25 V\n")) == Names{"x|V"});
+  CHECK(names(read_text("t,x\n0,1.5 \xB0"
+                        "C\n1,2\xB0"
+                        "C\n2,3 \xB0"
+                        "C\n")) == Names{"x|°C"});
+  CHECK(names(read_text("t,x [degC]\n0,1.5 °C\n1,2 °C\n2,3 °C\n")) == Names{"x|degC"});
+}
+
+TEST_CASE("a unit that changes inside a column is refused with both and the line") {
+  const std::string changed = failure("Time,x\n0 s,1\n0.5 s,2\n600 ms,3\n");
+  CHECK_THAT(changed,
+             Catch::Contains("log.csv:4:1") && Catch::Contains("E0333") &&
+                 Catch::Contains("a value in ms, those before it are in s"));
+  std::string far = "t,x\n";
+  for (int i = 0; i < 5000; ++i) far += std::to_string(i) + ",1.5 V\n";
+  CHECK_THAT(failure(far + "5000,2 mV\n"),
+             Catch::Contains("log.csv:5002:6") && Catch::Contains("in mV"));
+  CHECK_THAT(failure("t,x\n0,1 V\n1,2\n2,3 V\n"),
+             Catch::Contains("log.csv:3:3") && Catch::Contains("without a unit"));
+  CHECK_THAT(failure("t,x [mV]\n0,1 V\n1,2 V\n2,3 V\n"),
+             Catch::Contains("a value in V, and the header says mV"));
+  // Numbers first: what stands behind a number is damage.
+  CHECK_THAT(failure("t,x\n0,1\n1,2 V\n2,3\n"), Catch::Contains("E0311"));
+}
+
 TEST_CASE("a log cut by a power failure keeps its whole rows and says what was lost") {
   const Recording r = read_text("t,x\n0,1\n1,2\n2,3.14" + std::string(5000, '\0'));
   CHECK(r.samples[0] == std::vector<double>{1, 2});

@@ -3,21 +3,23 @@
 #include <algorithm>
 
 #include "libchar/core/units.hpp"
+#include "libchar/core/utf8.hpp"
+#include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 namespace {
 
-bool letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+constexpr std::string_view kOfNumbers = "+-0123456789.,eE ";
+
+// Bytes outside ASCII are those of UTF-8, or of an older Windows.
+std::string utf8_of(std::string_view text) {
+  if (first_invalid_utf8(text) == std::string_view::npos) return std::string(text);
+  return windows1252_to_utf8(text).value_or("");
 }
 
-// "5V", "21.3 °C": a number with its unit is no text, and nothing that may be skipped.
-bool number_with_unit(std::string_view text) {
-  const std::size_t digits = text.find_first_not_of("+-0123456789.,eE ");
-  if (digits == 0 || digits == std::string_view::npos || text.find_first_of("0123456789") >= digits)
-    return false;
-  return find_unit(text.substr(digits)).has_value();
+bool letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
 // Words begin with a letter, or hold several; "+-1" and "1d5" are numbers gone wrong.
@@ -34,7 +36,7 @@ struct Census {
   std::size_t numbers = 0, dates = 0, clocks = 0, stamps = 0, words = 0, odd = 0;
 
   void add(std::string_view text, NumberStyle style) {
-    const Cell cell = read_styled(text, style);
+    const Cell cell = read_sampled(text, style);
     if (cell.kind == Cell::missing) return;
     if (cell.kind != Cell::bad) {
       ++numbers;
@@ -44,7 +46,7 @@ struct Census {
       const CalendarStamp& s = stamp ? *stamp : *other;
       ++(s.date && s.clock ? stamps : s.date ? dates : clocks);
     } else {
-      ++(number_with_unit(text) || !like_words(text) ? odd : words);
+      ++(number_and_unit(text) || !like_words(text) ? odd : words);
     }
   }
 
@@ -101,6 +103,28 @@ Cell read_styled(std::string_view text, NumberStyle style) {
   if (const std::size_t label = label_length(text); label > 0)
     return read_styled(text.substr(label), style);
   return style.thousands == 0 ? plain : read_cell(without_thousands(text, style), style.decimal);
+}
+
+std::optional<MeasuredCell> number_and_unit(std::string_view text) {
+  const std::size_t end = text.find_first_not_of(kOfNumbers);
+  if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end)
+    return std::nullopt;
+  const MeasuredCell cell{trimmed(text.substr(0, end)), text.substr(end)};
+  const auto unit = find_unit(utf8_of(cell.unit));
+  return unit && !dimensionless(unit->symbol) ? std::optional(cell) : std::nullopt;
+}
+
+bool same_unit(std::string_view a, std::string_view b) {
+  if (a == b) return true;
+  const auto one = find_unit(utf8_of(a)), other = find_unit(utf8_of(b));
+  return one && other && one->symbol == other->symbol;
+}
+
+Cell read_sampled(std::string_view text, NumberStyle style) {
+  const Cell cell = read_styled(text, style);
+  if (cell.kind != Cell::bad) return cell;
+  const auto measured = number_and_unit(text);
+  return measured ? read_styled(measured->number, style) : cell;
 }
 
 std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,

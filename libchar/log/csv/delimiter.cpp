@@ -32,6 +32,8 @@ bool numeric(const Field& field, char delimiter, char* mark) {
     if (mark != nullptr && field.text.find('.') != std::string::npos) *mark = '.';
     return true;
   }
+  if (const auto measured = number_and_unit(field.text))
+    return numeric({std::string(measured->number), 0, field.quoted}, delimiter, mark);
   if (delimiter == ',' && !field.quoted) return false;
   if (read_cell(field.text, ',').kind == Cell::bad) return false;
   if (mark != nullptr) *mark = ',';

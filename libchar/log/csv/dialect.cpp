@@ -196,7 +196,7 @@ struct Study {
 
   bool all_numeric(const std::vector<Field>& fields) const {
     return std::all_of(fields.begin(), fields.end(), [&](const Field& f) {
-      return read_styled(f.text, style()).kind != Cell::bad;
+      return read_sampled(f.text, style()).kind != Cell::bad;
     });
   }
 
@@ -283,6 +283,41 @@ struct Study {
         dialect.columns[c].unit_below = decoded(std::string(unit)).value_or("");
     }
     info.dialect.push_back(fmt::format("units in line {}", line.number));
+  }
+
+  // "0.005 sec" and "21.3 °C": the unit behind the first number of a column is that of the column.
+  void find_cell_units() {
+    bool found = false;
+    std::vector<bool> seen(dialect.columns.size(), false);
+    for (const Line& line : sample) {
+      if (line.offset < dialect.data_offset) continue;
+      const Cells row = cells(line.text);
+      for (std::size_t c = 0; c < std::min(row.size(), seen.size()); ++c) {
+        if (seen[c] || read_styled(row[c].text, style()).kind == Cell::missing) continue;
+        seen[c] = true;
+        const auto measured = number_and_unit(row[c].text);
+        if (!measured) continue;
+        take_cell_unit(std::string(measured->unit), line, row[c], dialect.columns[c]);
+        found = true;
+      }
+    }
+    if (found) info.dialect.emplace_back("units behind the numbers");
+  }
+
+  void take_cell_unit(std::string unit, const Line& line, const Field& field, Column& column) {
+    const std::string named = name_and_unit(column.text).second;
+    const std::string& said = named.empty() ? column.unit_below : named;
+    if (!said.empty() && !same_unit(said, unit))
+      fail(line,
+           field.offset,
+           "E0333",
+           fmt::format("a value in {}, and the header says {}",
+                       printable(decoded(unit).value_or(unit), 20),
+                       printable(said, 20)),
+           field.text,
+           "mend the one that is wrong");
+    if (said.empty()) column.unit_below = decoded(unit).value_or("");
+    column.cell_unit = std::move(unit);
   }
 
   void without_names() {
@@ -641,6 +676,7 @@ struct Study {
            0,
            "E0305",
            fmt::format("{} columns, the limit is {}", dialect.columns.size(), kMaxColumns));
+    find_cell_units();
     name_columns(dialect, info);
     choose_time();
   }

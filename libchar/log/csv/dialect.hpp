@@ -26,6 +26,7 @@ inline constexpr std::size_t kHeadBytes =
 struct Column {
   std::string name, unit;
   std::string unit_below;  ///< in a second header line
+  std::string cell_unit;   ///< behind every number, as in the file: "sec" of "0.005 sec"
   bool unnamed = false;    ///< the header has an empty cell
   bool left_out = false;   ///< words, or a count of the rows: no channel unless it is asked for
   std::string text;        ///< header cell as written

@@ -73,6 +73,9 @@ class RowParser {
                       : Plan::kTime;
     line_by_line_ =
         !dialect_.lead.empty() || !dialect_.filters.empty() || dialect_.group_column >= 0;
+    for (std::size_t c = 0; c < plan_.target.size(); ++c)  // a number without its unit is an error
+      line_by_line_ = line_by_line_ ||
+                      (plan_.target[c] != Plan::kSkip && !dialect_.columns[c].cell_unit.empty());
     out_.groups.clear();
     out_.filtered = 0;
     out_.lines = 0;
@@ -506,13 +509,34 @@ class RowParser {
 
   bool cell(std::string_view line, const Span& span, std::size_t c) {
     const int target = plan_.target[c];
-    const std::string_view text = line.substr(span.from, span.to - span.from);
+    std::string_view text = line.substr(span.from, span.to - span.from);
     if (target == Plan::kSkip) {
       ++out_.account.unread;
       return true;
     }
+    if (!dialect_.columns[c].cell_unit.empty() &&
+        !take_off_unit(text, span, dialect_.columns[c].cell_unit))
+      return false;
     return target < 0 ? stamp(text, span, target)
                       : value(text, span, static_cast<std::size_t>(target));
+  }
+
+  // "0.005 sec" → "0.005" in a column of seconds. What is no number with a known unit is left as it is.
+  bool take_off_unit(std::string_view& text, const Span& span, const std::string& unit) {
+    const auto measured = number_and_unit(text);
+    if (measured && same_unit(measured->unit, unit)) {
+      text = measured->number;
+      return true;
+    }
+    const bool bare = read_cell(text, dialect_.decimal).kind == Cell::value;
+    if (!measured && !bare) return true;
+    fail("E0333",
+         bare ? fmt::format("a value without a unit, those before it are in {}", unit)
+              : fmt::format("a value in {}, those before it are in {}", measured->unit, unit),
+         std::string(text),
+         "export the column with one unit, or with plain numbers",
+         span.start);
+    return false;
   }
 
   bool stamp(std::string_view text, const Span& span, int to) {

@@ -85,7 +85,7 @@ FirstValues first_numbers(const StampStudy& study, std::size_t column) {
   for (const Cells& row : study.rows) {
     if (column >= row.size()) continue;
     const std::string& text = row[column].text;
-    const Cell cell = read_styled(text, study.style);
+    const Cell cell = read_sampled(text, study.style);
     if (cell.kind == Cell::value) first.values.push_back(cell.number);
     first.integers = first.integers && text.find_first_of(".,eE") == std::string::npos;
   }

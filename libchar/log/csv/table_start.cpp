@@ -23,7 +23,7 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
     const std::string& text = line[c].text;
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
-    const Cell cell = read_styled(text, style);
+    const Cell cell = read_sampled(text, style);
     if (cell.kind == Cell::missing) continue;
     const bool number = cell.kind != Cell::bad;
     const bool calendar = !number && (read_calendar(text, DateOrder::day_first) ||
