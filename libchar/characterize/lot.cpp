@@ -181,8 +181,7 @@ std::optional<Statistic> statistic_of(Devices devices,
   out.values = add_values(devices, group, term, lot);
   if (lot.counted.empty() && (lot.not_detected == 0 || (term && *term >= Term::quantization)))
     return std::nullopt;
-  if (lot.counted.size() >= 2 && 3 * lot.counted.size() >= 2 * lot.members)
-    lot.effects = random_effects(out.values.y, out.values.v);
+  lot.effects = lot_effects(out.values.y, out.values.v, lot.members);
   return out;
 }
 
@@ -217,15 +216,6 @@ std::vector<std::string> unlike_units(Devices devices, const std::vector<std::st
                                 in(unit),
                                 names[d]));
     }
-  return out;
-}
-
-std::optional<LotFigures> lot_figures(const LotStatistic& s) {
-  if (!s.effects) return std::nullopt;
-  LotFigures out{s.effects->mean, s.effects->mean_ci95, s.effects->spread, s.effects->spread_ci95};
-  if (!s.term) return out;
-  out.mean = std::exp(out.mean);
-  out.mean_ci95 = {std::exp(out.mean_ci95.low), std::exp(out.mean_ci95.high)};
   return out;
 }
 
@@ -272,7 +262,7 @@ Lot lot_of(Devices devices, const LotOptions& options) {
     if (s.lot.effects)
       for (const Outlier& found : find_outliers(s.values.y, s.values.v, share))
         s.lot.outliers.push_back(outlier_of(devices, lot.devices, s.lot, s.values, found));
-    s.lot.figures = lot_figures(s.lot);
+    if (s.lot.effects) s.lot.figures = lot_figures(*s.lot.effects, s.lot.term.has_value());
     lot.statistics.push_back(std::move(s.lot));
   }
   lot.verdict = lot_verdict(lot);

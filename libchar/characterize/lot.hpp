@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/lot_figures.hpp"
 #include "libchar/core/random_effects.hpp"
 
 namespace libchar {
@@ -23,15 +24,6 @@ struct LotOutlier {
   std::string sentence;
 };
 
-/// Mean and spread of a statistic in the unit of its values: exp of the logarithms for coefficients.
-struct LotFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double spread =
-      0;  ///< of coefficients relative (standard deviation of the logarithm), of means in their unit
-  Interval spread_ci95;
-};
-
 /// One quantity over the members of a group.
 struct LotStatistic {
   std::string group;         ///< "gyro_x", or "angular_rate in deg/s" for all channels of a kind
@@ -42,7 +34,7 @@ struct LotStatistic {
   std::size_t not_detected = 0;    ///< upper limit only
   std::size_t doubtful = 0;        ///< undetermined, misfit, or no fit
   std::vector<LotMember> counted;  ///< those that the figures below are of
-  /// of ln(value) for coefficients, of the value for means; none: fewer than two, or under two thirds of the members
+  /// of ln(value) for coefficients, of the value for means; none: as lot_effects says
   std::optional<RandomEffects> effects;
   std::optional<LotFigures> figures;  ///< of `effects`
   std::vector<LotOutlier> outliers;

@@ -2,15 +2,14 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/not_known.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::size_t kPiece = 64;  // looked at together
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // x != x for a missing sample only; x - x is no number for an infinity either.
 LIBCHAR_WIDE_LANES std::size_t whole_present_pieces(const double* x, std::size_t n) {

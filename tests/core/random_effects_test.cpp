@@ -133,3 +133,57 @@ TEST_CASE("outliers: two of them do not hide each other in a lot of twelve") {
   REQUIRE(outliers.size() == 2);
   CHECK(outliers[0].index + outliers[1].index == 6);
 }
+
+TEST_CASE(
+    "outliers of many: at most 1 % of lots without one have one, and those that are there are "
+    "named") {
+  test::Gaussian gauss(17);
+  for (const double spread : {0.0, 1.0})
+    for (const std::size_t count : {61, 300}) {
+      CAPTURE(spread, count);
+      int false_alarms = 0, found = 0;
+      const int lots = 400;
+      for (int i = 0; i < lots; ++i) {
+        Lot lot = made(count, spread, gauss);
+        false_alarms += !find_outliers(lot.value, lot.variance).empty();
+        for (const std::size_t k : {2, 30, 45}) lot.value[k] += k == 45 ? -30 : 30;
+        const auto outliers = find_outliers(lot.value, lot.variance);
+        found +=
+            outliers.size() == 3 && outliers[0].index + outliers[1].index + outliers[2].index == 77;
+      }
+      CHECK(false_alarms <= 12);  // 1 % and four standard deviations of a Poisson count
+      CHECK(found >= 0.97 * lots);
+    }
+}
+
+TEST_CASE("outliers of many: the deviation of one value is that from all others") {
+  test::Gaussian gauss(19);
+  Lot lot = made(200, 2, gauss);
+  std::fill(lot.variance.begin(), lot.variance.end(), 1.0);
+  lot.value[7] += 18;
+  const auto outliers = find_outliers(lot.value, lot.variance, 0.05);
+  REQUIRE(outliers.size() == 1);
+  std::vector<double> y = lot.value, v = lot.variance;
+  y.erase(y.begin() + 7);
+  v.erase(v.begin() + 7);
+  const RandomEffects others = random_effects(y, v);
+  const double square = others.spread * others.spread + 1;
+  CHECK(outliers[0].deviation ==
+        Approx((lot.value[7] - others.mean) / std::sqrt(square * (1 + 1 / 199.0))).epsilon(1e-6));
+}
+
+TEST_CASE("outliers of many: a second kind is no outlier") {
+  test::Gaussian gauss(23);
+  Lot lot = made(200, 0.1, gauss);
+  for (std::size_t i = 0; i < 100; ++i) lot.value[i] += 100;
+  CHECK(find_outliers(lot.value, lot.variance).empty());
+}
+
+TEST_CASE("outliers of many: a hundred thousand values take about a second, not hours") {
+  test::Gaussian gauss(29);
+  Lot lot = made(100000, 1, gauss);
+  lot.value[99] += 60;
+  const auto outliers = find_outliers(lot.value, lot.variance);
+  REQUIRE(outliers.size() == 1);
+  CHECK(outliers[0].index == 99);
+}

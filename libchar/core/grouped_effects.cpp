@@ -1,0 +1,91 @@
+// Q(s²) = sum_g sum_i (y_i - m_g)² / (v_i + s²), m_g the weighted mean of a group, is chi-square with n - G degrees of freedom at the
+// true square of the spread within, so that it is found as in random_effects.cpp: Q(s²) = n - G, and an interval by the quantiles of Q.
+// Groups' means differ more than that by Fisher's F of the one-way analysis of variance (Fisher 1925), with these weights
+//   F = sum_g W_g (m_g - m)² / (G - 1) / max(1, Q(s²) / (n - G)),   W_g = sum_i 1 / (v_i + s²),
+// exact for equal variances. Spread between: random effects of the m_g with variances 1 / W_g.
+#include "libchar/core/grouped_effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/chi_square.hpp"
+#include "libchar/core/detail/weighted.hpp"
+#include "libchar/core/distributions.hpp"
+#include "libchar/core/not_known.hpp"
+
+namespace libchar {
+namespace {
+
+struct Groups {
+  std::span<const double> y, v;
+  std::span<const std::size_t> group;
+  std::size_t count = 0;
+};
+
+struct GroupMeans {
+  std::vector<double> mean, weights;  ///< weights 0: no values
+  double q = 0;
+};
+
+GroupMeans means_at(const Groups& in, double square) {
+  GroupMeans out{std::vector<double>(in.count), std::vector<double>(in.count), 0};
+  for (std::size_t i = 0; i < in.y.size(); ++i) {
+    const double weight = 1 / (in.v[i] + square);
+    out.weights[in.group[i]] += weight;
+    out.mean[in.group[i]] += weight * in.y[i];
+  }
+  for (std::size_t g = 0; g < in.count; ++g) out.mean[g] /= out.weights[g];
+  for (std::size_t i = 0; i < in.y.size(); ++i) {
+    const double off = in.y[i] - out.mean[in.group[i]];
+    out.q += off * off / (in.v[i] + square);
+  }
+  return out;
+}
+
+/// Spread within the groups; NaN where every group has one value.
+void find_within(const Groups& in, double dof, GroupedEffects& out) {
+  out.within = kNone;
+  out.within_ci95 = {kNone, kNone};
+  if (dof < 1) return;
+  double scale = 0;
+  for (const double v : in.v) scale += v / static_cast<double>(in.v.size());
+  const auto q = [&](double square) { return means_at(in, square).q; };
+  out.within = std::sqrt(falls_to(q, dof, scale));
+  // Not less than at the median of Q, as of random effects: values that lie close by chance do not bound the spread by nothing.
+  const double q0 = q(0), median = chi_square_quantile(0.5, dof);
+  const double lift = q0 < median ? median / q0 : 1;
+  const auto lifted = [&](double square) { return lift * q(square); };
+  out.within_ci95 = {std::sqrt(falls_to(q, chi_square_quantile(0.975, dof), scale)),
+                     std::sqrt(falls_to(lifted, chi_square_quantile(0.025, dof), scale))};
+}
+
+}  // namespace
+
+GroupedEffects grouped_effects(std::span<const double> value,
+                               std::span<const double> variance,
+                               std::span<const std::size_t> group,
+                               std::size_t groups) {
+  const Groups in{value, variance, group, groups};
+  GroupedEffects out;
+  std::vector<bool> filled(groups);
+  for (const std::size_t g : group) filled[g] = true;
+  const auto full = static_cast<double>(std::count(filled.begin(), filled.end(), true));
+  const double dof = static_cast<double>(value.size()) - full;
+  find_within(in, dof, out);
+  const GroupMeans at = means_at(in, dof < 1 ? 0 : out.within * out.within);
+  std::vector<double> means, variances;
+  out.mean.assign(groups, kNone);
+  out.variance.assign(groups, kNone);
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (!filled[g]) continue;
+    means.push_back(out.mean[g] = at.mean[g]);
+    variances.push_back(out.variance[g] = 1 / at.weights[g]);
+  }
+  out.between = random_effects(means, variances);
+  const double q = weighted(means, variances, 0).q;
+  out.p = dof < 1 ? out.between.p
+                  : fisher_tail(q / (full - 1) / std::max(1.0, at.q / dof), full - 1, dof);
+  return out;
+}
+
+}  // namespace libchar
