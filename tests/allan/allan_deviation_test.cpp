@@ -288,6 +288,18 @@ TEST_CASE("offset 1e9 sigma and strong drift, against 113 bits") {
   }
 }
 
+TEST_CASE("records that end where a block of the phase does, and a sample beside it") {
+  // 8191 samples have 8192 points of the phase: a third block begins behind the last sample. Read there, garbage and a broken heap came.
+  for (const std::size_t whole : {4096U, 8192U, 12288U})
+    for (const std::size_t n : {whole - 2, whole - 1, whole, whole + 1}) {
+      const std::vector<double> y = white(n, 11, 3.0);
+      for (const bool modified : {false, true})
+        for (const auto& p :
+             curve_of(y, modified ? DeviationType::mdev : DeviationType::oadev).points)
+          CHECK(p.deviation == Approx(reference(y, p.m, modified)).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("closed forms: ramp, alternation, block means, one octave of identities") {
   std::vector<double> ramp(4000), alternating(4000);
   for (std::size_t i = 0; i < ramp.size(); ++i) {

@@ -143,7 +143,9 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
   DoubleDouble base;
   double anchor = origin;
   for (std::uint64_t b = 0; b < phase.base.size(); ++b) {
-    const auto block = rate.subspan(b * kBlock, std::min(kBlock, rate.size() - b * kBlock));
+    // A record of one sample less than whole blocks has its last point in a block without samples.
+    const std::uint64_t first = std::min<std::uint64_t>(b * kBlock, rate.size());
+    const auto block = rate.subspan(first, std::min(kBlock, rate.size() - first));
     anchor = first_finite(block, anchor / scale) * scale;
     double total = 0;
     for (const double y : block) total += finite_or(y * scale, anchor) - anchor;
