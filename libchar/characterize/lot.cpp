@@ -13,6 +13,7 @@
 #include "libchar/characterize/detail/alike_runs.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/shaped_curves.hpp"
@@ -29,8 +30,7 @@ const ChannelResult& channel_of(Devices devices, const LotMember& m) {
 /// Names of files without folders, or with them where two are alike.
 std::vector<std::string> device_names(Devices devices) {
   std::vector<std::string> names;
-  for (const Characterization& one : devices)
-    names.push_back(std::filesystem::path(one.log.file).stem().string());
+  for (const Characterization& one : devices) names.push_back(stem_of_log(one.log.file));
   const std::vector<std::string> stems = names;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (std::count(stems.begin(), stems.end(), stems[i]) > 1) names[i] = devices[i].log.file;

@@ -7,6 +7,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
 #include "libchar/core/json.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/sha256.hpp"
 
@@ -19,11 +20,12 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostOfDocument = std::size_t{1} << 30U;
 constexpr std::size_t kPieceOfFile = std::size_t{1} << 20U;
 
-/// SHA-256 of a file of any length; "" where it cannot be read.
+/// SHA-256 of a file of any length, with the parts behind it where it is a list of them; "" where it cannot be read.
 std::string digest_of(const std::string& path) {
   try {
     Sha256 hash;
-    for_pieces_of_file(path, kPieceOfFile, [&](std::string_view piece) { hash.update(piece); });
+    for (const std::string& file : files_of_log(path))
+      for_pieces_of_file(file, kPieceOfFile, [&](std::string_view piece) { hash.update(piece); });
     return hash.finish();
   } catch (const Error&) {
     return "";

@@ -17,6 +17,7 @@
   FORMAT(mcap)                      \
   FORMAT(bag)                       \
   FORMAT(db3)                       \
+  FORMAT(rosbag2)                   \
   FORMAT(npz)                       \
   FORMAT(hdf5)                      \
   FORMAT(matlab)                    \

@@ -16,6 +16,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/pattern.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
@@ -44,15 +45,13 @@ std::string front_of(const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(descriptor);
-    std::error_code none;
-    const bool rosbag2 =
-        std::filesystem::exists(std::filesystem::path(path) / "metadata.yaml", none);
     throw Error({ErrorKind::input,
                  "E0101",
                  path,
                  "is a folder, a file was expected",
                  "",
-                 rosbag2 ? "a recording of ROS 2: name the .mcap or .db3 file in it" : ""});
+                 "of folders those of rosbag2 are read, which have a metadata.yaml (ros2 bag "
+                 "reindex writes one)"});
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
@@ -95,6 +94,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
     for (const Format& format : formats())
       if (format.about.from_pipes) return format;
   }
+  if (is_rosbag2(path)) return *find_format("rosbag2");
   const std::string front = front_of(path);
   if (csv::packing_of(front) != csv::Packing::none) return packed_format(path);
   for (const Format& format : formats())
@@ -276,14 +276,16 @@ struct Watch final : BlockSink {
 
 }  // namespace
 
-LogInfo read_log_head(const std::string& path, const ReadOptions& options) {
+LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
+  const std::string path = named_log_file(log);
   LogInfo info = open_rows(format_of(path, options), path, options)->info();
   name_channels(info.channels, options);
   scale_channels(info.channels, options, nullptr);
   return info;
 }
 
-LogInfo log_listing(const std::string& path, const ReadOptions& options) {
+LogInfo log_listing(const std::string& log, const ReadOptions& options) {
+  const std::string path = named_log_file(log);
   const Format& format = format_of(path, options);
   LogInfo info;
   info.file = path;
@@ -294,8 +296,8 @@ LogInfo log_listing(const std::string& path, const ReadOptions& options) {
   info.dialect = reader->dialect();
   if (!info.topics.empty()) reader->finish(info.warnings);
   std::error_code none;
-  const auto bytes = std::filesystem::file_size(path, none);
-  info.bytes = none ? 0 : bytes;
+  for (const std::string& file : files_of_log(path))
+    if (const auto bytes = std::filesystem::file_size(file, none); !none) info.bytes += bytes;
   return info;
 }
 
@@ -357,11 +359,12 @@ void judge_values(const Watch& watch,
 
 }  // namespace
 
-LogInfo read_log(const std::string& path,
+LogInfo read_log(const std::string& log,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress) {
   check_rate_option(options);
+  const std::string path = named_log_file(log);
   const auto source = open_rows(format_of(path, options), path, options);
   Warnings warnings;
   Watch watch(sink, options);

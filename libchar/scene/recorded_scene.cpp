@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
@@ -180,7 +181,7 @@ Scene scene_from_recording(const SensorRecording& r) {
   check_units(r, chosen);
   Scene scene;
   scene.file = r.scene_file.empty() ? r.file : r.scene_file;
-  scene.name = fs::path(r.file).stem().string();
+  scene.name = stem_of_log(r.file);
   scene.recording = r.file;
   scene.reading = r.reading;
   scene.files.push_back(r.file);

@@ -17,6 +17,7 @@
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_name.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
@@ -54,7 +55,7 @@ fs::path folder_for(const CharacterizeVerb& verb,
                     const std::string& log,
                     std::set<std::string>& taken) {
   if (verb.logs.size() == 1) return verb.folder;
-  return fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken);
+  return fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken);
 }
 
 std::vector<std::string> inputs_of(const CharacterizeVerb& verb) {
@@ -165,7 +166,7 @@ std::vector<FolderOutputs> single_reports(const CharacterizeVerb& verb,
   std::set<std::string> taken;
   std::vector<FolderOutputs> all;
   for (const Characterization& result : results) {
-    folders.push_back(unused_file_name_for(fs::path(result.log.file).stem().string(), taken));
+    folders.push_back(unused_file_name_for(libchar::stem_of_log(result.log.file), taken));
     const fs::path folder = fs::path(verb.folder) / folders.back();
     all.push_back({folder, report_files(characterization_view(result), folder)});
   }
@@ -242,7 +243,7 @@ void foresee_reports(const CharacterizeVerb& verb) {
   };
   for (const std::string& log : verb.logs)
     foresee(verb.pool || verb.lot
-                ? fs::path(verb.folder) / unused_file_name_for(fs::path(log).stem().string(), taken)
+                ? fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken)
                 : folder_for(verb, log, taken),
             {"report.html", "report.json", "curves.csv"});
   if (verb.pool) foresee(verb.folder, {"runs.html", "runs.json"});

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/log_files.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/inspection_text.hpp"
 #include "reading_options.hpp"
@@ -38,7 +39,7 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
   if (info.time.rate_hz <= 0)
     return fmt::format(
         "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
-  const std::string folder = std::filesystem::path(info.file).stem().string();
+  const std::string folder = libchar::stem_of_log(info.file);
   return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
                      log,
                      flags,

@@ -18,7 +18,7 @@ FileHash::~FileHash() {
 
 void FileHash::start() {
   if (!wanted_ || hashing_.valid() || !digest_.empty()) return;
-  const auto hash = [this] { return digest_of_file(); };
+  const auto hash = [this] { return digest_of_files(); };
   try {
     hashing_ = std::async(std::launch::async, hash);
   } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
@@ -32,16 +32,17 @@ std::string FileHash::finish() {
   return digest_;
 }
 
-std::string FileHash::digest_of_file() const {
+std::string FileHash::digest_of_files() const {
   Sha256 sha;
   std::vector<std::byte> piece(std::size_t{1} << 20U);
-  for (std::uint64_t at = 0; at < file_.size() && !stop_;) {
-    const auto n =
-        static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file_.size() - at));
-    file_.read(at, std::span(piece).first(n));
-    sha.update({reinterpret_cast<const char*>(piece.data()), n});
-    at += n;
-  }
+  for (const BinaryFile* file : files_)
+    for (std::uint64_t at = 0; at < file->size() && !stop_;) {
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file->size() - at));
+      file->read(at, std::span(piece).first(n));
+      sha.update({reinterpret_cast<const char*>(piece.data()), n});
+      at += n;
+    }
   return sha.finish();
 }
 

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <future>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "libchar/log/binary/file.hpp"
 
@@ -12,7 +14,10 @@ namespace libchar {
 class FileHash {
  public:
   /// The file outlives this. Nothing is hashed unless `wanted`.
-  FileHash(const BinaryFile& file, bool wanted) : file_(file), wanted_(wanted) {}
+  FileHash(const BinaryFile& file, bool wanted) : files_({&file}), wanted_(wanted) {}
+  /// Of several files as if they were one.
+  FileHash(std::vector<const BinaryFile*> files, bool wanted)
+      : files_(std::move(files)), wanted_(wanted) {}
   /// An abandoned reading does not finish the hash of a large file.
   ~FileHash();
   FileHash(const FileHash&) = delete;
@@ -24,9 +29,9 @@ class FileHash {
   std::string finish();
 
  private:
-  std::string digest_of_file() const;
+  std::string digest_of_files() const;
 
-  const BinaryFile& file_;
+  std::vector<const BinaryFile*> files_;
   bool wanted_;
   std::atomic<bool> stop_ = false;
   std::string digest_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/file_hash.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
@@ -22,10 +23,10 @@ class TopicRows final : public RowSource {
             const std::string& path,
             std::string_view format,
             const ReadOptions& options)
-      : reader_(std::move(reader)), file_(path), hash_(file_, options.hash) {
+      : reader_(std::move(reader)), files_(open_all(path)), hash_(pointers(), options.hash) {
     info_.file = path;
     info_.format = format;
-    info_.bytes = file_.size();
+    for (const auto& file : files_) info_.bytes += file->size();
     info_.topics = reader_->topics();
     info_.dialect = reader_->dialect();
     const auto choice =
@@ -44,7 +45,7 @@ class TopicRows final : public RowSource {
 
   const LogInfo& info() const override { return info_; }
   std::uint64_t bytes_read() const override { return reader_->bytes_read(); }
-  std::uint64_t bytes_total() const override { return file_.size(); }
+  std::uint64_t bytes_total() const override { return info_.bytes; }
   std::string sha256() override { return hash_.finish(); }
 
   bool next(RowBlock& block, Warnings& warnings) override {
@@ -79,6 +80,18 @@ class TopicRows final : public RowSource {
   }
 
  private:
+  static std::vector<std::unique_ptr<BinaryFile>> open_all(const std::string& path) {
+    std::vector<std::unique_ptr<BinaryFile>> files;
+    for (const std::string& file : files_of_log(path))
+      files.push_back(std::make_unique<BinaryFile>(file));
+    return files;
+  }
+  std::vector<const BinaryFile*> pointers() const {
+    std::vector<const BinaryFile*> all;
+    for (const auto& file : files_) all.push_back(file.get());
+    return all;
+  }
+
   const LogTopic& topic() const { return info_.topics[topic_]; }
 
   std::string place_of(std::uint64_t row) const {
@@ -174,7 +187,7 @@ class TopicRows final : public RowSource {
   }
 
   std::unique_ptr<TopicReader> reader_;
-  BinaryFile file_;
+  std::vector<std::unique_ptr<BinaryFile>> files_;
   FileHash hash_;
   LogInfo info_;
   std::size_t topic_ = 0;

@@ -1,0 +1,23 @@
+#pragma once
+// The files that one log consists of: a recording of rosbag2 is a folder of parts, which its metadata.yaml lists in their order.
+// Readers read them, and whoever asks whether a log is still what it was takes the digest of them all.
+
+#include <string>
+#include <vector>
+
+namespace libchar {
+
+/// The file by which a log is named: the metadata.yaml of a folder of rosbag2, else the path itself.
+std::string named_log_file(const std::string& path);
+
+/// Is this file the metadata.yaml of rosbag2?
+bool is_rosbag2(const std::string& file);
+
+/// The file itself and, of a metadata.yaml of rosbag2, the parts behind it in their order, all of its folder. Throws Error(input) for a
+/// part that is not there and a list that cannot be read.
+std::vector<std::string> files_of_log(const std::string& file);
+
+/// What to call a log in the names of files: its name without suffix, of a recording of rosbag2 that of its folder.
+std::string stem_of_log(const std::string& file);
+
+}  // namespace libchar
