@@ -42,7 +42,7 @@
 #include "libchar/log/inspection.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/lot/device_record.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/replay.hpp"

@@ -1,0 +1,197 @@
+#include "libchar/lot/detail/lot_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "libchar/core/pattern.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+using Records = std::span<const DeviceRecord>;
+
+/// -1, 0, 1 in natural order.
+int compared(const std::string& a, const std::string& b) {
+  if (a == b) return 0;
+  return comes_before(a, b) ? -1 : 1;
+}
+
+bool stands_before(const DeviceRecord& a, const DeviceRecord& b) {
+  for (const auto member : {&DeviceRecord::type,
+                            &DeviceRecord::batch,
+                            &DeviceRecord::device,
+                            &DeviceRecord::log,
+                            &DeviceRecord::sha256,
+                            &DeviceRecord::settings})
+    if (const int way = compared(a.*member, b.*member); way != 0) return way < 0;
+  return false;
+}
+
+/// Canonical unit and kind of a unit as it is written.
+struct KnownUnit {
+  std::string symbol, kind;
+};
+
+KnownUnit known_unit(const std::string& text) {
+  const auto unit = find_unit(text);
+  if (!unit) return {text, text.empty() ? "no unit" : "in " + text};
+  return {unit->symbol, fmt::format("{} in {}", name_of(unit->quantity), unit->symbol)};
+}
+
+/// Each device's channels of a group, in order of devices: the recordings of one stand together.
+void number_members(Records records, const std::vector<std::size_t>& device_of, LotGroup& group) {
+  const auto key = [&](const LotPlace& p) {
+    return std::tuple<std::size_t, std::string_view, std::uint32_t>(
+        device_of[p.recording], records[p.recording].channels[p.channel].name, p.recording);
+  };
+  // Recordings of one device keep their order.
+  std::stable_sort(
+      group.places.begin(), group.places.end(), [&](const LotPlace& a, const LotPlace& b) {
+        const auto ka = key(a), kb = key(b);
+        return std::tie(std::get<0>(ka), std::get<1>(ka)) <
+               std::tie(std::get<0>(kb), std::get<1>(kb));
+      });
+  for (std::size_t i = 0; i < group.places.size(); ++i) {
+    const auto here = key(group.places[i]);
+    if (i > 0) {
+      const auto before = key(group.places[i - 1]);
+      if (std::get<0>(here) == std::get<0>(before) && std::get<1>(here) == std::get<1>(before)) {
+        group.member.push_back(group.member.back());
+        continue;
+      }
+    }
+    group.member.push_back(static_cast<std::uint32_t>(group.devices.size()));
+    group.devices.push_back(static_cast<std::uint32_t>(std::get<0>(here)));
+  }
+}
+
+/// Groups by type, then a name, found again by a text.
+class GroupTable {
+ public:
+  explicit GroupTable(bool of_kind) : of_kind_(of_kind) {}
+  LotGroup& of(const std::string& type, const std::string& name, const std::string& unit) {
+    key_.assign(type).append(1, '\0').append(name).append(1, '\0').append(unit);
+    const auto [at, fresh] = index_.try_emplace(key_, groups_.size());
+    if (fresh) {
+      LotGroup& group = groups_.emplace_back();
+      group.type = type;
+      group.name = name;
+      group.channel_unit = unit;
+      group.of_kind = of_kind_;
+    }
+    return groups_[at->second];
+  }
+  std::vector<LotGroup> take() { return std::move(groups_); }
+
+ private:
+  bool of_kind_;
+  std::string key_;
+  std::unordered_map<std::string, std::size_t> index_;
+  std::vector<LotGroup> groups_;
+};
+
+bool several_names(Records records, const LotGroup& kind) {
+  const auto name = [&](const LotPlace& p) -> const std::string& {
+    return records[p.recording].channels[p.channel].name;
+  };
+  return std::any_of(kind.places.begin(), kind.places.end(), [&](const LotPlace& p) {
+    return name(p) != name(kind.places[0]);
+  });
+}
+
+/// The same log of the same device twice: a run that was begun again writes it again.
+std::string copies_note(std::size_t copies) {
+  return fmt::format(
+      "{} of a log that is there already, with the same settings: not counted twice.",
+      plural(copies, "record"));
+}
+
+}  // namespace
+
+SortedRecords sorted_records(Records records) {
+  SortedRecords out;
+  out.order.resize(records.size());
+  std::iota(out.order.begin(), out.order.end(), std::size_t{0});
+  std::stable_sort(out.order.begin(), out.order.end(), [&](std::size_t a, std::size_t b) {
+    return stands_before(records[a], records[b]);
+  });
+  out.device_of.assign(records.size(), kNoDevice);
+  std::unordered_map<std::string, std::size_t> devices;
+  std::set<std::tuple<std::size_t, std::string, std::string>> logs;
+  std::vector<std::size_t> kept;
+  for (const std::size_t r : out.order) {
+    const DeviceRecord& one = records[r];
+    const std::size_t device =
+        devices.try_emplace(one.type + '\0' + one.device, devices.size()).first->second;
+    if (!one.sha256.empty() && !logs.emplace(device, one.sha256, one.settings).second) continue;
+    out.device_of[r] = device;
+    if (device == out.first.size()) out.first.push_back(r);
+    kept.push_back(r);
+  }
+  if (kept.size() < out.order.size())
+    out.notes.push_back(copies_note(out.order.size() - kept.size()));
+  out.order = std::move(kept);
+  return out;
+}
+
+std::vector<LotGroup> lot_groups(Records records, const SortedRecords& sorted) {
+  GroupTable names(false), kinds(true);
+  std::unordered_map<std::string, KnownUnit> units;
+  for (const std::size_t r : sorted.order)
+    for (std::size_t c = 0; c < records[r].channels.size(); ++c) {
+      const RecordedChannel& channel = records[r].channels[c];
+      auto unit = units.find(channel.unit);
+      if (unit == units.end()) unit = units.emplace(channel.unit, known_unit(channel.unit)).first;
+      const LotPlace place{static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c)};
+      names.of(records[r].type, channel.name, unit->second.symbol).places.push_back(place);
+      kinds.of(records[r].type, unit->second.kind, unit->second.symbol).places.push_back(place);
+    }
+  std::vector<LotGroup> out;
+  for (LotGroup& kind : kinds.take())
+    if (several_names(records, kind)) out.push_back(std::move(kind));
+  for (LotGroup& name : names.take()) out.push_back(std::move(name));
+  std::stable_sort(out.begin(), out.end(), [](const LotGroup& a, const LotGroup& b) {
+    return a.of_kind != b.of_kind ? a.of_kind : compared(a.type, b.type) < 0;
+  });
+  for (LotGroup& group : out) number_members(records, sorted.device_of, group);
+  return out;
+}
+
+std::vector<std::string> unlike_records(Records records,
+                                        const SortedRecords& sorted,
+                                        const std::vector<LotGroup>& groups) {
+  std::vector<std::string> out;
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> units;
+  for (const LotGroup& group : groups)
+    if (!group.of_kind) units[{group.type, group.name}].insert(group.channel_unit);
+  for (const auto& [channel, found] : units)
+    if (found.size() > 1)
+      out.push_back(fmt::format("{}{} has {} units ({}): compared within each.",
+                                channel.second,
+                                channel.first.empty() ? "" : " of " + channel.first,
+                                found.size(),
+                                fmt::join(found, ", ")));
+  std::set<std::string> settings, programs;
+  for (const std::size_t r : sorted.order) {
+    settings.insert(records[r].settings);
+    programs.insert(records[r].program);
+  }
+  for (const auto& [what, found] :
+       {std::pair("settings", &settings), std::pair("versions of the program", &programs)})
+    if (found->size() > 1)
+      out.push_back(
+          fmt::format("The recordings were characterized with {} {}: what differs may be that.",
+                      found->size(),
+                      what));
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,29 @@
+#pragma once
+// The values of one quantity in a group: one a member, several recordings of a member taken together.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/lot_groups.hpp"
+#include "libchar/lot/fleet_lot.hpp"
+
+namespace libchar {
+
+struct QuantityValues {
+  LotCounts counts;
+  std::vector<std::uint32_t> member;  ///< of the group, those that count
+  std::vector<double> y, v;           ///< ln(value), or the value, and its variance
+  std::optional<RepeatedDevices> repeats;
+  std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
+};
+
+/// `batch_of`: of each device an index below `batches`.
+QuantityValues quantity_values(std::span<const DeviceRecord> records,
+                               const LotGroup& group,
+                               DeviceQuantity quantity,
+                               const std::vector<std::size_t>& batch_of,
+                               std::size_t batches);
+
+}  // namespace libchar

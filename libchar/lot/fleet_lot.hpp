@@ -1,0 +1,130 @@
+#pragma once
+// A fleet's devices side by side: what they have in common by type, channel and batch, who does not belong to it, and who keeps a
+// data sheet's limits.
+//
+//   FleetLot lot = fleet_lot(records);
+//   for (const QuantityLot& q : lot.quantities) …   // "gyro_x", bias instability: mean, spread, batches, chart
+//
+// Result and order of everything in it depend on what the records say, not on the order in which they come.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/lot/capability.hpp"
+#include "libchar/lot/control_chart.hpp"
+#include "libchar/lot/device_record.hpp"
+#include "libchar/lot/histogram.hpp"
+#include "libchar/model/noise_limits.hpp"
+
+namespace libchar {
+
+struct FleetLotOptions {
+  /// Of each type of device; "": of those that are not named.
+  std::map<std::string, NoiseLimits> limits;
+  /// Of naming any device of a fleet in which none stands out: each quantity of each channel gets its share.
+  double outlier_probability = 0.01;
+  std::size_t worst = 100;  ///< devices in the list of the worst
+};
+
+/// How many devices of a group (of a kind: channels of devices) have a value that counts, and why the others have none.
+struct LotCounts {
+  std::size_t members = 0;
+  std::size_t counted = 0;       ///< detected
+  std::size_t not_detected = 0;  ///< upper limit only
+  std::size_t doubtful = 0;      ///< undetermined or misfit
+  std::size_t no_result = 0;     ///< no fit, or the quantity is not in it
+};
+
+/// 0, 2.5, 25, 50, 75, 97.5 and 100 % of the values lie below.
+inline constexpr std::array<double, 7> kLotQuantiles = {0, 0.025, 0.25, 0.5, 0.75, 0.975, 1};
+
+struct BatchLot {
+  std::string batch;
+  LotCounts counts;
+  std::optional<LotFigures> figures;
+  double median = kNone;
+};
+
+/// Do batches differ by more than their devices let expect?
+struct BatchDifference {
+  double between =
+      0;  ///< standard deviation from batch to batch; relative where the quantity is compared as logarithm
+  Interval between_ci95;
+  double within = 0;  ///< from device to device in a batch
+  double p = 1;       ///< of as large differences of batches that are alike
+};
+
+/// From recording to recording of one device: for a turn-on bias, its repeatability.
+struct RepeatedDevices {
+  std::size_t devices = 0, recordings = 0;  ///< with more than one recording that counts; and those
+  double within = 0;                        ///< as `spread` of LotFigures
+  Interval within_ci95;
+};
+
+struct FleetOutlier {
+  std::size_t recording = 0,
+              channel = 0;  ///< indices into the records: the device's first recording
+  double value = 0;
+  double ratio = 1;      ///< to the mean of the others, of what is compared as logarithm
+  double deviation = 0;  ///< from the others, in standard deviations of that difference
+  double p = 1;          ///< of so large a deviation of any device
+  std::string sentence;
+};
+
+/// One quantity of one channel of all devices of a type, or of all channels of a kind.
+struct QuantityLot {
+  std::string type, group;  ///< "gyro_x", or "angular_rate in deg/s"
+  bool of_kind = false;
+  DeviceQuantity quantity = DeviceQuantity::white_noise;
+  std::string channel_unit, unit;  ///< of the values
+  LotCounts counts;
+  std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as lot_effects says
+  std::optional<LotFigures> figures;
+  std::array<double, kLotQuantiles.size()> quantiles{};  ///< of those counted
+  Histogram histogram;                                   ///< of ln(value) or of the value
+  std::vector<BatchLot> batches;  ///< in natural order; empty where there is one
+  std::optional<BatchDifference> batch_difference;
+  std::optional<RepeatedDevices> repeats;
+  // Of a channel only, not of a kind:
+  std::optional<ControlChart> chart;  ///< by batch and device; its indices are those of `charted`
+  std::vector<std::size_t> charted;   ///< recording of each value of the chart
+  std::optional<Capability> capability;
+  std::vector<FleetOutlier> outliers;  ///< worst first
+};
+
+/// A device that stands out or fails a limit.
+struct WorstDevice {
+  std::size_t recording = 0;  ///< its first
+  double p = 1;               ///< the least of its reasons'
+  double deviation = 0;       ///< in standard deviations, of that reason
+  std::vector<std::string> reasons;
+};
+
+struct FleetLot {
+  std::size_t devices = 0;
+  std::vector<std::size_t>
+      order;  ///< recordings by type, batch, device and log; copies of one log are left out
+  std::vector<std::size_t> failed;          ///< of these, those that could not be characterized
+  std::vector<std::string> types, batches;  ///< in natural order
+  std::vector<QuantityLot> quantities;      ///< kinds first, channel by channel then
+  std::vector<WorstDevice> worst;           ///< the worst first, at most as many as asked for
+  std::size_t outlying = 0;                 ///< devices that stand out
+  std::size_t failing = 0, open = 0, keeping = 0;  ///< devices, by all limits that hold for them
+  std::vector<bool> stands_out, fails;             ///< one a record, that of its device
+  std::vector<std::string> notes;                  ///< what was not compared, and why
+  std::string verdict;                             ///< a paragraph
+};
+
+/// Throws Error(usage) without any record, and as limits_for does.
+FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options = {});
+
+/// "batch 7", "no batch".
+std::string batch_title(const std::string& batch);
+
+}  // namespace libchar

@@ -1,0 +1,281 @@
+// A fleet's devices side by side.
+
+#include "libchar/lot/fleet_lot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "tests/lot/made_fleet.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+const QuantityLot& find(const FleetLot& lot,
+                        const std::string& group,
+                        DeviceQuantity quantity,
+                        const std::string& type = "mems") {
+  for (const QuantityLot& q : lot.quantities)
+    if (q.group == group && q.quantity == quantity && q.type == type) return q;
+  FAIL("no such quantity of " << group);
+  return lot.quantities[0];
+}
+
+NoiseLimits limits(const std::string& value) {
+  return parse_limits(
+      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    "
+      "bias_instability: {value: " +
+          value + ", unit: deg/s}\n",
+      "limits.yaml");
+}
+
+bool holds(const Interval& i, double value) {
+  return i.low <= value && value <= i.high;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a fleet has mean, spread, quantiles and a chart of each quantity, a kind of its logarithms") {
+  const auto records = test::made_lot({}, 1);
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.devices == 200);
+  const QuantityLot& b = find(lot, "gyro_x", DeviceQuantity::bias_instability);
+  CHECK(b.counts.members == 200);
+  CHECK(b.counts.counted == 200);
+  CHECK(b.figures->mean == Approx(2e-3).epsilon(0.06));
+  CHECK(b.figures->spread == Approx(0.2).epsilon(0.25));
+  CHECK(b.quantiles[3] == Approx(2e-3).epsilon(0.06));
+  CHECK(b.quantiles[0] <= b.quantiles[1]);
+  std::uint64_t inside = b.histogram.below + b.histogram.above;
+  for (const auto n : b.histogram.count) inside += n;
+  CHECK(inside == 200);
+  REQUIRE(b.chart);
+  CHECK(b.chart->centre == Approx(std::log(2e-3)).epsilon(0.01));
+  // From device to device: their spread and the uncertainty of each.
+  CHECK(b.chart->sigma == Approx(std::hypot(0.2, 0.1)).epsilon(0.2));
+  const QuantityLot& kind = find(lot, "angular_rate in deg/s", DeviceQuantity::bias_instability);
+  CHECK(kind.counts.members == 400);
+  CHECK_FALSE(kind.chart);
+  const QuantityLot& bias = find(lot, "gyro_y", DeviceQuantity::turn_on_bias);
+  CHECK(bias.unit == "deg/s");
+  CHECK(bias.figures->spread == Approx(0.1).epsilon(0.2));
+  CHECK(lot.verdict == "200 devices. No device stands out from its kind.");
+}
+
+TEST_CASE("the spread of devices is not the uncertainty of one") {
+  test::MadeLot made;
+  made.spread[2] = 0;
+  const FleetLot lot = fleet_lot(test::made_lot(made, 2));
+  const QuantityLot& k = find(lot, "gyro_x", DeviceQuantity::random_walk);
+  // Values scatter by a quarter, devices do not.
+  CHECK(std::log(k.quantiles[5] / k.quantiles[1]) > 0.8);
+  CHECK(k.figures->spread < 0.12);
+  CHECK(k.figures->spread_ci95.low == 0);
+}
+
+TEST_CASE("a fleet's result does not depend on the order of its records") {
+  test::MadeLot other;
+  other.batch = "2";
+  other.prefix = "b";
+  auto records = test::made_lot({}, 3);
+  test::append(records, test::made_lot(other, 4));
+  const FleetLot before = fleet_lot(records);
+  std::vector<std::string> devices;
+  for (const std::size_t r : before.order) devices.push_back(records[r].device);
+  std::reverse(records.begin(), records.end());
+  std::swap(records[3], records[170]);
+  const FleetLot after = fleet_lot(records);
+  REQUIRE(after.quantities.size() == before.quantities.size());
+  for (std::size_t q = 0; q < after.quantities.size(); ++q) {
+    CHECK(after.quantities[q].group == before.quantities[q].group);
+    CHECK(after.quantities[q].figures->mean == before.quantities[q].figures->mean);
+    CHECK(after.quantities[q].figures->spread_ci95.high ==
+          before.quantities[q].figures->spread_ci95.high);
+    if (after.quantities[q].batch_difference)
+      CHECK(after.quantities[q].batch_difference->p == before.quantities[q].batch_difference->p);
+  }
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    CHECK(records[after.order[i]].device == devices[i]);
+  CHECK(devices[1] == "imu2");
+  CHECK(devices[9] == "imu10");
+}
+
+TEST_CASE("a device that does not belong to its fleet is named with its reason, the worst first") {
+  auto records = test::made_lot({}, 5);
+  records[16].channels[1].values[0].value *= 1.5;
+  records[40].channels[0].values[1].value *= 9;
+  const FleetLot lot = fleet_lot(records);
+  REQUIRE(lot.worst.size() == 2);
+  CHECK(lot.outlying == 2);
+  CHECK(records[lot.worst[0].recording].device == "imu41");
+  CHECK_THAT(
+      lot.worst[0].reasons[0],
+      Contains("gyro_x: Bias instability") && Contains("times that of the others (p < 0.0001)"));
+  CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio ==
+        Approx(1.5).epsilon(0.2));
+  CHECK(lot.stands_out[16]);
+  CHECK_FALSE(lot.stands_out[17]);
+  CHECK_THAT(lot.verdict, Contains("2 devices stand out"));
+}
+
+TEST_CASE("a fleet without a device that stands out names one in 1 %") {
+  int named = 0;
+  for (std::uint64_t seed = 100; seed < 300; ++seed)
+    named += fleet_lot(test::made_lot({}, seed)).outlying > 0;
+  CHECK(named <= 8);  // 2 are expected; more than 8 by chance: 0.02 %
+}
+
+TEST_CASE("means and spreads of a known lot lie in their intervals") {
+  // 20 lots of 200 devices, 2 channels × 4 quantities: 320 intervals of means and of spreads. fleet_lot_bench has more.
+  int means = 0, spreads = 0, all = 0;
+  const test::MadeLot made;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const FleetLot lot = fleet_lot(test::made_lot(made, 7000 + seed));
+    for (const QuantityLot& q : lot.quantities) {
+      if (q.of_kind || !q.figures) continue;
+      const bool bias = q.quantity == DeviceQuantity::turn_on_bias;
+      const auto t = static_cast<std::size_t>(q.quantity);
+      means += holds(q.figures->mean_ci95, bias ? made.bias : made.mean[t]);
+      spreads += holds(q.figures->spread_ci95, bias ? made.bias_spread : made.spread[t]);
+      ++all;
+    }
+  }
+  REQUIRE(all == 160);
+  // 93 to 97 % of 160, which scatter by 1.7 % themselves.
+  CHECK(means >= 0.91 * all);
+  CHECK(spreads >= 0.91 * all);
+}
+
+TEST_CASE("batches that differ are told apart, and their devices' spread is not the difference") {
+  test::MadeLot second;
+  second.batch = "2";
+  second.prefix = "b";
+  second.mean[1] *= 1.3;
+  auto records = test::made_lot({}, 8);
+  test::append(records, test::made_lot(second, 9));
+  const FleetLot lot = fleet_lot(records);
+  const QuantityLot& b = find(lot, "gyro_x", DeviceQuantity::bias_instability);
+  REQUIRE(b.batches.size() == 2);
+  CHECK(b.batches[1].figures->mean / b.batches[0].figures->mean == Approx(1.3).epsilon(0.08));
+  REQUIRE(b.batch_difference);
+  CHECK(b.batch_difference->p < 1e-6);
+  CHECK(b.batch_difference->within == Approx(0.2).epsilon(0.2));
+  CHECK(b.batch_difference->between == Approx(std::log(1.3) / std::sqrt(2)).epsilon(0.25));
+  CHECK(find(lot, "gyro_x", DeviceQuantity::random_walk).batch_difference->p > 1e-4);
+  CHECK_THAT(lot.verdict,
+             Contains("in 2 batches") && Contains("Batches differ: Bias instability of"));
+}
+
+TEST_CASE("recordings of one device say how its bias repeats") {
+  auto records = test::made_lot({}, 10);
+  test::Gaussian gauss(11);
+  const std::size_t devices = records.size();
+  for (std::size_t i = 0; i < devices; ++i) {
+    DeviceRecord again = records[i];
+    again.log = "again/" + again.device;
+    again.sha256 += "again";
+    for (RecordedChannel& c : again.channels) c.values[3].value += 0.03 * std::sqrt(2) * gauss();
+    records.push_back(again);
+  }
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.devices == 200);
+  CHECK(lot.order.size() == 400);
+  const QuantityLot& bias = find(lot, "gyro_x", DeviceQuantity::turn_on_bias);
+  CHECK(bias.counts.members == 200);
+  REQUIRE(bias.repeats);
+  CHECK(bias.repeats->devices == 200);
+  CHECK(bias.repeats->within == Approx(0.03).epsilon(0.2));
+  CHECK(holds(bias.figures->spread_ci95, 0.1));
+}
+
+TEST_CASE("a log that is there twice counts once") {
+  auto records = test::made_lot({}, 12);
+  records.push_back(records[3]);
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.order.size() == 200);
+  REQUIRE(lot.notes.size() == 1);
+  CHECK_THAT(lot.notes[0], Contains("1 record of a log that is there already"));
+}
+
+TEST_CASE("what is not detected, doubtful or without a fit is counted as that") {
+  auto records = test::made_lot({}, 13);
+  for (std::size_t i = 0; i < 100; ++i) {
+    RecordedValue& v = records[i].channels[0].values[2];
+    v.status = i < 90 ? Status::not_detected : Status::misfit;
+    v.upper95 = 1e-3;
+    if (i < 90) v.value = kNone;
+  }
+  records[150].channels[0].fitted = false;
+  records[151].problem = "is empty";
+  records[151].channels.clear();
+  const FleetLot lot = fleet_lot(records);
+  const QuantityLot& k = find(lot, "gyro_x", DeviceQuantity::random_walk);
+  CHECK(k.counts.members == 199);
+  CHECK(k.counts.counted == 98);
+  CHECK(k.counts.not_detected == 90);
+  CHECK(k.counts.doubtful == 10);
+  CHECK(k.counts.no_result == 1);
+  CHECK_FALSE(k.figures);
+  CHECK(lot.failed == std::vector<std::size_t>{151});
+  CHECK_THAT(lot.verdict, Contains("1 recording could not be characterized"));
+}
+
+TEST_CASE("units of one quantity are one channel, unlike ones are not compared") {
+  auto records = test::made_lot({}, 14);
+  records[0].channels[0].unit = "dps";
+  records[1].channels[0].unit = "rad/s";
+  const FleetLot lot = fleet_lot(records);
+  CHECK(find(lot, "gyro_x", DeviceQuantity::white_noise).counts.members == 199);
+  REQUIRE(lot.notes.size() == 1);
+  CHECK_THAT(lot.notes[0], Contains("gyro_x of mems has 2 units"));
+}
+
+TEST_CASE("devices are held against limits, and the lot's capability is that of its distribution") {
+  const auto records = test::made_lot({}, 15);
+  FleetLotOptions options;
+  options.limits[""] = limits("3e-3");
+  const FleetLot lot = fleet_lot(records, options);
+  const QuantityLot& b = find(lot, "gyro_x", DeviceQuantity::bias_instability);
+  REQUIRE(b.capability);
+  const Capability& c = *b.capability;
+  CHECK(c.pass + c.fail + c.not_decided == 200);
+  CHECK(c.fail > 0);
+  const double ppk = std::log(1.5) / (3 * 0.2);
+  CHECK(c.ppk.value() == Approx(ppk).epsilon(0.2));
+  CHECK(holds(c.ppk_ci95, ppk));
+  CHECK(c.above == Approx(std::erfc(3 * c.ppk.value() / std::sqrt(2.0)) / 2));
+  CHECK(c.cpk.value() < c.ppk.value());
+  CHECK(lot.failing == c.fail);
+  CHECK(lot.open == c.not_decided);
+  CHECK(lot.worst.size() == c.fail);
+  CHECK_THAT(lot.worst[0].reasons[0], Contains("allowed 3e-3 deg/s"));
+  CHECK_FALSE(find(lot, "gyro_y", DeviceQuantity::bias_instability).capability);
+  CHECK(lot.verdict ==
+        fmt::format("200 devices. No device stands out from its kind. Of 200 devices held against "
+                    "limits, {} fail one or more, {} not decided, {} keep all of them.",
+                    c.fail,
+                    c.not_decided,
+                    c.pass));
+}
+
+TEST_CASE("a fleet of nothing, and limits of a type that is not there, are refused") {
+  CHECK_THROWS_WITH(fleet_lot({}), Contains("E0752") && Contains("at least one device record"));
+  FleetLotOptions options;
+  options.limits["fog"] = limits("3e-3");
+  CHECK_THROWS_WITH(fleet_lot(test::made_lot({}, 16), options),
+                    Contains("E0751") && Contains("the types are mems"));
+}
+
+TEST_CASE("one device is a fleet without statistics") {
+  test::MadeLot made;
+  made.devices = 1;
+  const FleetLot lot = fleet_lot(test::made_lot(made, 17));
+  CHECK_FALSE(find(lot, "gyro_x", DeviceQuantity::white_noise).figures);
+  CHECK(lot.verdict == "1 device. No device stands out from its kind.");
+}

@@ -1,0 +1,80 @@
+#pragma once
+// Records of devices drawn from known distributions.
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "libchar/lot/device_record.hpp"
+#include "tests/support/noise.hpp"
+
+namespace test {
+
+/// What the devices of a lot are drawn from.
+struct MadeLot {
+  std::size_t devices = 200;
+  std::vector<std::string> channels = {"gyro_x", "gyro_y"};
+  double mean[3] = {5e-3, 2e-3, 3e-4};  ///< of N, B, K
+  double spread[3] = {0.05, 0.2, 0.3};  ///< relative
+  double sd[3] = {0.01, 0.1, 0.25};  ///< relative uncertainty of a device, within a factor of two
+  double bias = 0.3, bias_spread = 0.1, bias_sd = 0.002;
+  std::string prefix = "imu", type = "mems", batch = "1";
+};
+
+inline libchar::RecordedValue made_value(
+    libchar::DeviceQuantity quantity, double mean, double spread, double sd, Gaussian& gauss) {
+  libchar::RecordedValue v;
+  v.quantity = quantity;
+  v.sd = sd * std::exp2(gauss.uniform() - 0.5);
+  const double off = spread * gauss() + v.sd * gauss();
+  const bool logarithm = libchar::in_logarithm(quantity);
+  v.value = logarithm ? mean * std::exp(off) : mean + off;
+  v.ci95 = logarithm ? libchar::Interval{v.value * std::exp(-1.96 * v.sd),
+                                         v.value * std::exp(1.96 * v.sd)}
+                     : libchar::Interval{v.value - 1.96 * v.sd, v.value + 1.96 * v.sd};
+  return v;
+}
+
+inline libchar::DeviceRecord made_device(const MadeLot& lot, std::size_t number, Gaussian& gauss) {
+  using libchar::DeviceQuantity;
+  libchar::DeviceRecord r;
+  r.device = lot.prefix + std::to_string(number);
+  r.type = lot.type;
+  r.batch = lot.batch;
+  r.log = "logs/" + r.device + ".csv";
+  r.sha256 = r.device + lot.batch;
+  r.settings = "s";
+  r.program = "0.1.0";
+  r.report = "devices/" + r.device;
+  for (const std::string& name : lot.channels) {
+    libchar::RecordedChannel c;
+    c.name = name;
+    c.unit = "deg/s";
+    c.rate_hz = 100;
+    c.duration_s = 3600;
+    c.samples = 360000;
+    c.fitted = true;
+    c.p = gauss.uniform();
+    for (std::size_t t = 0; t < 3; ++t)
+      c.values.push_back(
+          made_value(static_cast<DeviceQuantity>(t), lot.mean[t], lot.spread[t], lot.sd[t], gauss));
+    c.values.push_back(
+        made_value(DeviceQuantity::turn_on_bias, lot.bias, lot.bias_spread, lot.bias_sd, gauss));
+    r.channels.push_back(std::move(c));
+  }
+  return r;
+}
+
+inline std::vector<libchar::DeviceRecord> made_lot(const MadeLot& lot, std::uint64_t seed) {
+  Gaussian gauss(seed);
+  std::vector<libchar::DeviceRecord> out;
+  for (std::size_t i = 0; i < lot.devices; ++i) out.push_back(made_device(lot, i + 1, gauss));
+  return out;
+}
+
+inline void append(std::vector<libchar::DeviceRecord>& to,
+                   const std::vector<libchar::DeviceRecord>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace test
