@@ -43,6 +43,7 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/lot/fleet_lot.hpp"
+#include "libchar/lot/lot_comparison.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/replay.hpp"
