@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kLeastColumns = 40, kLeastRows = 4, kMostRows = 200, kMostColumns = 1000;
 // Colours of ECMA-48 that are told apart on light and dark screens: blue, red, green, magenta, yellow, cyan.
-constexpr std::array<int, 6> kInks = {34, 31, 32, 35, 33, 36};
+constexpr std::array<int, 6> kTerminalInks = {34, 31, 32, 35, 33, 36};
 
 std::string utf8(char32_t c) {
   return {static_cast<char>(0xE0U | (c >> 12U)),
@@ -119,8 +119,9 @@ void letter_terminal_series(BrailleCanvas& canvas,
 
 std::string coloured(const std::string& text, int series, bool colour) {
   if (!colour || series < 0) return text;
-  return fmt::format(
-      "\x1b[{}m{}\x1b[0m", kInks[static_cast<std::size_t>(series) % kInks.size()], text);
+  return fmt::format("\x1b[{}m{}\x1b[0m",
+                     kTerminalInks[static_cast<std::size_t>(series) % kTerminalInks.size()],
+                     text);
 }
 
 std::string canvas_row(BrailleCanvas& canvas, std::size_t row, bool colour) {

@@ -119,6 +119,14 @@ def shortened(value):
     return [shortened(one) for one in value[:2]] if isinstance(value, list) else value
 
 
+def figure_parts(report):
+    """A report with one part at a time beside what every report has: as a whole it is longer than an input may be."""
+    common = {key: value for key, value in report.items() if not isinstance(value, (dict, list))}
+    for key, value in report.items():
+        if key not in common and key not in ("tool", "command", "input", "measured"):
+            yield {**common, key: value}
+
+
 def made_by(program):
     """(target, first byte, text) of reports and a fusion.yaml that the program writes."""
     with tempfile.TemporaryDirectory() as folder:
@@ -128,11 +136,22 @@ def made_by(program):
         for name, first in (("log/report.json", 0), ("scene/report.json", 1)):
             path = pathlib.Path(folder) / name
             if path.exists():
-                yield "report", first, json.dumps(shortened(json.loads(path.read_text())))
+                document = json.loads(path.read_text())
+                yield "report", first, json.dumps(shortened(document))
+                for parts in figure_parts(document):
+                    yield "figure", 0, json.dumps(shortened(parts), separators=(",", ":"))
         for path in pathlib.Path(folder).rglob("*.yaml"):
             yield ("fusion" if path.name == "fusion.yaml" else "model"), 0, path.read_text()[:LARGEST]
-        table = run("allan", ROOT / "fixtures" / "imu_at_rest.csv").stdout.decode(errors="replace")
-        yield "curve", 1, table[:LARGEST]
+            yield "figure", 1, path.read_text()[:LARGEST]
+        for verb in ("allan", "psd", "fit"):
+            table = run(verb, ROOT / "fixtures" / "imu_at_rest.csv").stdout.decode(errors="replace")
+            yield "figure", 2, table[:LARGEST]
+            if verb == "allan":
+                yield "curve", 1, table[:LARGEST]
+            document = json.loads(run(verb, ROOT / "fixtures" / "imu_at_rest.csv", "--json").stdout)
+            yield "figure", 0, json.dumps(shortened(document), separators=(",", ":"))
+        table = pathlib.Path(folder) / "log" / "curves.csv"
+        yield "figure", 2, table.read_text()[:LARGEST]
 
 
 def seeds(program):
@@ -144,6 +163,7 @@ def seeds(program):
         for piece in cut(data, generator, 1):
             yield "csv", bytes([generator.randrange(256), generator.randrange(256)]) + piece
             yield "curve", b"\1" + piece
+            yield "figure", b"\2" + piece
     for path in files(KNOWN / "npy", ".npy") + files(ROOT / "fixtures" / "npy", ".npy"):
         for piece in cut(path.read_bytes(), generator):
             yield "npy", bytes([generator.randrange(256)]) + piece
