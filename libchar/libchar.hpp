@@ -23,6 +23,7 @@
 #include "libchar/allan/confidence.hpp"
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/characterize/stretches.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"

@@ -21,14 +21,10 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/detail/equivalent_dof.hpp"
-#include "libchar/allan/detail/missing_samples.hpp"
-#include "libchar/allan/detail/present_points.hpp"
+#include "libchar/allan/allan_sums.hpp"
+#include "libchar/allan/detail/octave_terms.hpp"
 #include "libchar/allan/detail/pyramid_kernels.hpp"
-#include "libchar/core/error.hpp"
-#include "libchar/core/work.hpp"
 
 namespace libchar {
 namespace {
@@ -38,89 +34,8 @@ constexpr std::size_t kTail =
     7;  // samples of the last block that terms reaching into the next one need
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Terms of one averaging factor; `squares` of differences of sums, not of means.
+/// `squares` of differences of sums, not of means.
 using Tally = PresentTerms;
-
-/// Sums of what is present, less the first sample of the record, and how many each lacks of `size`.
-struct Holed {
-  const double* sum;
-  const double* absent;
-  double size;
-};
-
-/// Terms of sums of `width` neighbours that start in z[from], …, touching nothing missing; z scaled
-/// so that squares are safe.
-void add_one_by_one(const double* z, std::size_t n, std::size_t width, double scale, Tally& tally) {
-  double lane[8] = {};
-  std::uint64_t terms = 0;
-  for (std::size_t i = 0; i + 2 * width <= n; ++i) {
-    double d = (z[i + width] - z[i]) * scale;
-    if (width == 2) d = (z[i + 2] - z[i]) * scale + (z[i + 3] - z[i + 1]) * scale;
-    if (width == 4)
-      d = ((z[i + 4] - z[i]) * scale + (z[i + 6] - z[i + 2]) * scale) +
-          ((z[i + 5] - z[i + 1]) * scale + (z[i + 7] - z[i + 3]) * scale);
-    if (std::isnan(d)) continue;
-    lane[i % 8] += d * d;
-    ++terms;
-  }
-  const double sum =
-      ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-  tally.squares += static_cast<long double>(sum) / static_cast<long double>(scale) /
-                   static_cast<long double>(scale);
-  tally.terms += terms;
-  tally.starts += terms;
-}
-
-double sum_of(const double* values, std::size_t width) {
-  if (width == 1) return values[0];
-  if (width == 2) return values[0] + values[1];
-  return (values[0] + values[2]) + (values[1] + values[3]);
-}
-
-/// The same where something may be missing: differences of means over what is present, times m.
-void add_present(const Holed& z, std::size_t n, std::size_t width, double scale, Tally& tally) {
-  const double m = z.size * static_cast<double>(width);
-  double squares = 0, shortfall = 0, imbalance = 0;
-  for (std::size_t i = 0; i + 2 * width <= n; ++i) {
-    const double a = m - sum_of(z.absent + i, width), b = m - sum_of(z.absent + i + width, width);
-    imbalance += (b - a) / m * ((b - a) / m);
-    ++tally.starts;
-    if (!has_mean(a, m) || !has_mean(b, m)) continue;
-    const double d = (sum_of(z.sum + i + width, width) * scale) * (m / b) -
-                     (sum_of(z.sum + i, width) * scale) * (m / a);
-    squares += d * d;
-    shortfall += 1 / a + 1 / b - 2 / m;
-    ++tally.terms;
-  }
-  const auto wide = static_cast<long double>(scale);
-  tally.squares += static_cast<long double>(squares) / wide / wide;
-  tally.shortfall += static_cast<long double>(shortfall);
-  tally.imbalance += static_cast<long double>(imbalance);
-}
-
-/// Samples with NaN as sums of one, less `origin`, and which of them are missing.
-void split(const double* x, std::size_t n, double origin, double* sum, double* absent) {
-  for (std::size_t i = 0; i < n; ++i) {
-    absent[i] = std::isnan(x[i]) ? 1 : 0;
-    sum[i] = std::isnan(x[i]) ? 0 : x[i] - origin;
-  }
-}
-
-bool any(const double* absent, std::size_t n) {
-  return std::any_of(absent, absent + n, [](double count) { return count > 0; });
-}
-
-/// A power of two that brings the largest deviation of the block near 1.
-double block_scale(const double* z, std::size_t n) {
-  double first = kMissing, largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (std::isnan(z[i])) continue;
-    if (std::isnan(first)) first = z[i];
-    largest = std::max(largest, std::fabs(z[i] - first));
-  }
-  if (largest == 0 || !std::isfinite(largest)) return 1;
-  return std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
-}
 
 /// Squares this large or small lose nothing to overflow or underflow.
 bool safe(double sum) {
@@ -138,6 +53,8 @@ struct AllanPyramid::State {
     std::vector<double> absent;  // how many samples the places of `block` lack; empty: none
     std::array<Tally, 3> tally;  // sums of 1 and 2 (level 0 only) and of 4
     bool started = false;        // tail is filled
+    std::uint64_t count = 0;     // values so far
+    LevelEnd first, last;        // of them
   };
   std::vector<Level> levels;
   std::uint64_t samples = 0, missing = 0;
@@ -160,6 +77,7 @@ struct AllanPyramid::State {
                std::size_t n,
                double origin_of_level);
   void keep_tail(Level& level, const double* z, const double* absent) const;
+  void keep_ends(Level& level, const double* z, const double* absent, std::size_t n) const;
   Level& at(std::size_t level);
 };
 
@@ -226,8 +144,8 @@ void AllanPyramid::State::across(
   if (index > 0) std::copy(level.tail_absent.begin(), level.tail_absent.end(), lacks);
   if (absent != nullptr) std::copy_n(absent, taken, lacks + kTail);
   if (index == 0 && std::any_of(joint, joint + all, [](double v) { return std::isnan(v); }))
-    split(joint, all, origin, joint, lacks);
-  if (any(lacks, all))
+    split_present(joint, all, origin, joint, lacks);
+  if (any_absent(lacks, all))
     return across_holed(
         level, index, {joint, lacks, std::ldexp(1.0, static_cast<int>(index))}, taken);
   const double scale = block_scale(joint, all);
@@ -260,6 +178,17 @@ void AllanPyramid::State::keep_tail(Level& level, const double* z, const double*
   level.tail_absent = {};
   if (absent != nullptr) std::copy_n(absent + kBlock - kTail, kTail, level.tail_absent.begin());
   level.started = true;
+}
+
+/// What joins this part of a record to its neighbours (allan_sums.hpp).
+void AllanPyramid::State::keep_ends(Level& level,
+                                    const double* z,
+                                    const double* absent,
+                                    std::size_t n) const {
+  const auto lacks = [&](std::size_t i) { return absent != nullptr ? absent[i] : 0.0; };
+  for (std::size_t i = 0; i < std::min(n, kTail); ++i) level.first.push_back(z[i], lacks(i));
+  for (std::size_t i = n - std::min(n, kTail); i < n; ++i) level.last.push_last(z[i], lacks(i));
+  level.count += n;
 }
 
 void AllanPyramid::State::hand_up(
@@ -298,6 +227,7 @@ void AllanPyramid::State::finish_block(std::size_t index,
   across(level, index, z, nullptr, n);
   within(level, base, z, n, clean ? sums : nullptr);
   if (n == kBlock) keep_tail(level, z, nullptr);
+  keep_ends(level, z, nullptr, n);
   hand_up(index, z, nullptr, n, base ? origin : 0.0);
 }
 
@@ -311,6 +241,7 @@ void AllanPyramid::State::holed_block(
   for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k)
     add_present({sum, absent, size}, n, std::size_t{1} << k, scale, level.tally[k]);
   if (n == kBlock) keep_tail(level, z, absent);
+  keep_ends(level, z, absent, n);
   hand_up(index, sum, absent, n, 0);
 }
 
@@ -322,7 +253,7 @@ void AllanPyramid::State::holed_base(const double* x, std::size_t n) {
     if (std::isnan(v)) ++missing;
     if (std::isnan(origin)) origin = v;
   }
-  split(values.data(), n, origin, sum.data(), absent.data());
+  split_present(values.data(), n, origin, sum.data(), absent.data());
   holed_block(0, values.data(), sum.data(), absent.data(), n);
 }
 
@@ -341,47 +272,23 @@ void AllanPyramid::State::close() {
   }
 }
 
-namespace {
-
-void add_point(std::uint64_t m,
-               const Tally& tally,
-               MissingSamples& missing,
-               std::vector<std::uint64_t>& without,
-               AllanCurve& curve) {
-  if (2 * m > curve.samples) return;
-  const long double factor = static_cast<long double>(m);
-  AllanPoint point;
-  point.m = m;
-  point.tau_s = static_cast<double>(factor) * curve.dt_s;
-  point.terms = tally.terms;
-  if (curve.missing == 0 && tally.terms > 0) {
-    point.deviation = static_cast<double>(
-        std::sqrt(tally.squares / (2.0L * static_cast<long double>(tally.terms))) / factor);
-    return curve.points.push_back(point);
-  }
-  Tally means = tally;
-  means.squares /= factor * factor;
-  const double dof =
-      tally.terms == 0
-          ? 1
-          : equivalent_dof(curve.type, {1}, m, tally.terms, stride_of(curve, point), curve.dt_s);
-  const auto found =
-      missing.corrected(static_cast<double>(m), means, 2, 1 / static_cast<double>(m), dof);
-  missing.add_octave(static_cast<double>(m), means, found.variance);
-  if (found.variance < 0) return without.push_back(m);
-  point.deviation = static_cast<double>(std::sqrt(found.variance));
-  point.inflation = found.inflation;
-  point.added = found.added;
-  curve.points.push_back(point);
-}
-
-}  // namespace
-
 void AllanPyramid::StateDeleter::operator()(State* state) const {
   delete state;
 }
 
 AllanPyramid::AllanPyramid() : state_(new State) {}
+AllanPyramid::AllanPyramid(const AllanSums& sums) : AllanPyramid() {
+  state_->samples = sums.samples;
+  state_->missing = sums.missing;
+  state_->origin = sums.origin;
+  for (const AllanLevel& level : sums.levels) {
+    State::Level& own = state_->levels.emplace_back();
+    own.count = level.count;
+    own.first = level.head;
+    own.last = level.tail;
+    own.tally = level.terms;
+  }
+}
 AllanPyramid::~AllanPyramid() = default;
 AllanPyramid::AllanPyramid(AllanPyramid&&) noexcept = default;
 AllanPyramid& AllanPyramid::operator=(AllanPyramid&&) noexcept = default;
@@ -397,30 +304,15 @@ AllanCurve AllanPyramid::finish(double dt_s) const& {
 }
 
 AllanCurve AllanPyramid::finish(double dt_s) && {
+  return octave_curve(std::move(*this).sums(), dt_s);
+}
+
+AllanSums AllanPyramid::sums() && {
   state_->close();
-  AllanCurve curve;
-  curve.dt_s = dt_s;
-  curve.samples = state_->samples;
-  curve.missing = state_->missing;
-  curve.stride_divisor = kPyramidStride;
-  std::vector<std::uint64_t> without;
-  MissingSamples missing;
-  const auto& levels = state_->levels;
-  for (std::size_t l = 0; l < levels.size(); ++l)
-    for (std::size_t k = l == 0 ? 0 : 2; k < 3; ++k)
-      add_point(std::uint64_t{1} << (l + k), levels[l].tally[k], missing, without, curve);
-  note_missing(without, curve);
-  if (curve.points.empty())
-    throw Error(
-        {ErrorKind::numeric,
-         "E0401",
-         "",
-         "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
-             std::to_string(curve.samples) + " of this record",
-         "",
-         ""});
-  for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
-  return curve;
+  AllanSums out{state_->samples, state_->missing, state_->origin, {}};
+  for (const State::Level& level : state_->levels)
+    out.levels.push_back({level.count, level.first, level.last, level.tally});
+  return out;
 }
 
 AllanCurve pyramid_deviation(std::span<const double> record, double dt_s) {

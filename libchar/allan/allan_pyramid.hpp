@@ -6,6 +6,7 @@
 #include <span>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/allan/allan_sums.hpp"
 
 namespace libchar {
 
@@ -18,12 +19,16 @@ inline constexpr std::uint64_t kPyramidStride = 4;
 class AllanPyramid {
  public:
   AllanPyramid();
+  /// One that has seen a record elsewhere, part by part; no more samples come.
+  explicit AllanPyramid(const AllanSums& sums);
   ~AllanPyramid();
   AllanPyramid(AllanPyramid&&) noexcept;
   AllanPyramid& operator=(AllanPyramid&&) noexcept;
   void push(std::span<const double> samples);
   AllanCurve finish(double dt_s) const&;
   AllanCurve finish(double dt_s) &&;  ///< the same, where no more samples come
+  /// What it has found, to be joined to the parts of the record before and behind; no more samples come.
+  AllanSums sums() &&;
 
  private:
   struct State;

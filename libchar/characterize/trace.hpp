@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "libchar/core/state_archive.hpp"
+
 namespace libchar {
 
 struct Trace {
@@ -20,6 +22,12 @@ class TraceMeter {
   void push(std::span<const double> samples);
   Trace finish() const;
 
+  /// The samples that `later` has seen follow directly: the same as if they had been pushed here. They must be at most the largest power of two that
+  /// divides the number of those before: else std::logic_error.
+  void join(TraceMeter later);
+  void write_state(StateWriter& to) const;
+  void read_state(StateReader& from);
+
  private:
   struct Block {
     double low = __builtin_inf(), high = -__builtin_inf();
@@ -28,6 +36,7 @@ class TraceMeter {
     void join(const Block& later);
   };
   void close();
+  void halve();
 
   std::uint64_t length_ = 1;  ///< of a block
   std::uint64_t filled_ = 0;  ///< samples in the block that is open

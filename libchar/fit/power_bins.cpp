@@ -19,28 +19,11 @@
 #include "libchar/core/present.hpp"
 #include "libchar/fit/detail/line_clip.hpp"
 #include "libchar/fit/detail/pooled_power.hpp"
+#include "libchar/fit/detail/record_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
 namespace {
-
-constexpr std::uint64_t kLeftToMeans =
-    16;  ///< coefficients of a block that the series of means covers
-constexpr std::uint64_t kMeansPerBlock = 64;
-constexpr std::uint64_t kSmallest = 8;  ///< shorter segments carry nothing worth their edge effects
-constexpr std::uint64_t kLongGap = 4096;  ///< shorter gaps are closed up
-
-PooledPower transform(std::span<const double> points,
-                      std::uint64_t spacing,
-                      std::uint64_t first,
-                      std::uint64_t end) {
-  PooledPower power{points.size(), spacing, first, 1, {}};
-  Dct plan(points.size());
-  const std::span<const double> c = plan.transform(points);
-  power.mean.reserve(end > first ? end - first : 0);
-  for (std::uint64_t k = first; k < end; ++k) power.mean.push_back(c[k] * c[k]);
-  return power;
-}
 
 /// Whole eights of samples less `shift` into eight sums; how many samples that were.
 LIBCHAR_WIDE_LANES std::size_t add_eights(const double* x,
@@ -162,17 +145,18 @@ struct PowerBinner::State {
     std::vector<PooledPower> powers;
     const std::uint64_t tail = pending.size();
     if (segment_blocks == 0) {
-      if (tail >= kSmallest) powers.push_back(transform(pending, 1, 1, tail));
+      if (tail >= kSmallestTransform) powers.push_back(record_power(pending, 1, 1, tail));
       return powers;
     }
     const double split = (static_cast<double>(kLeftToMeans) - 0.5) / static_cast<double>(block);
     const auto first = static_cast<std::uint64_t>(std::ceil(split * static_cast<double>(tail)));
-    if (tail >= kSmallest && first < tail) {
-      powers.push_back(transform(pending, 1, std::max<std::uint64_t>(1, first), tail));
+    if (tail >= kSmallestTransform && first < tail) {
+      powers.push_back(record_power(pending, 1, std::max<std::uint64_t>(1, first), tail));
     }
     const auto low =
         static_cast<std::uint64_t>(split * static_cast<double>(means.size() * per_mean));
-    powers.push_back(transform(means, per_mean, 1, std::min<std::uint64_t>(low + 1, means.size())));
+    powers.push_back(
+        record_power(means, per_mean, 1, std::min<std::uint64_t>(low + 1, means.size())));
     return powers;
   }
 
@@ -211,6 +195,9 @@ PowerBinner::PowerBinner(std::uint64_t block) {
                  ""});
   }
   state_ = std::make_unique<State>(block);
+}
+PowerBinner::PowerBinner(std::vector<PooledPower> powers) : PowerBinner() {
+  state_->done = std::move(powers);
 }
 PowerBinner::~PowerBinner() = default;
 PowerBinner::PowerBinner(PowerBinner&&) noexcept = default;

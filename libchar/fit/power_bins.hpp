@@ -23,6 +23,8 @@ struct PowerBin {
   std::uint64_t first = 0, end = 0, length = 0, spacing = 1;
 };
 
+struct PooledPower;
+
 /// Bins without the coefficients of spectral lines.
 struct ClippedBins {
   std::vector<PowerBin> bins;
@@ -41,6 +43,8 @@ class PowerBinner final : public BlockTaker {
   static bool suits(std::uint64_t block);
 
   explicit PowerBinner(std::uint64_t block = std::uint64_t{1} << 16U);
+  /// One that has seen a record elsewhere, of which these are the powers (power_sums.hpp).
+  explicit PowerBinner(std::vector<PooledPower> powers);
   ~PowerBinner() override;
   PowerBinner(PowerBinner&&) noexcept;
   PowerBinner& operator=(PowerBinner&&) noexcept;

@@ -22,8 +22,9 @@ struct LogFormat {
   bool writes_rate = false;  ///< … and its sampling rate
   bool writes_stamps =
       false;  ///< … and has a column of stamps, unless `WriteOptions::time_column` is off
-  bool topics = false;      ///< may hold several streams, each with a clock of its own
-  bool from_pipes = false;  ///< can be read from standard input and named pipes
+  bool topics = false;          ///< may hold several streams, each with a clock of its own
+  bool rows_at_places = false;  ///< a row can be read without those in front of it
+  bool from_pipes = false;      ///< can be read from standard input and named pipes
 };
 
 /// All of them, in the order in which files are asked whether they are of this format.

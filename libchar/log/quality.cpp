@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
@@ -88,6 +90,41 @@ struct Extreme {
     run = v == value ? run + 1 : 0;
     count += v == value ? 1 : 0;
     runs = runs || run >= kSaturatedRun;
+  }
+  /// `lead`: so many samples at the front of the later part are its extreme; `all`: it has no others.
+  void join(const Extreme& later, std::uint64_t lead, bool all) {
+    const Extreme before = *this;
+    const auto of = [](const Extreme& e, double v) {
+      return v == e.value ? e.count : v == e.next ? e.at_next : 0;
+    };
+    value = std::max(before.value, later.value);
+    next = std::max({before.next,
+                     later.next,
+                     before.value < value ? before.value : before.next,
+                     later.value < value ? later.value : later.next});
+    count = of(before, value) + of(later, value);
+    at_next = next > -__builtin_inf() ? of(before, next) + of(later, next) : 0;
+    const std::uint64_t in_front = before.value == value ? before.run : 0;
+    const std::uint64_t behind = later.value == value ? lead : 0;
+    runs = (before.value == value && before.runs) || (later.value == value && later.runs) ||
+           in_front + behind >= kSaturatedRun;
+    run = later.value < value ? 0 : all ? in_front + later.run : later.run;
+  }
+  void write_state(StateWriter& to) const {
+    to.real(value);
+    to.real(next);
+    to.numbers(std::array{run, count, at_next});
+    to.flag(runs);
+  }
+  void read_state(StateReader& from) {
+    value = from.real();
+    next = from.real();
+    const std::vector<std::uint64_t> counts = from.numbers();
+    if (counts.size() != 3) from.refuse("an end of the range");
+    run = counts[0];
+    count = counts[1];
+    at_next = counts[2];
+    runs = from.flag();
   }
 };
 
@@ -197,6 +234,12 @@ struct MeanAndSpread {
     mean += d * other / total;
     n = total;
   }
+  void join(const MeanAndSpread& later) {
+    const double total = n + later.n, d = (later.origin - origin) + (later.mean - mean);
+    m2 += later.m2 + d * d * n * later.n / total;
+    mean += d * later.n / total;
+    n = total;
+  }
 };
 
 // Raw moments of differences: their mean is next to nothing beside their spread, except for
@@ -209,6 +252,17 @@ struct DifferenceMoments {
     s2 += block.s2;
     s3 += block.s3;
     s4 += block.s4;
+  }
+  void join(const DifferenceMoments& later) {
+    n += later.n;
+    s1 += later.s1;
+    s2 += later.s2;
+    s3 += later.s3;
+    s4 += later.s4;
+  }
+  void add_one(double d) {
+    const double q = d * d;
+    join({1, d, q, q * d, q * q});
   }
   double standard_deviation() const {
     const double v = n > 1 ? (s2 - s1 * s1 / n) / (n - 1) : 0;
@@ -235,8 +289,37 @@ class CounterWatch {
     if (steps_ == 0) learn(x, before, starts, n);
     for (std::size_t i = 0; i < n; ++i)
       if (starts == nullptr || starts[i] == 0) step(x[i] - before[i], x[i]);
-    possible_ = static_cast<double>(std::min(up_.count, down_.count)) <= 0.25 * steps() ||
-                static_cast<double>(same_) >= kMost * steps();
+    judge();
+  }
+
+  /// `across`: the step between the two parts, where no sample is missing there; `value`: that it leads to.
+  void join(const CounterWatch& later, std::optional<double> across, double value) {
+    possible_ = possible_ && later.possible_;
+    if (!possible_) return;
+    if (steps_ == 0) usual_ = later.usual_;
+    if (across) step(*across, value);
+    const double apart = std::fabs(later.usual_ - usual_);
+    if (apart <= 1e-6 * std::fabs(usual_) + 0x1p-51 * std::fabs(value)) same_ += later.same_;
+    steps_ += later.steps_;
+    up_.join(later.up_);
+    down_.join(later.down_);
+    judge();
+  }
+  void write_state(StateWriter& to) const {
+    to.flag(possible_);
+    to.numbers(std::array{steps_, same_, up_.count, down_.count});
+    to.reals(std::array{usual_, up_.least, up_.largest, down_.least, down_.largest});
+  }
+  void read_state(StateReader& from) {
+    possible_ = from.flag();
+    const std::vector<std::uint64_t> n = from.numbers();
+    const std::vector<double> x = from.reals();
+    if (n.size() != 4 || x.size() != 5) from.refuse("a counter");
+    steps_ = n[0];
+    same_ = n[1];
+    usual_ = x[0];
+    up_ = {n[2], x[1], x[2]};
+    down_ = {n[3], x[3], x[4]};
   }
 
   std::string sentence() const {
@@ -271,11 +354,20 @@ class CounterWatch {
       least = std::min(least, size);
       largest = std::max(largest, size);
     }
+    void join(const Direction& later) {
+      count += later.count;
+      least = std::min(least, later.least);
+      largest = std::max(largest, later.largest);
+    }
   };
   static constexpr std::uint64_t kLeastSteps = 63;
   static constexpr double kMost = 0.9;
 
   double steps() const { return static_cast<double>(steps_); }
+  void judge() {
+    possible_ = static_cast<double>(std::min(up_.count, down_.count)) <= 0.25 * steps() ||
+                static_cast<double>(same_) >= kMost * steps();
+  }
 
   // The usual step is the median of the first block.
   void learn(const double* x, const double* before, const unsigned char* starts, std::size_t n) {
@@ -354,6 +446,37 @@ double tidy(double step) {
 
 }  // namespace
 
+namespace {
+
+/// How the samples begin: what a part before them goes on with.
+struct Beginning {
+  double value = 0;         ///< the first one that is there
+  bool at_once = false;     ///< it is the very first
+  std::uint64_t run = 0;    ///< so many in a row have its value
+  std::uint64_t equal = 0;  ///< the same over missing ones
+  bool any = false, run_over = false, over = false;
+
+  void push(std::span<const double> samples, bool from_first) {
+    for (std::size_t i = 0; i < samples.size() && !over; ++i) {
+      if (!(std::fabs(samples[i]) <= kLargestSample)) {
+        run_over = run_over || any;
+        continue;
+      }
+      if (!any) {
+        value = samples[i];
+        at_once = from_first && i == 0;
+        any = true;
+      }
+      over = samples[i] != value;
+      if (over) continue;
+      ++equal;
+      run += run_over ? 0 : 1;
+    }
+  }
+};
+
+}  // namespace
+
 struct QualityMeter::State {
   MeanAndSpread values;
   DifferenceMoments differences;
@@ -363,6 +486,8 @@ struct QualityMeter::State {
   std::uint64_t missing = 0, beyond = 0, run = 0, longest_run = 0, repeated = 0;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
+  Beginning beginning;
+  std::uint64_t pushed = 0;
   bool float32 = true;
   bool any_fraction = false;
   // The sample before the block, then samples until the block is full; with it whether a sample does not follow the one before directly
@@ -379,9 +504,13 @@ struct QualityMeter::State {
   void process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks);
   void runs(const double* x, const double* before, std::size_t n, bool repeats);
   bool may_saturate(std::size_t levels) const;
+  void join(const State& later);
+  void join_runs(const State& later, bool direct);
 };
 
 void QualityMeter::State::push(std::span<const double> samples) {
+  if (!beginning.over) beginning.push(samples, pushed == 0);
+  pushed += samples.size();
   const double* x = samples.data();
   const double* const end = x + samples.size();
   while (x != end) {
@@ -570,6 +699,130 @@ bool QualityMeter::State::may_saturate(std::size_t levels) const {
   const double others = values.n - ends;
   const double repeats = static_cast<double>(repeated) - ends;
   return repeats < 0.5 * others;
+}
+
+// Neither part has samples on hold.
+void QualityMeter::State::join(const State& later) {
+  const bool direct = joined && later.beginning.at_once;
+  const std::optional<double> step =
+      direct ? std::optional(later.beginning.value - previous) : std::nullopt;
+  if (values.n == 0) values.origin = later.values.origin;
+  join_runs(later, direct);
+  values.join(later.values);
+  if (step) differences.add_one(*step);
+  differences.join(later.differences);
+  counter.join(later.counter, step, later.beginning.value);
+  for (const double value : later.distinct.values())
+    if (!distinct.full()) distinct.add(value);
+  missing += later.missing;
+  beyond += later.beyond;
+  minimum = std::min(minimum, later.minimum);
+  maximum = std::max(maximum, later.maximum);
+  float32 = float32 && later.float32;
+  previous = later.previous;
+  joined = later.joined;
+  pushed += later.pushed;
+}
+
+void QualityMeter::State::join_runs(const State& later, bool direct) {
+  const Beginning& other = later.beginning;
+  const auto is = [](double n, std::uint64_t count) { return n == static_cast<double>(count); };
+  const bool all = is(later.values.n, other.equal);
+  top.join(later.top, later.top.value == other.value ? other.equal : 0, all);
+  bottom.join(later.bottom, -later.bottom.value == other.value ? other.equal : 0, all);
+  const bool same = direct && other.value == previous;
+  const std::uint64_t across = same ? run + other.run : 0;
+  repeated += later.repeated + (same ? 1 : 0);
+  longest_run = std::max({longest_run, later.longest_run, across});
+  run = same && other.run == later.pushed ? across : later.run;
+  if (values.n == 0) {
+    beginning = other;
+    beginning.at_once = other.at_once && pushed == 0;
+    return;
+  }
+  if (beginning.over || (other.any && other.value != beginning.value)) {
+    beginning.over = true;
+    return;
+  }
+  if (same && beginning.run == pushed) beginning.run += other.run;
+  beginning.run_over = beginning.run_over || other.run_over || !direct;
+  beginning.equal += other.equal;
+  beginning.over = other.over;
+}
+
+void QualityMeter::join(const QualityMeter& later) {
+  if (later.state_->pushed == 0) return;
+  state_->process_held();
+  State other = *later.state_;
+  other.process_held();
+  if (other.values.n == 0) {
+    state_->missing += other.missing;
+    state_->beyond += other.beyond;
+    state_->pushed += other.pushed;
+    state_->joined = false;
+    state_->beginning.run_over = state_->beginning.run_over || state_->beginning.any;
+    return;
+  }
+  state_->join(other);
+}
+
+void QualityMeter::write_state(StateWriter& to) const {
+  State s = *state_;
+  s.process_held();
+  to.reals(std::array{s.values.origin, s.values.n, s.values.mean, s.values.m2});
+  const DifferenceMoments& d = s.differences;
+  to.reals(std::array{d.n, d.s1, d.s2, d.s3, d.s4});
+  to.reals(s.distinct.values());
+  s.counter.write_state(to);
+  s.top.write_state(to);
+  s.bottom.write_state(to);
+  to.numbers(std::array{s.missing, s.beyond, s.run, s.longest_run, s.repeated, s.pushed});
+  to.reals(std::array{s.previous, s.minimum, s.maximum});
+  to.flags(std::array<unsigned char, 2>{s.joined, s.float32});
+  const Beginning& b = s.beginning;
+  to.real(b.value);
+  to.numbers(std::array{b.run, b.equal});
+  to.flags(std::array<unsigned char, 4>{b.at_once, b.any, b.run_over, b.over});
+}
+
+void QualityMeter::read_state(StateReader& from) {
+  State s;
+  const auto reals = [&](std::size_t n) {
+    std::vector<double> x = from.reals();
+    if (x.size() != n) from.refuse("the quality of a channel");
+    return x;
+  };
+  const auto numbers = [&](std::size_t n) {
+    std::vector<std::uint64_t> x = from.numbers();
+    if (x.size() != n) from.refuse("the quality of a channel");
+    return x;
+  };
+  const auto v = reals(4), d = reals(5);
+  s.values = {v[0], v[1], v[2], v[3]};
+  s.differences = {d[0], d[1], d[2], d[3], d[4]};
+  const std::vector<double> distinct = from.reals();
+  if (distinct.size() > kDistinct) from.refuse("more distinct values than are kept");
+  for (const double value : distinct) {
+    if (!std::isfinite(value)) from.refuse("a distinct value");
+    s.distinct.add(value);
+  }
+  s.counter.read_state(from);
+  s.top.read_state(from);
+  s.bottom.read_state(from);
+  const auto n = numbers(6);
+  s.missing = n[0], s.beyond = n[1], s.run = n[2];
+  s.longest_run = n[3], s.repeated = n[4], s.pushed = n[5];
+  const auto x = reals(3);
+  s.previous = x[0], s.minimum = x[1], s.maximum = x[2];
+  const std::vector<unsigned char> flags = from.flags();
+  const double first = from.real();
+  const auto runs = numbers(2);
+  const std::vector<unsigned char> begun = from.flags();
+  if (flags.size() != 2 || begun.size() != 4) from.refuse("the quality of a channel");
+  s.joined = flags[0] != 0, s.float32 = flags[1] != 0;
+  s.beginning = {
+      first, begun[0] != 0, runs[0], runs[1], begun[1] != 0, begun[2] != 0, begun[3] != 0};
+  *state_ = std::move(s);
 }
 
 ChannelQuality QualityMeter::finish() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/state_archive.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {
@@ -46,6 +47,12 @@ class QualityMeter {
   QualityMeter& operator=(QualityMeter&&) noexcept;
   void push(std::span<const double> samples);
   ChannelQuality finish() const;
+
+  /// The samples that `later` has seen follow directly: as if they had been pushed here, but for rounding, and for a counter, which
+  /// both parts must show.
+  void join(const QualityMeter& later);
+  void write_state(StateWriter& to) const;
+  void read_state(StateReader& from);
 
  private:
   struct State;

@@ -359,6 +359,71 @@ void judge_values(const Watch& watch,
 
 }  // namespace
 
+namespace {
+
+/// The head with the names and units that the channels have in the end.
+LogInfo named_info(const RowSource& source, const ReadOptions& options) {
+  LogInfo info = source.info();
+  name_channels(info.channels, options);
+  ScaleNotes scaled;
+  scale_channels(info.channels, options, &scaled);
+  for (const auto& [count, names] : scaled)
+    info.dialect.push_back(count + ": " + first_names(names));
+  return info;
+}
+
+}  // namespace
+
+std::string why_no_rows(const LogInfo& log) {
+  const Format* format = find_format(log.format);
+  if (format == nullptr || !format->about.rows_at_places)
+    return fmt::format("its rows have no fixed places ({})", log.format);
+  if (!log.time.column.empty())
+    return fmt::format(
+        "it has stamps (column {}), which say where a sample stands only once all "
+        "of them are read",
+        printable(log.time.column));
+  return "";
+}
+
+LogInfo read_rows(const std::string& path,
+                  const ReadOptions& options,
+                  std::uint64_t first,
+                  std::uint64_t end,
+                  BlockSink& sink) {
+  check_rate_option(options);
+  ReadOptions whole = options;
+  whole.from_s = whole.to_s = std::nullopt;
+  whole.hash = false;
+  const auto source = open_rows(format_of(path, whole), path, whole);
+  std::string why_not = why_no_rows(source->info());
+  if (why_not.empty() && !source->restrict_rows(first, end))
+    why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
+  if (!why_not.empty())
+    throw Error({ErrorKind::usage,
+                 "E0726",
+                 path,
+                 "cannot be read in stretches: " + why_not,
+                 "",
+                 "convert it to .npy first"});
+  Warnings warnings;
+  Watch watch(sink, whole);
+  TimeGrid grid(*source, whole, watch, warnings);
+  RowBlock block;
+  while (source->next(block, warnings)) grid.push(block);
+  LogInfo known;
+  grid.finish(known);
+  source->finish(warnings);
+  LogInfo info = named_info(*source, whole);
+  take_grid(known, info);
+  if (first == 0) {  // what is said of the whole log is said once
+    warn_of_unused(info.channels, whole, warnings);
+    warn_of_units(whole, warnings);
+  }
+  info.warnings = std::move(warnings);
+  return info;
+}
+
 LogInfo read_log(const std::string& log,
                  const ReadOptions& options,
                  BlockSink& sink,
@@ -382,12 +447,7 @@ LogInfo read_log(const std::string& log,
   LogInfo known;
   grid.finish(known);
   source->finish(warnings);
-  LogInfo info = source->info();
-  name_channels(info.channels, options);
-  ScaleNotes scaled;
-  scale_channels(info.channels, options, &scaled);
-  for (const auto& [count, names] : scaled)
-    info.dialect.push_back(count + ": " + first_names(names));
+  LogInfo info = named_info(*source, options);
   warn_of_unused(info.channels, options, warnings);
   take_grid(known, info);
   refuse_without_samples(info, options);

@@ -79,6 +79,18 @@ LogInfo read_log(const std::string& path,
                  BlockSink& sink,
                  Progress& progress = no_progress());
 
+/// Rows first … end-1 of a log without stamps whose rows stand at fixed places (.npy, raw binary), a sample each; nothing in front of
+/// them is read. `from_s` and `to_s` do not count, no digest is taken, and whether a channel has any value is not asked. Throws
+/// Error(usage) where rows have no fixed places or stamps.
+LogInfo read_rows(const std::string& path,
+                  const ReadOptions& options,
+                  std::uint64_t first,
+                  std::uint64_t end,
+                  BlockSink& sink);
+
+/// "" or why rows of a log cannot be read from anywhere: "its rows have no fixed places (csv)". `log`: its head.
+std::string why_no_rows(const LogInfo& log);
+
 /// The code of the Error for a log of several topics of which none was chosen.
 inline constexpr std::string_view kTopicNotChosen = "E0427";
 

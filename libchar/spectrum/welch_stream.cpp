@@ -186,6 +186,13 @@ WelchStream::WelchStream(const WelchOptions& options, WelchWorkspace* workspace)
                  "give a segment length"});
   state_ = std::make_unique<State>(options, workspace);
 }
+WelchStream::WelchStream(const WelchOptions& options,
+                         const WelchSums& sums,
+                         WelchWorkspace* workspace)
+    : WelchStream(options, workspace) {
+  state_->average = Average(state_->options, state_->layout, sums);
+  state_->samples = sums.samples;
+}
 WelchStream::~WelchStream() = default;
 WelchStream::WelchStream(WelchStream&&) noexcept = default;
 WelchStream& WelchStream::operator=(WelchStream&&) noexcept = default;
@@ -214,28 +221,20 @@ void WelchStream::end(SharedBlocks& blocks) {
                state_->halves->block_power());
 }
 
+WelchSums WelchStream::sums() const {
+  Average whole = state_->average;
+  state_->add_rest(whole);
+  WelchSums out = whole.sums();
+  out.samples = state_->samples;
+  return out;
+}
+
 Spectrum WelchStream::finish(double rate_hz) const {
   check_rate(rate_hz);
   const State& s = *state_;
   Average whole = s.average;
   s.add_rest(whole);
-  if (whole.used() == 0)
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 fmt::format("a spectrum with segments of {} samples needs as many without a "
-                             "missing one; none was found in {} samples",
-                             s.layout.segment,
-                             s.samples),
-                 "",
-                 "choose a shorter segment"});
-  Spectrum spectrum = whole.spectrum(s.window, rate_hz);
-  if (spectrum.dropped > 0)
-    spectrum.notes.push_back(
-        fmt::format("{} of {} segments touch a missing sample and were dropped",
-                    spectrum.dropped,
-                    spectrum.dropped + spectrum.segments));
-  return spectrum;
+  return whole.finish(s.window, rate_hz, s.samples);
 }
 
 }  // namespace libchar

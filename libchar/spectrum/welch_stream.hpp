@@ -8,6 +8,7 @@
 
 #include "libchar/core/shared_blocks.hpp"
 #include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {
 
@@ -18,6 +19,10 @@ class WelchStream {
  public:
   /// `workspace`: shared with other streams, and needed while this one is made only; none: memory of its own.
   explicit WelchStream(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
+  /// One that has seen a record elsewhere, part by part; no more samples come.
+  WelchStream(const WelchOptions& options,
+              const WelchSums& sums,
+              WelchWorkspace* workspace = nullptr);
   ~WelchStream();
   WelchStream(WelchStream&&) noexcept;
   WelchStream& operator=(WelchStream&&) noexcept;
@@ -33,6 +38,9 @@ class WelchStream {
   void push(std::span<const double> samples, SharedBlocks& blocks);
   /// No more samples come: a half that waited for its partner is offered too, and `blocks` closed.
   void end(SharedBlocks& blocks);
+
+  /// What it has found so far of a part of a record, but for `head` and `tail` (welch_sums.hpp).
+  WelchSums sums() const;
 
  private:
   struct State;

@@ -5,22 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "libchar/allan/allan_sums.hpp"
+
 namespace libchar {
 
 /// A window of m samples has a mean when more than half of it is there.
 constexpr bool has_mean(double present, double m) {
   return 2 * present > m;
 }
-
-/// Sums over the terms of one averaging factor; d is the difference of the means of what is present in neighbouring windows.
-struct PresentTerms {
-  long double squares = 0;    ///< of d
-  long double shortfall = 0;  ///< of (weight of a window in d)² · (1/present - 1/m)
-  long double imbalance = 0;  ///< of the squared differences of the shares present, over all starts
-  std::uint64_t terms = 0;    ///< in `squares` and `shortfall`
-  std::uint64_t starts = 0;   ///< in `imbalance`
-  void operator+=(const PresentTerms& other);
-};
 
 /// What missing samples add to the mean square of d, scale by scale (missing_samples.cpp).
 class MissingSamples {

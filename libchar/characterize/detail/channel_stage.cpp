@@ -29,7 +29,6 @@ constexpr std::size_t kPlottedBins =
 constexpr std::size_t kFewestForMotion = 2048;
 constexpr std::size_t kLongRecord = std::size_t{1} << 23U;      // whose spectrum may use it up
 constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
-constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
 Mixture white_alone(const AllanCurve& curve) {
@@ -37,11 +36,6 @@ Mixture white_alone(const AllanCurve& curve) {
   if (!curve.points.empty())
     theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
   return theta;
-}
-
-WelchOptions with_segment(WelchOptions options, std::uint64_t segment) {
-  options.segment = segment;
-  return options;
 }
 
 void add_spectrum(ChannelResult& result, const Spectrum& spectrum, const Quantization& grid) {
@@ -66,6 +60,11 @@ void attempt(ChannelResult& result, std::string_view what, Step&& step) {
 }
 
 }  // namespace
+
+WelchOptions streamed_spectrum(WelchOptions options) {
+  if (options.segment == 0) options.segment = kStreamedSegment;
+  return options;
+}
 
 std::string what_needs_all_samples(const CharacterizeOptions& options) {
   if (options.data == SampleKind::phase) return "phase data";
@@ -134,10 +133,7 @@ void ChannelStage::stop_keeping() {
   if (!keeping_) return;
   keeping_ = false;
   streams_ = std::make_unique<ChannelStreams>();
-  const std::uint64_t segment = options_->spectrum.segment;
-  streams_->spectrum.emplace(
-      with_segment(options_->spectrum, segment != 0 ? segment : kStreamedSegment),
-      &workspace_->welch);
+  streams_->spectrum.emplace(streamed_spectrum(options_->spectrum), &workspace_->welch);
   const std::uint64_t shared = streams_->spectrum->shared_length();
   if (options_->wanted.spectrum && wants_fit() && PowerBinner::suits(shared)) {
     streams_->bins = PowerBinner(shared);
@@ -157,6 +153,23 @@ bool ChannelStage::needs_second_pass() const {
 void ChannelStage::begin_second_pass() {
   streams_->cleaned.emplace(kStreamedBlock);
   streams_->cleaner.emplace(streams_->spikes.scale());
+}
+
+void ChannelStage::take_leaves(ChannelSums sums) {
+  keeping_ = false;
+  quality_ = std::move(sums.quality);
+  trace_ = std::move(sums.trace);
+  beyond_ = sums.beyond;
+  streams_ = std::make_unique<ChannelStreams>();
+  streams_->in_leaves = true;
+  if (wants_fit()) streams_->allan = AllanPyramid(sums.allan);
+  if (wants_fit()) streams_->bins = binner_of(sums.bins);
+  if (options_->wanted.spectrum)
+    streams_->spectrum.emplace(streamed_spectrum(options_->spectrum), sums.spectrum);
+  if (!sums.cleaned || !needs_second_pass()) return;
+  streams_->spikes_found = sums.spikes;
+  streams_->cleaned.emplace(binner_of(sums.cleaned->bins));
+  streams_->cleaned_allan = AllanPyramid(sums.cleaned->allan);
 }
 
 void ChannelStage::push_cleaned(std::span<const double> samples) {
@@ -277,8 +290,11 @@ NoiseFit ChannelStage::fit_of_streams(const AllanCurve& octaves, double rate_hz)
   AllanCurve cleaned_allan;
   if (streams_->cleaner) {
     push_cleaned(streams_->cleaner->finish());
+    streams_->spikes_found = streams_->cleaner->count();
+  }
+  if (streams_->spikes_found) {
     answer = spike_answer(
-        found_.difference_kurtosis, spike_alarm(found_.samples), streams_->cleaner->count());
+        found_.difference_kurtosis, spike_alarm(found_.samples), *streams_->spikes_found);
     cleaned_allan = streams_->cleaned_allan.finish(1 / rate_hz);
   }
   const bool cleaned = answer.remedy.has_value();
@@ -417,9 +433,10 @@ void ChannelStage::finish_streams(ChannelResult& result, double rate_hz) {
       add_spectrum(result, streams_->spectrum->finish(rate_hz), quantization());
       if (options_->spectrum.segment == 0)
         result.spectrum.notes.push_back(
-            fmt::format("segments of {} samples instead of a quarter of the record, which does "
-                        "not fit into the memory allowed",
-                        kStreamedSegment));
+            fmt::format("segments of {} samples instead of a quarter of the record, which {}",
+                        kStreamedSegment,
+                        streams_->in_leaves ? "was taken in stretches"
+                                            : "does not fit into the memory allowed"));
     });
   if (is_noise(result))
     attempt(result, "noise fit", [&] { result.fit = fit_of_streams(octaves, rate_hz); });

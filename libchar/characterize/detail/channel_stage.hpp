@@ -9,13 +9,19 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/detail/leaf.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 
 namespace libchar {
 
+/// Of a streamed spectrum unless another is asked for.
+inline constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 inline constexpr std::uint64_t kStreamedBlock = std::uint64_t{1} << 13U;
+
+/// Of a record that is not kept.
+WelchOptions streamed_spectrum(WelchOptions options);
 
 /// The fixed-size stages of a channel whose samples are not kept.
 struct ChannelStreams {
@@ -30,7 +36,9 @@ struct ChannelStreams {
   // In the second pass: the samples without spikes, their bins and their curve.
   std::optional<SpikeCleaner> cleaner;
   std::optional<PowerBinner> cleaned;
+  std::optional<SpikeCount> spikes_found;  // once the cleaner is done
   AllanPyramid cleaned_allan;
+  bool in_leaves = false;  // all of it was taken leaf by leaf, elsewhere
 };
 
 /// What the channels of one log share, from any number of threads.
@@ -67,6 +75,9 @@ class ChannelStage {
   /// samples that were kept.
   bool needs_second_pass() const;
   void begin_second_pass();
+
+  /// Instead of pushes: all of the record as it was found leaf by leaf.
+  void take_leaves(ChannelSums sums);
 
   /// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
   ChannelResult finish(const Channel& channel, double rate_hz);

@@ -157,6 +157,7 @@ Format npy_format() {
   row.about.suffixes = {".npy"};
   row.about.names = "structured arrays";
   row.about.units = "no";
+  row.about.rows_at_places = true;
   row.about.rate = "by a time field";
   row.about.start = "by a time field";
   row.about.written_suffixes = {".npy"};

@@ -112,6 +112,7 @@ Format raw_format() {
   row.about.otherwise = "any with a sidecar";
   row.about.names = "yes";
   row.about.units = "yes";
+  row.about.rows_at_places = true;
   row.about.rate = "yes";
   row.about.start = "yes";
   row.about.written_suffixes = {".f64", ".f32", ".bin", ".raw"};

@@ -67,7 +67,7 @@ class BinaryRows final : public RowSource {
     rows_per_block_ =
         std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
     info_.bytes = file_->size();
-    info_.rows = layout_.rows;
+    info_.rows = end_row_ = layout_.rows;
     layout_.columns.clear();
   }
 
@@ -77,13 +77,20 @@ class BinaryRows final : public RowSource {
     return layout_.column_major ? layout_.data_byte + column_bytes() * layout_.rows : file_->size();
   }
 
+  bool restrict_rows(std::uint64_t first, std::uint64_t end) override {
+    restricted_ = true;
+    next_row_ = std::min(first, layout_.rows);
+    end_row_ = std::min(end, layout_.rows);
+    return true;
+  }
+
   bool next(RowBlock& block, Warnings& warnings) override {
     if (next_row_ == 0) {
       warnings.merge(layout_.warnings);
       hash_.start();
     }
     block.rows = static_cast<std::size_t>(
-        std::min<std::uint64_t>(rows_per_block_, layout_.rows - next_row_));
+        std::min<std::uint64_t>(rows_per_block_, end_row_ - std::min(end_row_, next_row_)));
     block.columns.resize(values_.size());
     block.time_ns.clear();
     block.first_line = 0;
@@ -104,7 +111,9 @@ class BinaryRows final : public RowSource {
     std::uint64_t count = 0;
     for (const std::uint64_t n : missing_per_channel_) count += n;
     if (count == 0) return;
-    const std::string message = missing_cells(info_.channels, missing_per_channel_);
+    // Of a part it says no counts a channel: they would be those of the first part.
+    const std::string message =
+        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_);
     for (const std::string& place : missing_places_) warnings.add("missing_cell", message, place);
     if (count > missing_places_.size())
       warnings.add("missing_cell", message, "", count - missing_places_.size());
@@ -264,11 +273,11 @@ class BinaryRows final : public RowSource {
   std::optional<BinaryColumn> time_;
   std::int64_t nanoseconds_ = 1;
   std::size_t rows_per_block_ = 1, rows_in_file_block_ = 0;
-  std::uint64_t next_row_ = 0, bytes_read_ = 0;
+  std::uint64_t next_row_ = 0, end_row_ = 0, bytes_read_ = 0;
   std::vector<std::byte> bytes_;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::string> missing_places_;
-  bool overflow_as_missing_ = false;
+  bool overflow_as_missing_ = false, restricted_ = false;
   FileHash hash_;
 };
 

@@ -16,7 +16,7 @@ inline constexpr std::string_view kNumbersOutOfRange =
 inline constexpr std::string_view kNumbersTooSmall =
     "numbers with an exponent below those of doubles, read as 0";
 
-/// "empty or NaN cells, taken as missing samples (gyro_x 3, gyro_y 1)".
+/// "empty or NaN cells, taken as missing samples (gyro_x 3, gyro_y 1)"; no counts: without them.
 std::string missing_cells(const std::vector<Channel>& channels,
                           const std::vector<std::uint64_t>& missing_per_channel);
 

@@ -255,7 +255,67 @@ void Average::note_segment(bool used) {
     recent_[next_] = used;
     next_ = (next_ + 1) % lags;
   }
+  if (begin_.size() < lags) begin_.push_back(used ? 1 : 0);
   ++(used ? used_ : dropped_);
+}
+
+Average::Average(const WelchOptions& options, const Layout& layout, const WelchSums& sums)
+    : Average(options, layout) {
+  power_ = sums.power;
+  pairs_ = sums.pairs;
+  begin_ = sums.begin;
+  used_ = sums.used;
+  dropped_ = sums.dropped;
+  first_ = sums.first;
+  moves_ = sums.moves;
+  moves_little_ = sums.moves_little;
+  const std::size_t lags = recent_.size();
+  for (const unsigned char used : sums.end) {
+    recent_[next_] = static_cast<char>(used);
+    next_ = (next_ + 1) % lags;
+  }
+}
+
+WelchSums Average::sums() const {
+  WelchSums out;
+  out.power = power_;
+  out.pairs = pairs_;
+  out.begin = begin_;
+  out.used = used_;
+  out.dropped = dropped_;
+  out.first = first_;
+  out.moves = moves_;
+  out.moves_little = moves_little_;
+  const std::size_t lags = recent_.size();
+  for (std::size_t back = begin_.size(); back > 0; --back)
+    out.end.push_back(recent_[(next_ + lags - back) % lags] != 0 ? 1 : 0);
+  return out;
+}
+
+void Average::join(const std::vector<double>& power,
+                   std::span<const char> straddling,
+                   const WelchSums& later) {
+  for (const char used : straddling) note_segment(used != 0);
+  if (!power.empty()) add_group(power);
+  if (!later.power.empty()) add_group(later.power);
+  const std::size_t lags = recent_.size();
+  const auto before = [&](std::size_t back) { return recent_[(next_ + lags - back) % lags] != 0; };
+  for (std::size_t i = 0; i < later.begin.size(); ++i)
+    for (std::size_t lag = i + 1; lag <= lags; ++lag)
+      pairs_[lag] += later.begin[i] != 0 && before(lag - i) ? 1 : 0;
+  for (std::size_t lag = 1; lag <= lags; ++lag) pairs_[lag] += later.pairs[lag];
+  for (std::size_t i = 0; i < later.begin.size() && begin_.size() < lags; ++i)
+    begin_.push_back(later.begin[i]);
+  for (const unsigned char used : later.end) {
+    recent_[next_] = static_cast<char>(used);
+    next_ = (next_ + 1) % lags;
+  }
+  used_ += later.used;
+  dropped_ += later.dropped;
+  const double first = later.first;
+  note_samples({&first, 1});
+  moves_ = moves_ || later.moves;
+  moves_little_ = moves_little_ || later.moves_little;
 }
 
 void Average::note_samples(std::span<const double> samples) {
@@ -339,6 +399,27 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   if (options_.sides == Sides::two)
     for (std::size_t k = (n - 1) / 2; k > 0; --k) put(k, -1);
   for (std::size_t k = 0; k <= n / 2; ++k) put(k, 1);
+  return out;
+}
+
+Spectrum Average::finish(const std::vector<double>& window,
+                         double rate_hz,
+                         std::uint64_t samples) const {
+  if (used_ == 0)
+    throw Error({ErrorKind::numeric,
+                 "E0401",
+                 "",
+                 fmt::format("a spectrum with segments of {} samples needs as many without a "
+                             "missing one; none was found in {} samples",
+                             layout_.segment,
+                             samples),
+                 "",
+                 "choose a shorter segment"});
+  Spectrum out = spectrum(window, rate_hz);
+  if (out.dropped > 0)
+    out.notes.push_back(fmt::format("{} of {} segments touch a missing sample and were dropped",
+                                    out.dropped,
+                                    out.dropped + out.segments));
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "libchar/spectrum/fft.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar::welch_detail {
 
@@ -51,6 +52,7 @@ class Periodogram {
 class Average {
  public:
   Average(const WelchOptions& options, const Layout& layout);
+  Average(const WelchOptions& options, const Layout& layout, const WelchSums& sums);
   void add_group(const std::vector<double>& power);
   void add_group(std::vector<double>&& power);  ///< the first, of a long segment, without a copy
   void note_segment(bool used);                 ///< in the order of the segments
@@ -60,9 +62,18 @@ class Average {
   std::uint64_t dropped() const { return dropped_; }
   /// Degrees of freedom of the average of the segments so far, at a bin that is neither the first nor the last.
   double degrees_of_freedom(const std::vector<double>& window) const;
+  /// What was found of a part of a record, without the samples at its ends.
+  WelchSums sums() const;
+  /// The segments that straddle the end of the part so far, each used or not, and those of the part behind it. `power`: of the former.
+  void join(const std::vector<double>& power,
+            std::span<const char> straddling,
+            const WelchSums& later);
   /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers are no numbers, or too small for one
   /// and the samples not constant.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
+  /// The same of a record that came piece by piece: Error(numeric) where no whole segment was in its `samples`, and a note where some
+  /// were dropped.
+  Spectrum finish(const std::vector<double>& window, double rate_hz, std::uint64_t samples) const;
 
  private:
   void check_powers() const;
@@ -70,6 +81,7 @@ class Average {
   Layout layout_;
   std::vector<double> power_;         // none before the first group
   std::vector<char> recent_;          // ring: was the segment used
+  std::vector<unsigned char> begin_;  // the same of the first ones
   std::vector<std::uint64_t> pairs_;  // [lag]: pairs of used segments so many hops apart
   std::size_t next_ = 0;
   std::uint64_t used_ = 0, dropped_ = 0;

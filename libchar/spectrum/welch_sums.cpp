@@ -1,0 +1,154 @@
+// Segments of n samples start at 0, D, 2D, … (detail/segments.cpp). Parts A and B of a record, A a multiple of D long: the segments
+// of both are those within A, those within B, and those that start in A and end in B,
+//
+//   x[a - n + D .. ), x[a - n + 2 D .. ), …, x[a - D .. )        a samples in A,
+//
+// which stand in the last n - D samples of A and the first n - D of B. Sums of powers, and counts of pairs of segments by their
+// distance, are added.
+
+#include "libchar/spectrum/welch_sums.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/welch_stream.hpp"
+
+namespace libchar {
+
+using namespace welch_detail;
+
+struct WelchParts::State {
+  WelchOptions options;
+  WelchWorkspace* workspace = nullptr;
+  Layout layout;
+  std::vector<double> window;
+  std::optional<Periodogram> periodogram;
+  std::uint64_t shared = 0;
+
+  State(const WelchOptions& chosen, WelchWorkspace* shared_workspace)
+      : options(chosen),
+        workspace(shared_workspace),
+        layout(layout_of(chosen.segment, chosen.overlap)),
+        window(window_values(chosen.window, layout.segment)),
+        shared(WelchStream(chosen, shared_workspace).shared_length()) {
+    periodogram.emplace(options, window);
+  }
+  std::size_t end_samples() const { return layout.segment - layout.hop; }
+};
+
+WelchParts::WelchParts(const WelchOptions& options, WelchWorkspace* workspace)
+    : state_(std::make_unique<State>(options, workspace)) {}
+WelchParts::~WelchParts() = default;
+WelchParts::WelchParts(WelchParts&&) noexcept = default;
+WelchParts& WelchParts::operator=(WelchParts&&) noexcept = default;
+
+std::string WelchParts::why_not(const WelchOptions& options, std::uint64_t part) {
+  check_options(options);
+  const Layout layout = layout_of(options.segment, options.overlap);
+  if (layout.segment > part)
+    return fmt::format("segments of {} samples are longer than a leaf of {}", layout.segment, part);
+  if (part % layout.hop != 0)
+    return fmt::format(
+        "segments begin every {} samples, which do not divide a leaf of {}", layout.hop, part);
+  return "";
+}
+
+std::uint64_t WelchParts::shared_length() const {
+  return state_->shared;
+}
+
+WelchSums WelchParts::take(std::span<const double> part, BlockTaker* taker) const {
+  WelchStream stream(state_->options, state_->workspace);
+  if (taker != nullptr && state_->shared != 0) {
+    SharedBlocks blocks(state_->shared, *taker);
+    stream.push(part, blocks);
+    stream.end(blocks);
+  } else {
+    stream.push(part);
+    if (taker != nullptr) taker->push(part);
+  }
+  WelchSums sums = stream.sums();
+  const std::size_t ends = std::min(part.size(), state_->end_samples());
+  sums.head.assign(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(ends));
+  sums.tail.assign(part.end() - static_cast<std::ptrdiff_t>(ends), part.end());
+  return sums;
+}
+
+void WelchParts::join(WelchSums& sums, const WelchSums& later) {
+  if (later.samples == 0) return;
+  if (sums.samples == 0) {
+    sums = later;
+    return;
+  }
+  State& s = *state_;
+  const std::size_t n = s.layout.segment;
+  std::vector<double> joint = sums.tail;
+  joint.insert(joint.end(), later.head.begin(), later.head.end());
+  std::vector<double> power(n / 2 + 1, 0.0);
+  std::vector<char> straddling;
+  for (std::size_t at = 0; at < sums.tail.size() && at + n <= joint.size(); at += s.layout.hop)
+    straddling.push_back(s.periodogram->add(joint.data() + at, power.data()) ? 1 : 0);
+  if (std::find(straddling.begin(), straddling.end(), 1) == straddling.end()) power.clear();
+  Average whole(s.options, s.layout, sums);
+  whole.join(power, straddling, later);
+  WelchSums both = whole.sums();
+  both.samples = sums.samples + later.samples;
+  both.head = std::move(sums.head);
+  // What follows a part shorter than this needs its predecessor's samples too.
+  std::vector<double>& tail = both.tail;
+  tail = later.tail;
+  if (tail.size() < s.end_samples()) {
+    const std::size_t more = std::min(s.end_samples() - tail.size(), sums.tail.size());
+    tail.insert(tail.begin(), sums.tail.end() - static_cast<std::ptrdiff_t>(more), sums.tail.end());
+  }
+  sums = std::move(both);
+}
+
+void WelchParts::write_state(const WelchSums& sums, StateWriter& to) {
+  to.number(sums.samples);
+  to.number(sums.used);
+  to.number(sums.dropped);
+  to.reals(sums.power);
+  to.numbers(sums.pairs);
+  to.flags(sums.begin);
+  to.flags(sums.end);
+  to.reals(sums.head);
+  to.reals(sums.tail);
+  to.real(sums.first);
+  to.flag(sums.moves);
+  to.flag(sums.moves_little);
+}
+
+WelchSums WelchParts::read_state(StateReader& from) const {
+  WelchSums sums;
+  sums.samples = from.number();
+  sums.used = from.number();
+  sums.dropped = from.number();
+  sums.power = from.reals();
+  sums.pairs = from.numbers();
+  sums.begin = from.flags();
+  sums.end = from.flags();
+  sums.head = from.reals();
+  sums.tail = from.reals();
+  sums.first = from.real();
+  sums.moves = from.flag();
+  sums.moves_little = from.flag();
+  const Layout& layout = state_->layout;
+  const std::size_t lags = (layout.segment - 1) / layout.hop;
+  const bool none = sums.samples == 0 && sums.power.empty() && sums.pairs.empty() &&
+                    sums.begin.empty() && sums.end.empty() && sums.head.empty() &&
+                    sums.tail.empty();
+  if (none) return sums;
+  const bool whole = (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
+                     sums.pairs.size() == lags + 1 && sums.begin.size() <= lags &&
+                     sums.end.size() == sums.begin.size() &&
+                     sums.head.size() <= state_->end_samples() &&
+                     sums.tail.size() == sums.head.size();
+  if (!whole) from.refuse("the sums of its spectrum");
+  return sums;
+}
+
+}  // namespace libchar

@@ -1,0 +1,55 @@
+#pragma once
+// What Welch's method has found of a part of a record, and how the parts of neighbours become that of both.
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libchar/core/shared_blocks.hpp"
+#include "libchar/core/state_archive.hpp"
+#include "libchar/spectrum/welch.hpp"
+
+namespace libchar {
+
+struct WelchSums {
+  std::uint64_t samples = 0, used = 0, dropped = 0;  ///< segments
+  std::vector<double> power;                         ///< sums over them; none: no segment
+  std::vector<std::uint64_t> pairs;       ///< [lag]: pairs of used segments so many hops apart
+  std::vector<unsigned char> begin, end;  ///< was it used: of as many segments as overlap one
+  std::vector<double> head, tail;         ///< samples of a segment less a hop, or all there are
+  double first = std::numeric_limits<double>::quiet_NaN();  ///< sample that is there
+  bool moves = false, moves_little = false;                 ///< do others differ from it
+};
+
+/// Takes parts of a record and joins them. Parts begin at whole hops: all but the last are a multiple of a hop long, and not shorter
+/// than a segment less a hop.
+class WelchParts {
+ public:
+  /// `options.segment` > 0. `workspace`: shared with others, and must live as long.
+  explicit WelchParts(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
+  ~WelchParts();
+  WelchParts(WelchParts&&) noexcept;
+  WelchParts& operator=(WelchParts&&) noexcept;
+
+  /// "" or why records cannot be divided into parts of so many samples, as a sentence without its end.
+  static std::string why_not(const WelchOptions& options, std::uint64_t part);
+
+  /// Length of the blocks that are shared with another stage; 0: none are.
+  std::uint64_t shared_length() const;
+  /// One part. `taker`: gets its samples, blocks of `shared_length` among them; none: nobody does.
+  WelchSums take(std::span<const double> part, BlockTaker* taker = nullptr) const;
+  /// Adds the part that follows directly (WelchStream makes a spectrum of the sums), and the segments that straddle the boundary.
+  void join(WelchSums& sums, const WelchSums& later);
+
+  static void write_state(const WelchSums& sums, StateWriter& to);
+  WelchSums read_state(StateReader& from) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace libchar
