@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/pattern.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/curve_table.hpp"
 
@@ -43,25 +45,40 @@ Table unnamed_table(const std::string& path, const CurveTableOptions& options, P
   return table;
 }
 
+bool stands_for(const std::string& word, const std::string& name) {
+  return word == name || (is_pattern(word) && matches(word, name));
+}
+
+void refuse_unknown(const std::string& path,
+                    const CurveTable& named,
+                    const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const NamedCurve& n : named.curves) names.push_back(n.name);
+  for (const std::string& word : wanted)
+    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) {
+          return stands_for(word, name);
+        }))
+      throw Error({ErrorKind::usage,
+                   "E0320",
+                   path,
+                   "no curve of this name",
+                   word,
+                   did_you_mean(nearest(word, names), "it has " + first_names(names))});
+}
+
 Table named_table(const std::string& path, const CurveTable& named, const ReadOptions& reading) {
   const std::vector<std::string>& wanted = reading.channels;
   Table table;
   table.info.file = path;
   table.info.bytes = named.bytes;
   table.info.sha256 = named.sha256;
+  refuse_unknown(path, named, wanted);
   for (const NamedCurve& n : named.curves) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), n.name) == wanted.end())
-      continue;
+    const auto means_it = [&](const std::string& word) { return stands_for(word, n.name); };
+    if (!wanted.empty() && std::none_of(wanted.begin(), wanted.end(), means_it)) continue;
     table.channels.push_back({n.name, n.unit, false});
     table.curves.push_back(n.curve);
   }
-  if (table.curves.empty())
-    throw Error({ErrorKind::usage,
-                 "E0320",
-                 path,
-                 "no curve of this name",
-                 wanted.front(),
-                 "the first one is " + named.curves.front().name});
   for (std::size_t c = 0; c < table.channels.size() && !reading.units.empty(); ++c)
     table.channels[c].unit = reading.units[std::min(c, reading.units.size() - 1)];
   return table;

@@ -52,6 +52,31 @@ TEST_CASE("fit_curve_table: powers and roots of one curve give one coefficient")
   CHECK(white_of(fit_curve_table(powers, options).channels[0]) == Approx(root));
 }
 
+TEST_CASE("fit_curve_table: curves by name and by pattern, a slip is told") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "named.csv").string();
+  std::ofstream out(path);
+  out << "channel,unit,tau_s,deviation\n";
+  for (const char* name : {"gyro_x", "gyro_y", "accel_x"})
+    for (double tau = 0.01; tau < 200; tau *= 1.5)
+      out << fmt::format("{},V,{},{}\n", name, tau, 0.01 / std::sqrt(tau));
+  out.close();
+  const auto names = [&](std::vector<std::string> wanted) {
+    CurveTableOptions options;
+    options.reading.channels = std::move(wanted);
+    std::string all;
+    for (const ChannelFit& one : fit_curve_table(path, options).channels)
+      all += one.channel.name + " ";
+    return all;
+  };
+  CHECK(names({"gyro*"}) == "gyro_x gyro_y ");
+  CHECK(names({"*_x"}) == "gyro_x accel_x ");
+  CHECK(names({"accel_x", "gyro_y"}) == "gyro_y accel_x ");
+  CHECK_THROWS_WITH(names({"gyro*", "acel_x"}),
+                    Catch::Contains("E0320") && Catch::Contains("did you mean accel_x"));
+  CHECK_THROWS_WITH(names({"mag*"}), Catch::Contains("it has gyro_x, gyro_y, accel_x"));
+}
+
 TEST_CASE("fit_curve_table: a table of one column is no curve") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "one.csv").string();

@@ -48,11 +48,21 @@ TEST_CASE("temperature of a recording: per K whatever its unit, and the loop clo
   CHECK(verify(result, options));
 }
 
+TEST_CASE("temperature of a recording: a pattern that one channel matches is its name") {
+  const Recording recording = warm_recording(10, 20'000);
+  CharacterizeOptions options;
+  options.temperature = "bo*";
+  const Characterization result = characterize(recording, options);
+  CHECK(result.channels.at(0).fit.value().temperature.has_value());
+}
+
 TEST_CASE("temperature of a recording: refused where it is none or cannot be kept") {
   const Recording recording = warm_recording(10, 20'000);
   CharacterizeOptions options;
   options.temperature = "bx";
   CHECK(test::refusal(recording, options).find("E0702 there is no channel of this name") == 0);
+  options.temperature = "*";
+  CHECK(test::refusal(recording, options).find("E0702 several channels match this pattern") == 0);
   options.temperature = "gyr_x";
   CHECK(test::refusal(recording, options) ==
         "E0702 the channel gyr_x is in deg/s, which is no temperature");

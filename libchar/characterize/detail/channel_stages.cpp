@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/pattern.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/units.hpp"
 
@@ -90,6 +91,17 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
   auto found = std::find(names.begin(), names.end(), wanted);
   for (std::size_t c = 0; found == names.end() && c < names.size(); ++c)
     if (wanted == fmt::format("c{}", c)) found = names.begin() + static_cast<std::ptrdiff_t>(c);
+  if (found == names.end() && is_pattern(wanted)) {
+    const auto means_it = [&](const std::string& name) { return matches(wanted, name); };
+    found = std::find_if(names.begin(), names.end(), means_it);
+    if (found != names.end() && std::any_of(found + 1, names.end(), means_it))
+      throw Error({ErrorKind::usage,
+                   "E0702",
+                   so_far.file,
+                   "several channels match this pattern, and one is the `temperature`",
+                   wanted,
+                   "`temperature` " + *found + " is the first of them"});
+  }
   if (found == names.end()) {
     const auto near = nearest(wanted, names);
     throw Error({ErrorKind::usage,
