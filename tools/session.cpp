@@ -85,6 +85,19 @@ void print_summary(Session& session, const std::string& output, const std::strin
   session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
 }
 
+void refuse_standard_output(const char* flag,
+                            const std::string& place,
+                            const char* what,
+                            const char* hint) {
+  if (place != "-") return;
+  throw libchar::Error({libchar::ErrorKind::usage,
+                        "E0205",
+                        flag,
+                        std::string("standard output takes one document, and ") + what,
+                        "",
+                        hint});
+}
+
 void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force) {
   if (path.empty()) return;
   for (const std::string& input : inputs) libchar::refuse_same_file(input, path);

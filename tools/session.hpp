@@ -52,6 +52,12 @@ void write_document(Session& session,
                     const std::string& csv,
                     const DocumentOutput& output);
 
+/// Standard output takes one document: throws where `place` is "-" and what goes there is `what`, with what to give instead.
+void refuse_standard_output(const char* flag,
+                            const std::string& place,
+                            const char* what = "the results are several files",
+                            const char* hint = "name a folder");
+
 /// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 

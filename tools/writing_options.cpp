@@ -1,5 +1,6 @@
 #include "writing_options.hpp"
 
+#include "libchar/core/error.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {
@@ -30,6 +31,19 @@ libchar::WriteOptions write_options(const WritingOptions& writing) {
   options.big_endian = writing.endian == "big";
   options.time_column = !writing.no_time_column;
   return options;
+}
+
+void take_standard_output(std::string& output, WritingOptions& writing, bool json) {
+  if (output != "-") return;
+  if (json)
+    throw libchar::Error({libchar::ErrorKind::usage,
+                          "E0205",
+                          "--json",
+                          "standard output takes one document, and with -o - the log goes there",
+                          "",
+                          "-o FILE"});
+  if (writing.options.format == "auto") writing.options.format = "csv";
+  output = "/dev/stdout";
 }
 
 }  // namespace sensorchar

@@ -106,6 +106,35 @@ TEST_CASE("bench: what is asked of fusion is looked at before anything is measur
              Contains("E0205") && Contains("--algorithms"));
 }
 
+TEST_CASE("bench: an option of a part that is not done is refused, with that part") {
+  const std::string scene = test::fixture("scenes/lever-arm.yaml"),
+                    log = test::fixture("imu_at_rest.csv");
+  const auto err = [](const std::vector<std::string>& words) { return test::run(words).err; };
+  CHECK_THAT(err({"bench", log, "--parts", "characterization", "--target", "1e-3"}),
+             Contains("E0205") && Contains("--target: ") && Contains("about design") &&
+                 Contains("add design to --parts"));
+  CHECK_THAT(err({"bench", scene, "--at", "1s", "--target", "1"}),
+             Contains("about design") && Contains("give a model or a log"));
+  CHECK_THAT(err({"bench", log, "--parts", "design", "--at", "10s"}),
+             Contains("E0205") && Contains("--target"));
+  CHECK_THAT(err({"bench", "--parts", "fusion", "--within", "5"}),
+             Contains("--within") && Contains("about design"));
+  CHECK_THAT(err({"bench", log, "--runs", "3"}), Contains("--runs") && Contains("about fusion"));
+  CHECK_THAT(err({"bench", scene, "--methods", "whittle"}),
+             Contains("--methods") && Contains("characterization"));
+  CHECK_THAT(err({"bench", log, "--instants-rate", "1kHz"}),
+             Contains("about scaling") && Contains("--parts scaling"));
+  CHECK_THAT(err({"bench", "--parts", "scaling", "--records", "5"}),
+             Contains("characterization and design"));
+}
+
+TEST_CASE("bench: a file may stand behind a list") {
+  CHECK_THAT(test::run({"bench", "--parts", "characterization", "no-such-file.csv"}).err,
+             Contains("no-such-file.csv") && Contains("E0101"));
+  CHECK_THAT(test::run({"bench", "--algorithms", "mean", "no-such-file.csv"}).err,
+             Contains("E0101"));
+}
+
 TEST_CASE("bench: refused in a sentence") {
   CHECK_THAT(test::run({"bench", "--parts", "charakterization"}).err,
              Contains("E0202") && Contains("characterization"));

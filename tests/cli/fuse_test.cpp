@@ -67,6 +67,10 @@ TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   CHECK_THAT(ran.out,
              Contains("6000 instants at 100 Hz fused by") && Contains("100 % with an estimate"));
   CHECK_THAT(ran.out, Contains("wrote " + bench.path("fused.csv")));
+  const auto piped =
+      test::run({"fuse", bench.path("log.csv"), "--with", bench.path("run"), "-o", "-"});
+  CHECK(piped.code == 0);
+  CHECK(piped.out == test::slurp(bench.path("fused.csv")));
   const libchar::Recording fused = libchar::read_recording(bench.path("fused.csv"));
   REQUIRE(fused.info.channels.size() == 5);
   CHECK(fused.info.channels[0].name == "level");

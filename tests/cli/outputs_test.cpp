@@ -39,7 +39,7 @@ std::vector<Writing> all_verbs(const test::TemporaryFolder& folder) {
   const std::string broken = at("broken.csv"), out = at("out");
   std::ofstream(broken) << "t,x\n0,1\n1,2\n2,oops\n";
   const std::string model = at("m.sensor.yaml");
-  std::ofstream(model) << "format: sensor-model\nversion: 1\nrate_hz: -1\n";
+  std::ofstream(model) << kModel;
   const std::string good = at("good.sensor.yaml");
   std::ofstream(good) << kModel;
   return {{{"allan", broken, "-o", out}, ""},
@@ -241,5 +241,44 @@ TEST_CASE("closed streams: every verb that writes gives the same bytes, no messa
     INFO(words);
     CHECK_FALSE(open.empty());
     for (const char* closed : {" >&- 2>&-", " <&- >&- 2>&-", " 2>&-"}) CHECK(bytes(closed) == open);
+  }
+}
+
+TEST_CASE("standard output by -o -: a log goes there as CSV, what is said of it beside it") {
+  const test::TemporaryFolder folder;
+  const std::string csv = test::fixture("imu_at_rest.csv").string();
+  auto ran = test::run({"convert", csv, "--to", "1s", "-o", "-"});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Catch::StartsWith("t[s],gyro_z[deg/s],accel_z[g]\n0,"));
+  CHECK_THAT(ran.err, Catch::Contains("/dev/stdout: 50 rows, 2 channels\n"));
+  const std::string model = (folder / "gyro.sensor.yaml").string();
+  std::ofstream(model) << kModel;
+  ran = test::run({"simulate", model, "--duration", "1s", "-o", "-"});
+  INFO(ran.err);
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Catch::StartsWith("t[s],"));
+  CHECK(std::count(ran.out.begin(), ran.out.end(), '\n') == 101);
+  ran = test::run({"simulate", model, "--duration", "1s", "-o", "-", "--json"});
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err,
+             Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
+}
+
+TEST_CASE(
+    "standard output by -o -: several files do not go there, nor into a folder of that name") {
+  const std::string csv = test::fixture("imu_at_rest.csv").string();
+  const std::string scene = test::fixture("scenes/lever-arm.yaml").string();
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"characterize", csv, "-o", "-"},
+                                             {"fit", csv, "--models", "-"},
+                                             {"replay", scene, "-o", "-"},
+                                             {"replay", scene, "--write-scene", "-"},
+                                             {"bench", csv, "-o", "-"}}) {
+    const auto ran = test::run(command);
+    INFO(command.front() << ran.err);
+    CHECK(ran.code == 2);
+    CHECK_THAT(ran.err,
+               Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
+    CHECK_FALSE(std::filesystem::exists("-"));
   }
 }

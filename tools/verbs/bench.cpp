@@ -63,18 +63,60 @@ void check_algorithms(const BenchVerb& verb) {
   for (const std::string& text : verb.sweeps) parse_sweep(text, "--sweep");
 }
 
-void check_there_are_scenes(const BenchVerb& verb, const BenchInputs& inputs) {
-  if (verb.wants("fusion") && !inputs.scenes.empty()) return;
-  for (const auto& [option, given] : {std::pair{"--sweep", !verb.sweeps.empty()},
-                                      std::pair{"--algorithms", !verb.algorithms.empty()}})
-    if (given)
-      throw Error({ErrorKind::usage,
-                   "E0205",
-                   option,
-                   "it is about fusion, and nothing is fused",
-                   "",
-                   verb.wants("fusion") ? "give a scene, or no files for those that are built in"
-                                        : "add fusion to --parts"});
+/// Is this part done? A part that nothing was given for is left out; how cost grows and what is endured is asked of the program, and not
+/// of a file.
+bool is_done(const std::string& part, const BenchVerb& verb, const BenchInputs& inputs) {
+  if (part == "scaling" || part == "stress")
+    return verb.parts.empty() ? verb.files.empty() : verb.wants(part);
+  if (!verb.wants(part)) return false;
+  return part == "fusion" ? !inputs.scenes.empty() : !inputs.signals.empty();
+}
+
+/// An option of parts that are not done would be passed over.
+struct PartOption {
+  const char* flag;
+  bool given;
+  std::vector<std::string> parts;
+};
+
+std::vector<PartOption> part_options(const BenchVerb& verb) {
+  return {{"--sweep", !verb.sweeps.empty(), {"fusion"}},
+          {"--algorithms", !verb.algorithms.empty(), {"fusion"}},
+          {"--runs", verb.runs != 0, {"fusion"}},
+          {"--methods", !verb.methods.empty(), {"characterization"}},
+          {"--records", verb.records != 0, {"characterization", "design"}},
+          {"--target", verb.target.has_value(), {"design"}},
+          {"--at", verb.tau_s.has_value(), {"design"}},
+          {"--within", verb.share.has_value(), {"design"}},
+          {"--instants-rate", verb.rate_hz.has_value(), {"scaling"}}};
+}
+
+void check_options_are_used(const BenchVerb& verb, const BenchInputs& inputs) {
+  for (const PartOption& option : part_options(verb)) {
+    if (!option.given) continue;
+    const auto done = [&](const std::string& part) { return is_done(part, verb, inputs); };
+    if (std::any_of(option.parts.begin(), option.parts.end(), done)) continue;
+    const std::string& part = option.parts.front();
+    std::string hint = "add " + part + " to --parts";
+    if (verb.parts.empty() && part == "scaling") hint = "--parts " + part;
+    if (part != "scaling" && verb.wants(part))
+      hint = fmt::format("give a {}, or no files for those that are built in",
+                         part == "fusion" ? "scene" : "model or a log");
+    throw Error(
+        {ErrorKind::usage,
+         "E0205",
+         option.flag,
+         fmt::format("it is about {}, which is not done here", fmt::join(option.parts, " and ")),
+         "",
+         hint});
+  }
+  if (verb.tau_s && !verb.target)
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "--at",
+                 "it is the averaging time of a --target, and there is none",
+                 "",
+                 "--target DEVIATION"});
 }
 
 // Of the files, or what is built in where there are none. A part that nothing was given for is left out.
@@ -138,16 +180,12 @@ BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs&
   report.command = session.command;
   report.quick = verb.quick;
   report.seed = verb.seed;
-  if (verb.wants("characterization")) bench_noise(session, verb, inputs, report);
-  if (verb.wants("fusion") && !inputs.scenes.empty())
-    report.fusion = bench_scenes_of(session, verb, inputs);
-  // How cost grows is asked of the program and not of a file.
-  if (verb.parts.empty() ? verb.files.empty() : verb.wants("scaling"))
-    report.scaling = bench_growth(session, verb);
-  if (verb.wants("design") && !inputs.signals.empty())
-    report.design = bench_needs(session, verb, inputs);
-  if (verb.parts.empty() ? verb.files.empty() : verb.wants("stress"))
-    report.stress = bench_stress({verb.quick, verb.seed}, session.terminal);
+  const auto done = [&](const char* part) { return is_done(part, verb, inputs); };
+  if (done("characterization")) bench_noise(session, verb, inputs, report);
+  if (done("fusion")) report.fusion = bench_scenes_of(session, verb, inputs);
+  if (done("scaling")) report.scaling = bench_growth(session, verb);
+  if (done("design")) report.design = bench_needs(session, verb, inputs);
+  if (done("stress")) report.stress = bench_stress({verb.quick, verb.seed}, session.terminal);
   report.machine = watch.finish();
   session.terminal.clear();
   return report;
@@ -187,6 +225,7 @@ void refuse_wrong(const StressBench& stress) {
 void run_bench(Session& session, BenchVerb& verb) {
   if (verb.stress) verb.parts.emplace_back("stress");
   check_parts(verb);
+  refuse_standard_output("--output", verb.folder);
   const auto foreseen = [&] {
     std::vector<std::string> out;
     for (const char* name : {"bench.html", "bench.json", "bench.md"})
@@ -197,7 +236,7 @@ void run_bench(Session& session, BenchVerb& verb) {
   const Json older = verb.against.empty() ? Json() : result_document(verb.against);
   check_algorithms(verb);
   const BenchInputs inputs = inputs_of(session, verb);
-  check_there_are_scenes(verb, inputs);
+  check_options_are_used(verb, inputs);
   const BenchReport report = measured(session, verb, inputs);
   if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design &&
       !report.stress)
@@ -283,6 +322,7 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .add_texts(
           "--parts", verb->parts, "these only: " + fmt::format("{}", fmt::join(kBenchParts, ", ")))
       .separated_by_commas()
+      .one_value_each()
       .value_name("PART,…")
       .known_words({kBenchParts.begin(), kBenchParts.end()});
   options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
@@ -301,11 +341,13 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
   options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
   options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
       .separated_by_commas()
+      .one_value_each()
       .value_name("NAME,…");
   options
       .add_texts(
           "--algorithms", verb->algorithms, "fusion algorithms (default: the scene's, else all)")
       .separated_by_commas()
+      .one_value_each()
       .value_name("NAME,…");
   options
       .add_texts("--sweep",

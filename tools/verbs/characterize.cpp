@@ -277,6 +277,7 @@ void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
 
 void run_characterize(Session& session, const CharacterizeVerb& verb) {
   const CharacterizeOptions options = finish(verb.analysis);
+  refuse_standard_output("--output", verb.folder);
   if (verb.pool && verb.logs.size() < 2)
     throw Error(
         {ErrorKind::usage, "E0205", "--pool", "needs two runs of the sensor at least", "", ""});

@@ -35,17 +35,9 @@ std::uint64_t bytes_of(const std::string& file) {
   return stream ? static_cast<std::uint64_t>(std::streamoff{stream.tellg()}) : 0;
 }
 
-// "-" is standard output, and CSV where nothing else is asked for.
-libchar::WriteOptions options_for(const ConvertVerb& verb) {
-  libchar::WriteOptions options = write_options(verb.writing);
-  if (verb.output == "-" && options.format == "auto") options.format = "csv";
-  return options;
-}
-
 void run_convert(Session& session, const ConvertVerb& given) {
   ConvertVerb verb = given;
-  verb.writing.options = options_for(given);
-  if (verb.output == "-") verb.output = "/dev/stdout";
+  take_standard_output(verb.output, verb.writing, verb.json);
   const libchar::Conversion result =
       libchar::convert_log(verb.log,
                            verb.output,
@@ -60,16 +52,16 @@ void run_convert(Session& session, const ConvertVerb& given) {
   libchar::Json files = libchar::Json::array();
   std::string text;
   for (const std::string& file : result.files) {
-    const auto bytes = libchar::writes_through(file) ? 0 : bytes_of(file);
+    const bool passed_on = libchar::writes_through(file);
+    const auto bytes = passed_on ? 0 : bytes_of(file);
     files.push_back({{"path", libchar::printable(file)}, {"bytes", bytes}});
-    text += text.empty()
-                ? fmt::format("{}: {} rows, {} channel{}, {} bytes\n",
-                              libchar::printable(file),
-                              info.samples,
-                              info.channels.size(),
-                              info.channels.size() == 1 ? "" : "s",
-                              bytes)
-                : fmt::format("{}: its sidecar, {} bytes\n", libchar::printable(file), bytes);
+    const std::string size = passed_on ? "" : fmt::format(", {} bytes", bytes);
+    text += text.empty() ? fmt::format("{}: {} rows, {}{}\n",
+                                       libchar::printable(file),
+                                       info.samples,
+                                       libchar::plural(info.channels.size(), "channel"),
+                                       size)
+                         : fmt::format("{}: its sidecar{}\n", libchar::printable(file), size);
   }
   if (!verb.json) return print_summary(session, verb.output, text);
   libchar::Json document = document_head(session, "convert", {&info});
@@ -86,7 +78,8 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "file to write; its suffix says the format (" + libchar::written_suffixes() + ")")
+                "file to write; its suffix says the format (" + libchar::written_suffixes() +
+                    "; - is standard output)")
       .required()
       .value_name("FILE");
   add_writing_options(options, verb->writing, "t[s] or t[ns]");

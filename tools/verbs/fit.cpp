@@ -116,6 +116,7 @@ void refuse_with_curve(const FitVerb& verb) {
 
 void run_fit(Session& session, const FitVerb& verb) {
   refuse_with_curve(verb);
+  refuse_standard_output("--models", verb.models);
   foresee_output(verb.output, {verb.input}, verb.force);
   if (!verb.models.empty()) foresee_models(verb);
   LogInfo log;

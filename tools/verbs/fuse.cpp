@@ -40,6 +40,7 @@ void add_map(const FuseVerb& verb, libchar::FuseOptions& options) {
 
 void run_fuse(Session& session, FuseVerb& verb) {
   add_map(verb, verb.options);
+  take_standard_output(verb.output, verb.writing, verb.json);
   const libchar::LearntFusion learnt = libchar::read_fusion_file(verb.with);
   for (const std::string& input : {verb.log, learnt.file})
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
@@ -69,7 +70,8 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
   options
       .add_text("-o,--output",
                 verb->output,
-                "file to write; its suffix says the format (" + libchar::written_suffixes() + ")")
+                "file to write; its suffix says the format (" + libchar::written_suffixes() +
+                    "; - is standard output)")
       .required()
       .value_name("FILE");
   options

@@ -230,6 +230,11 @@ void run_replay(Session& session, const ReplayVerb& verb) {
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
   if (verb.folder.empty() && verb.scene_file.empty())
     refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
+  refuse_standard_output("--output", verb.folder);
+  refuse_standard_output("--write-scene",
+                         verb.scene_file,
+                         "a scene names its recording by where it lies beside it",
+                         "name a file");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.source.path);
   if (!verb.scene_file.empty())

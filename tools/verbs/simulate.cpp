@@ -185,7 +185,15 @@ std::vector<std::string> words_of(const Session& session) {
   return {session.command.begin() + (session.command.empty() ? 0 : 1), session.command.end()};
 }
 
+// Beside standard output there is no place for a scene.
+void take_standard_output(SimulateVerb& verb) {
+  if (verb.output != "-") return;
+  take_standard_output(verb.output, verb.writing, verb.json);
+  if (verb.scene_path.empty()) verb.no_scene = true;
+}
+
 void run_simulate(Session& session, SimulateVerb& verb) {
+  take_standard_output(verb);
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;
   apply_options(session, verb, simulation);
@@ -271,7 +279,8 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
       .add_text("-o,--output",
                 verb->output,
                 "log to write; its suffix says the format (" + libchar::written_suffixes() +
-                    "); of a scene that simulate wrote its own log")
+                    "; - is standard output, without a scene); of a scene that simulate wrote its "
+                    "own log")
       .value_name("LOG");
   add_length_options(options, *verb);
   add_input_options(options, *verb);
