@@ -7,6 +7,7 @@
 //   fit            noise coefficients of samples in memory   here
 //   simulate       samples from sensor models                here
 //   replay         fusion algorithms on a scene              replay/replay.hpp
+//   fleet_lot      many devices side by side              lot/fleet_lot.hpp
 //   export_models  models for the programs that take them    export/exports.hpp
 //
 // Times are in s, frequencies in Hz, samples in the unit of their channel; NaN marks a missing
@@ -43,14 +44,15 @@
 #include "libchar/log/inspection.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/lot/fleet_lot.hpp"
-#include "libchar/lot/lot_comparison.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/verdict.hpp"
 #include "libchar/report/allan_text.hpp"
+#include "libchar/report/coefficient_table.hpp"
 #include "libchar/report/csv_curves.hpp"
+#include "libchar/report/fleet_comparison_text.hpp"
+#include "libchar/report/fleet_report.hpp"
 #include "libchar/report/html_report.hpp"
 #include "libchar/report/json_report.hpp"
 #include "libchar/report/replay_html.hpp"

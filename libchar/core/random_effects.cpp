@@ -132,12 +132,14 @@ std::vector<Outlier> outliers_of_many(std::span<const double> y,
     const auto inside = static_cast<double>(std::count(outside.begin(), outside.end(), false));
     if (3 * inside < 2 * count) return {};  // a third of them are no outliers but another kind
     const std::vector<double> t = deviations(y, v, outside);
+    const double least = -student_quantile(probability / 4 / count, inside - 2);
     std::vector<bool> next(y.size());
     out.clear();
     for (std::size_t i = 0; i < y.size(); ++i) {
-      const double p = std::min(1.0, count * 2 * student_tail(std::abs(t[i]), inside - 2));
-      next[i] = p < probability / 2;
-      if (next[i]) out.push_back({i, t[i], p});
+      next[i] = std::abs(t[i]) > least;
+      if (next[i])
+        out.push_back(
+            {i, t[i], std::min(1.0, count * 2 * student_tail(std::abs(t[i]), inside - 2))});
     }
     if (next == outside) break;
     outside = std::move(next);

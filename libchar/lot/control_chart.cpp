@@ -52,7 +52,8 @@ ControlChart control_chart(std::span<const double> values) {
   out.limits = {out.centre - 3 * out.sigma, out.centre + 3 * out.sigma};
   out.points = chart_points(values);
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (values[i] < out.limits.low || values[i] > out.limits.high) out.beyond.push_back(i);
+    if (values[i] < out.limits.low || values[i] > out.limits.high)
+      out.beyond.push_back({i, values[i]});
   out.beyond_by_chance = n * kBeyondThreeSigma;
   out.runs = count_runs(values, out.centre);
   // The first value begins a stretch whatever stood before it: 2 times as probable.

@@ -15,13 +15,18 @@ struct ChartPoint {
   double mean = 0, low = 0, high = 0;
 };
 
+struct ChartValue {
+  std::size_t index = 0;
+  double value = 0;
+};
+
 struct ControlChart {
   double centre = 0;
-  double sigma = 0;                 ///< from value to value: mean moving range over 1.128
-  Interval limits;                  ///< centre ± 3 sigma
-  std::vector<ChartPoint> points;   ///< at most kChartPoints
-  std::vector<std::size_t> beyond;  ///< indices of values outside of the limits, in order
-  double beyond_by_chance = 0;      ///< as many are expected of a process that stays where it is
+  double sigma = 0;                ///< from value to value: mean moving range over 1.128
+  Interval limits;                 ///< centre ± 3 sigma
+  std::vector<ChartPoint> points;  ///< at most kChartPoints
+  std::vector<ChartValue> beyond;  ///< outside of the limits, in order
+  double beyond_by_chance = 0;     ///< as many are expected of a process that stays where it is
   std::size_t runs =
       0;  ///< stretches of eight or more on one side of the centre (Western Electric's fourth rule)
   double runs_by_chance = 0;

@@ -1,8 +1,8 @@
 """Opens reports in headless Chromium, as a reader would: no console message, no request, plots drawn, nothing injected.
 
-usage: browser_test.py MAKE_REPORT MAKE_REPLAY_REPORT [REPORT.html…]
-MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT those of synthetic replays; reports given
-beside them are opened as well.
+usage: browser_test.py MAKE_REPORT MAKE_REPLAY_REPORT MAKE_FLEET [REPORT.html…]
+MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT those of synthetic replays, MAKE_FLEET those of synthetic
+fleets; reports given beside them are opened as well.
 The browser is driven over plain HTTP (the WebDriver protocol), with Python's standard library only.
 """
 import base64
@@ -358,6 +358,37 @@ def check_without_script(browser, page):
     expect("Every number stands in the tables" in text, f"{page}: no notice without scripts")
 
 
+def check_fleet(browser, page, devices):
+    """The list of devices is found by words, shown by the hundred and linked; the page opens at once whatever their number."""
+    address = page.resolve().as_uri()
+    browser.requests()
+    began = time.time()
+    browser.open(address)
+    seconds = time.time() - began
+    rows = "return Array.from(document.querySelectorAll('#devices tbody tr')).map((r) => Array.from(r.cells).map((c) => c.textContent))"
+    shown = browser.run(rows)
+    expect(len(shown) == min(100, devices), f"{page}: {len(shown)} rows of devices at first")
+    expect(browser.run("return document.querySelectorAll('*').length") < 20000, f"{page}: too many elements")
+    browser.run("document.getElementById('device-next').click()")
+    expect(devices <= 100 or browser.run(rows)[0] != shown[0], f"{page}: the next page is the same")
+    browser.run("const s = document.getElementById('device-search'); s.value = '2024-03 -9'; s.dispatchEvent(new Event('input'))")
+    found = browser.run(rows)
+    expect(found and all("2024-03" in r[2] and "-9" in r[0] + r[2] for r in found), f"{page}: searching finds {found[:3]}")
+    browser.run("""document.getElementById('device-search').value = ''; const c = document.getElementById('device-state'); c.value = '1'; c.dispatchEvent(new Event('change'))""")
+    odd = browser.run(rows)
+    expect(odd and all("stands out" in r[3] for r in odd), f"{page}: those that stand out are {odd[:3]}")
+    links = browser.run("return Array.from(document.querySelectorAll('main a[href]')).map((a) => a.href)")
+    base = address.rsplit("/", 1)[0] + "/"
+    expect(links and all(link.startswith(base) and link.endswith("/report.html") for link in links), f"{page}: links to {[l for l in links if not l.startswith(base)][:3]}")
+    expect(browser.run("return document.querySelectorAll('script').length") == 3, f"{page}: a script was added")
+    expect(browser.run("return document.querySelectorAll('img, iframe, object, embed, link, base, form, [onerror], [onload]').length") == 0, f"{page}: an element or handler came from the input")
+    expect(browser.run("return window.broken === undefined"), f"{page}: injected code ran")
+    console, requests = browser.console(), [r for r in browser.requests() if r != address and not r.startswith(("chrome://", "data:"))]
+    expect(not console, f"{page}: console says {console[:3]}")
+    expect(not requests, f"{page}: requests {requests[:3]}")
+    print(f"{page}: {devices} devices, opened in {seconds:.2f} s, {page.stat().st_size / 1e6:.2f} MB")
+
+
 def main():
     if not shutil.which("chromium") or not shutil.which("chromedriver"):
         print("skipped: chromium and chromedriver (Debian: chromium, chromium-driver) are not both installed")
@@ -388,7 +419,11 @@ def main():
             check_copying(browser, folder / "replay-plain/report.html")
             check_paper(browser, folder / "replay-plain/report.html", 12)
             check_without_script(browser, folder / "replay-plain/report.html")
-            for given in sys.argv[3:]:
+            for kind, devices in {"400": 400, "20000": 20000, "hostile": 40}.items():
+                subprocess.run([sys.argv[3], kind, str(folder / ("fleet-" + kind))], check=True)
+                check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
+            check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
+            for given in sys.argv[4:]:
                 check_page(browser, pathlib.Path(given), replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
         finally:
             browser.close()

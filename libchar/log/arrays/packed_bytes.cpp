@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "libchar/core/crc32.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar_have.hpp"
 #if LIBCHAR_HAVE_ZLIB
@@ -86,15 +87,6 @@ void PackedBytes::drain() {
   }
 }
 
-namespace {
-
-std::uint32_t more_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  return static_cast<std::uint32_t>(
-      ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-}  // namespace
-
 #else  // without zlib
 
 bool zlib_is_here() {
@@ -120,14 +112,6 @@ bool PackedBytes::inflate_into(std::span<std::byte>, bool) {
 
 void PackedBytes::drain() {}
 
-namespace {
-
-std::uint32_t more_crc(std::uint32_t, std::span<const std::byte>) {
-  return 0;
-}
-
-}  // namespace
-
 #endif
 
 PackedBytes::~PackedBytes() = default;
@@ -143,7 +127,7 @@ void PackedBytes::read(std::span<std::byte> to) {
       file_.read(stretch_.first_byte + position_ + done, piece);
       packed_ += piece.size();
     }
-    crc_ = more_crc(crc_, piece);
+    crc_ = crc32_of(piece, crc_);
     done += piece.size();
   }
   position_ += to.size();

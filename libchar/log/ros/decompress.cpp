@@ -15,11 +15,6 @@
 #if LIBCHAR_HAVE_BZIP2
 #include <bzlib.h>
 #endif
-#if LIBCHAR_HAVE_ZLIB
-#include <zlib.h>
-#else
-#include <boost/crc.hpp>
-#endif
 
 #include "libchar/core/text.hpp"
 
@@ -159,19 +154,6 @@ std::string unpack(std::string_view method,
   if (method == "bz2") return unpack_bz2(packed, out);
 #endif
   return "cannot be unpacked";
-}
-
-std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t before) {
-#if LIBCHAR_HAVE_ZLIB
-  return static_cast<std::uint32_t>(
-      ::crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-#else
-  // Goes on from a result: the register is its complement, reflected.
-  boost::crc_optimal<32, 0x04C11DB7, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc(
-      before == 0 ? 0xFFFFFFFF : ~before);
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
-#endif
 }
 
 }  // namespace libchar

@@ -23,7 +23,4 @@ std::string unpack(std::string_view method,
                    std::uint64_t most,
                    std::vector<std::byte>& to);
 
-/// CRC-32 as in zlib and MCAP, of `bytes` behind those that gave `before`.
-std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t before = 0);
-
 }  // namespace libchar

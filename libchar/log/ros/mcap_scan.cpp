@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/crc32.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/binary/wrong_start.hpp"

@@ -11,6 +11,8 @@ std::string_view page_common_js();    ///< stands in front of each page's own sc
 std::string_view page_js();           ///< of a characterization
 std::string_view page_css();
 std::string_view many_page_css();  ///< of pages of several recordings; goes behind page_css
+std::string_view fleet_page_js();
+std::string_view fleet_page_css();  ///< goes behind page_css and many_page_css
 std::string_view replay_page_js();
 std::string_view replay_page_css();  ///< goes behind page_css
 

@@ -14,6 +14,21 @@ std::string html_attribute(std::string_view text) {
   return markup_entities(printable(text));
 }
 
+std::string html_address(std::string_view path) {
+  static constexpr std::string_view kPlain = "-._~/";
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string out = "./";
+  for (const char c : path) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    const auto byte = static_cast<unsigned char>(c);
+    if (letter || kPlain.find(c) != std::string_view::npos)
+      out += c;
+    else
+      out += {'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
+  }
+  return out;
+}
+
 std::string json_in_script(const Json& document) {
   // No indent (a line for each number would double the page), and ASCII only: line separators and
   // bidirectional controls inside a script would mislead whoever reads the page's source.

@@ -17,6 +17,10 @@ std::string html_text(std::string_view text);
 /// unquoted.
 std::string html_attribute(std::string_view text);
 
+/// A folder or file relative to the page, for an address inside double quotes of a tag: what is no letter, digit or one of -._~ becomes %HH, so
+/// that no part of a name is a scheme, a host, a query or a fragment.
+std::string html_address(std::string_view path);
+
 /// A document for the inside of <script type="application/json">: '<', '>' and '&' as \u003c…, so
 /// that neither "</script>" nor "<!--" can end or change the element, and everything beyond ASCII
 /// escaped.

@@ -1,0 +1,26 @@
+#include "libchar/core/crc32.hpp"
+
+#include "libchar_have.hpp"
+
+#if LIBCHAR_HAVE_ZLIB
+#include <zlib.h>
+#else
+#include <boost/crc.hpp>
+#endif
+
+namespace libchar {
+
+std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t before) {
+#if LIBCHAR_HAVE_ZLIB
+  return static_cast<std::uint32_t>(
+      ::crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+#else
+  // Goes on from a result: the register is its complement, reflected.
+  boost::crc_optimal<32, 0x04C11DB7, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc(
+      before == 0 ? 0xFFFFFFFF : ~before);
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+#endif
+}
+
+}  // namespace libchar

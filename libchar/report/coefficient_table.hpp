@@ -1,0 +1,26 @@
+#pragma once
+// All coefficients of a fleet as a table: a row a recording and channel, a column a property, for spreadsheets (CSV) and for NumPy (.npz,
+// an array a column). A quantity that no device has, has no column.
+
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "libchar/lot/device_record.hpp"
+
+namespace libchar {
+
+/// Gets a file piece by piece.
+using TakeBytes = std::function<void(std::string_view)>;
+
+/// `order`: which records, and in which order (FleetLot::order). What is not known is an empty cell.
+void write_coefficients_csv(std::span<const DeviceRecord> records,
+                            std::span<const std::size_t> order,
+                            const TakeBytes& take);
+
+/// The same columns; what is not known is NaN. The status of a quantity is a place in the array `status_words`.
+void write_coefficients_npz(std::span<const DeviceRecord> records,
+                            std::span<const std::size_t> order,
+                            const TakeBytes& take);
+
+}  // namespace libchar

@@ -1,0 +1,192 @@
+#include "libchar/report/detail/fleet_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/readable.hpp"
+#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/detail/svg_lot.hpp"
+
+namespace libchar {
+namespace {
+
+std::string brackets(const Interval& i, double factor = 1, int digits = 3) {
+  return fmt::format(
+      "[{}, {}]", number_text(factor * i.low, digits), number_text(factor * i.high, digits));
+}
+
+/// "12 % [10, 14]", or "≤ 3 %" where none is seen.
+std::string spread_text(double spread,
+                        const Interval& ci95,
+                        bool logarithm,
+                        const std::string& unit) {
+  const double factor = logarithm ? 100 : 1;
+  const std::string behind = logarithm ? " %" : " " + unit;
+  if (!(ci95.low > 0)) return "≤ " + number_text(factor * ci95.high, 3) + behind;
+  return number_text(factor * spread, 3) + behind + " " + brackets(ci95, factor);
+}
+
+std::string not_counted(const LotCounts& c) {
+  std::string out;
+  for (const auto& [count, what] : {std::pair(c.not_detected, "not detected"),
+                                    std::pair(c.doubtful, "doubtful"),
+                                    std::pair(c.no_result, "without it")})
+    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count_text(count), what);
+  return out;
+}
+
+std::string mean_text(const std::optional<LotFigures>& f, const std::string& unit) {
+  return f ? number_text(f->mean) + " " + brackets(f->mean_ci95, 1, 4) + " " + unit : "–";
+}
+
+std::string batches_text(const QuantityLot& q) {
+  return q.batch_difference ? probability_text(q.batch_difference->p) : "";
+}
+
+std::string ppk_text(const Capability& c) {
+  if (!c.ppk) return "";
+  if (!std::isfinite(*c.ppk)) return *c.ppk > 0 ? ", no spread seen" : ", all above";
+  const auto end = [](double value) { return std::isfinite(value) ? number_text(value, 3) : "∞"; };
+  return fmt::format(
+      ", Ppk {} [{}, {}]", number_text(*c.ppk, 3), end(c.ppk_ci95.low), end(c.ppk_ci95.high));
+}
+
+std::string limit_text(const QuantityLot& q) {
+  if (!q.capability) return "";
+  const Capability& c = *q.capability;
+  return fmt::format("≤ {}: {} fail, {} not decided{}",
+                     c.text,
+                     count_text(c.fail),
+                     count_text(c.not_decided),
+                     ppk_text(c));
+}
+
+LotAxis axis_of(const QuantityLot& q) {
+  LotAxis axis;
+  axis.logarithm = in_logarithm(q.quantity);
+  axis.title = title_of(q.quantity) + ", " + q.unit;
+  if (q.effects) axis.mean = q.effects->mean;
+  if (q.capability) axis.limit = std::log(q.capability->most);
+  return axis;
+}
+
+std::string chart_of(const FleetReport& report, const QuantityLot& q, const std::string& title) {
+  std::vector<std::string> beyond;
+  for (const ChartValue& v : q.chart->beyond) {
+    const double value = in_logarithm(q.quantity) ? std::exp(v.value) : v.value;
+    beyond.push_back(report.records[q.charted[v.index]].device + ": " + number_text(value) + " " +
+                     q.unit);
+  }
+  std::vector<ChartBound> bounds;
+  for (std::size_t i = 1; i < q.charted.size(); ++i) {
+    const std::string& batch = report.records[q.charted[i]].batch;
+    if (batch != report.records[q.charted[i - 1]].batch) bounds.push_back({i, batch_title(batch)});
+  }
+  // Of very many batches the bounds would be all that is seen.
+  if (bounds.size() > 60) bounds.clear();
+  return svg_control_chart(*q.chart, q.charted.size(), axis_of(q), beyond, bounds, title);
+}
+
+std::string batch_table(const QuantityLot& q) {
+  if (q.batches.empty()) return "";
+  constexpr std::size_t kMost = 200;
+  const bool logarithm = in_logarithm(q.quantity);
+  std::string rows =
+      "<div class=\"wide\"><table class=\"many\">\n" +
+      table_head({"Batch", "Mean", "Spread (sd)", "Median", "Counted", "Not counted"});
+  for (std::size_t b = 0; b < std::min(kMost, q.batches.size()); ++b) {
+    const BatchLot& one = q.batches[b];
+    rows += table_row(
+        {batch_title(one.batch),
+         mean_text(one.figures, q.unit),
+         one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
+                     : "–",
+         std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
+         fmt::format("{} of {}", count_text(one.counts.counted), count_text(one.counts.members)),
+         not_counted(one.counts)});
+  }
+  rows += "</tbody></table></div>\n";
+  if (q.batches.size() > kMost)
+    rows += fmt::format("<p class=\"note\">{} more batches stand in lot.json.</p>\n",
+                        q.batches.size() - kMost);
+  return folded(fmt::format("{} batches", q.batches.size()), rows);
+}
+
+std::string sentences(const QuantityLot& q) {
+  const bool logarithm = in_logarithm(q.quantity);
+  std::vector<std::string> out;
+  if (q.batch_difference) {
+    const BatchDifference& d = *q.batch_difference;
+    out.push_back(fmt::format(
+        "From batch to batch: {}, {} that batches alike differ as much; within a batch: {}.",
+        spread_text(d.between, d.between_ci95, logarithm, q.unit),
+        probability_text(d.p),
+        number_text((logarithm ? 100 : 1) * d.within, 3) + (logarithm ? " %" : " " + q.unit)));
+  }
+  if (q.repeats)
+    out.push_back(
+        fmt::format("From recording to recording of one device: {} ({} devices, {} recordings).",
+                    spread_text(q.repeats->within, q.repeats->within_ci95, logarithm, q.unit),
+                    count_text(q.repeats->devices),
+                    count_text(q.repeats->recordings)));
+  if (q.capability) {
+    const Capability& c = *q.capability;
+    std::string line = "Limit " + limit_text(q);
+    if (c.cpk) line += fmt::format(", Cpk {}", number_text(*c.cpk, 3));
+    if (c.ppk)
+      line += fmt::format("; a normal distribution has {} % above", number_text(100 * c.above, 2));
+    out.push_back(line + ".");
+  }
+  return bullet_list(out, "facts");
+}
+
+}  // namespace
+
+std::string group_title(const QuantityLot& q, const FleetLot& lot) {
+  return lot.types.size() < 2 ? q.group : q.group + " of " + (q.type.empty() ? "no type" : q.type);
+}
+
+std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind) {
+  std::vector<std::string> out = {
+      "Group", "What", "Mean", "Spread (sd)", "95 % of devices", "Counted", "Not counted"};
+  if (lot.batches.size() > 1) out.emplace_back("Batches alike");
+  const bool limited = std::any_of(lot.quantities.begin(),
+                                   lot.quantities.end(),
+                                   [](const QuantityLot& q) { return q.capability.has_value(); });
+  if (limited && !of_kind) out.emplace_back("Limit");
+  return out;
+}
+
+std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lot) {
+  const bool logarithm = in_logarithm(q.quantity), some = q.counts.counted > 0;
+  std::vector<std::string> out = {
+      group_title(q, lot),
+      title_of(q.quantity),
+      mean_text(q.figures, q.unit),
+      q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
+      some ? fmt::format("{} … {} {}",
+                         number_text(q.quantiles[1], 3),
+                         number_text(q.quantiles[5], 3),
+                         q.unit)
+           : "–",
+      fmt::format("{} of {}", count_text(q.counts.counted), count_text(q.counts.members)),
+      not_counted(q.counts)};
+  const std::size_t columns = quantity_heads(lot, q.of_kind).size();
+  if (lot.batches.size() > 1) out.push_back(batches_text(q));
+  if (out.size() < columns) out.push_back(limit_text(q));
+  return out;
+}
+
+std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
+  if (q.histogram.count.empty() && !q.capability) return "";
+  const std::string title = title_of(q.quantity) + " of " + group_title(q, *report.lot);
+  std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
+                    svg_histogram(q.histogram, axis_of(q), "Histogram: " + title);
+  if (q.chart) out += chart_of(report, q, "Control chart: " + title);
+  return out + "</div>\n" + sentences(q) + batch_table(q);
+}
+
+}  // namespace libchar

@@ -1,0 +1,43 @@
+#pragma once
+// An .npz archive of named one-dimensional arrays (NumPy enhancement proposal 1 in an uncompressed zip archive, APPNOTE 6.3.3), which
+// numpy.load reads with allow_pickle=False.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+class NpzWriter {
+ public:
+  /// `take` gets the bytes of the archive, a piece after the other.
+  explicit NpzWriter(std::function<void(std::string_view)> take) : take_(std::move(take)) {}
+
+  void add(const std::string& name, std::span<const double> values);
+  void add(const std::string& name, std::span<const std::uint64_t> values);
+  void add(const std::string& name, std::span<const std::uint8_t> values);
+  /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped.
+  void add(const std::string& name, std::span<const std::string> texts);
+  /// The directory of the archive; nothing may follow.
+  void finish();
+
+ private:
+  struct Member {
+    std::string name;
+    std::uint32_t crc = 0, bytes = 0, at = 0;
+  };
+  void add_array(const std::string& name,
+                 const std::string& type,
+                 std::size_t count,
+                 std::string_view data);
+  void put(std::string_view bytes);
+
+  std::function<void(std::string_view)> take_;
+  std::uint64_t written_ = 0;
+  std::vector<Member> members_;
+};
+
+}  // namespace libchar

@@ -1,0 +1,279 @@
+#include "libchar/report/detail/svg_lot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/report/detail/escape.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kLotWidth = 560, kLotHeight = 250, kLotLeft = 84, kLotRight = 12, kLotTop = 16,
+                 kLotBottom = 44;
+
+/// Of one axis: values as they stand on it, and where that is in the drawing.
+struct Scale {
+  double low = 0, high = 1, from = 0, to = 1;
+  double at(double value) const { return from + (to - from) * (value - low) / (high - low); }
+};
+
+Scale scale_of(double low, double high, double from, double to) {
+  if (!(high > low)) {
+    const double half = std::max(std::abs(low) * 0.05, 1e-9);
+    low -= half;
+    high += half;
+  }
+  const double margin = 0.03 * (high - low);
+  return {low - margin, high + margin, from, to};
+}
+
+/// Some five round numbers of a stretch.
+std::vector<double> round_numbers(double low, double high) {
+  const double rough = (high - low) / 5, power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = power;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0})
+    if (step < rough) step = factor * power;
+  std::vector<double> out;
+  for (double k = std::ceil(low / step); k * step <= high && out.size() < 12; ++k)
+    out.push_back(k * step);
+  return out;
+}
+
+/// Values with a label, of an axis of logarithms or of values.
+std::vector<double> ticks_of(const Scale& scale, bool logarithm) {
+  if (!logarithm) return round_numbers(scale.low, scale.high);
+  const double low = std::exp(scale.low), high = std::exp(scale.high);
+  if (high / low < 4) return round_numbers(low, high);
+  std::vector<double> out;
+  const bool few = high / low < 300;
+  for (int e = static_cast<int>(std::floor(std::log10(low))); e <= std::ceil(std::log10(high)); ++e)
+    for (const int digit : {1, 2, 3, 5, 7}) {
+      const double value = digit * std::pow(10.0, e);
+      const bool shown = digit == 1 || (few && digit % 3 == 2) || high / low < 20;
+      if (value >= low && value <= high && shown) out.push_back(value);
+    }
+  return out;
+}
+
+std::string line(const char* css, double x1, double y1, double x2, double y2) {
+  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
+                     css,
+                     x1,
+                     y1,
+                     x2,
+                     y2);
+}
+
+std::string label(double x, double y, const char* anchor, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>",
+                     x,
+                     y,
+                     anchor,
+                     html_text(text));
+}
+
+std::string opening(const std::string& title) {
+  return fmt::format(
+      "<figure class=\"curves lot\">\n<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n",
+      kLotWidth,
+      kLotHeight,
+      html_attribute(title));
+}
+
+/// As few digits as the number has.
+std::string tick_text(double value) {
+  for (int digits = 1; digits < 5; ++digits)
+    if (const auto rounded = parse_double(significant(value, digits));
+        rounded && std::abs(*rounded - value) < 1e-6 * std::abs(value))
+      return number_text(value, digits);
+  return number_text(value, 3);
+}
+
+std::string values_axis(const Scale& scale, const LotAxis& axis, bool vertical) {
+  std::string out;
+  for (const double value : ticks_of(scale, axis.logarithm)) {
+    const double at = scale.at(axis.logarithm ? std::log(value) : value);
+    const std::string text = tick_text(value);
+    out += vertical ? line("fine", kLotLeft, at, kLotWidth - kLotRight, at) +
+                          label(kLotLeft - 6, at + 4, "end", text)
+                    : line("fine", at, kLotTop, at, kLotHeight - kLotBottom) +
+                          label(at, kLotHeight - kLotBottom + 16, "middle", text);
+  }
+  const double middle = (kLotTop + kLotHeight - kLotBottom) / 2;
+  return out + (vertical ? fmt::format("<text class=\"axis\" transform=\"translate(13 {}) "
+                                       "rotate(-90)\" text-anchor=\"middle\">{}</text>",
+                                       middle,
+                                       html_text(axis.title))
+                         : fmt::format("<text class=\"axis\" x=\"{}\" y=\"{}\" "
+                                       "text-anchor=\"middle\">{}</text>",
+                                       (kLotLeft + kLotWidth - kLotRight) / 2,
+                                       kLotHeight - 8,
+                                       html_text(axis.title)));
+}
+
+std::string bars(const Histogram& h, const Scale& x, const Scale& y) {
+  std::string out;
+  for (std::size_t k = 0; k < h.count.size(); ++k) {
+    if (h.count[k] == 0) continue;
+    const double left = x.at(h.low + h.step * static_cast<double>(k)),
+                 right = x.at(h.low + h.step * static_cast<double>(k + 1)),
+                 top = y.at(static_cast<double>(h.count[k]));
+    out += fmt::format(
+        "<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+        left,
+        top,
+        std::max(right - left - 0.6, 0.6),
+        y.from - top);
+  }
+  return out;
+}
+
+/// The mean and the limit, each with its word; what is beyond the axis stands at its end as an arrow.
+std::string marks(const LotAxis& axis, const Scale& x) {
+  std::string out;
+  const auto mark = [&](const std::optional<double>& value, const char* css, const char* word) {
+    if (!value) return;
+    const bool right = *value > x.high, left = *value < x.low;
+    const double at = std::clamp(x.at(*value), kLotLeft, kLotWidth - kLotRight);
+    if (!right && !left) out += line(css, at, kLotTop, at, kLotHeight - kLotBottom);
+    const std::string text = right  ? std::string(word) + " →"
+                             : left ? std::string("← ") + word
+                                    : word;
+    out += label(at, kLotTop - 4, right ? "end" : left ? "start" : "middle", text);
+  };
+  mark(axis.mean, "mean", "mean");
+  mark(axis.limit, "limit", "limit");
+  return out;
+}
+
+std::string closing(const std::string& caption) {
+  return "\n</svg>\n<figcaption>" + html_text(caption) + "</figcaption>\n</figure>\n";
+}
+
+Scale chart_scale(const ControlChart& chart, const LotAxis& axis) {
+  double low = chart.limits.low, high = chart.limits.high;
+  for (const ChartPoint& p : chart.points) {
+    low = std::min(low, p.low);
+    high = std::max(high, p.high);
+  }
+  // A limit far away would squeeze the chart; one that is near is shown.
+  if (axis.limit && *axis.limit < high + (high - low) && *axis.limit > low - (high - low)) {
+    low = std::min(low, *axis.limit);
+    high = std::max(high, *axis.limit);
+  }
+  return scale_of(low, high, kLotHeight - kLotBottom, kLotTop);
+}
+
+std::string chart_values(const ControlChart& chart, const Scale& x, const Scale& y) {
+  const auto place = [](const ChartPoint& p) {
+    return static_cast<double>(p.first) + (static_cast<double>(p.count) - 1) / 2;
+  };
+  std::string band, back, means, dots;
+  bool single = true;
+  for (const ChartPoint& p : chart.points) {
+    single = single && p.count == 1;
+    band += fmt::format("{:.1f},{:.1f} ", x.at(place(p)), y.at(p.high));
+    back = fmt::format("{:.1f},{:.1f} ", x.at(place(p)), y.at(p.low)) + back;
+    means += fmt::format("{:.1f},{:.1f} ", x.at(place(p)), y.at(p.mean));
+    dots += fmt::format("<circle class=\"value\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>",
+                        x.at(place(p)),
+                        y.at(p.mean));
+  }
+  const std::string lines = "<polyline class=\"values\" points=\"" + means + "\"/>";
+  return single ? lines + dots : "<polygon class=\"band\" points=\"" + band + back + "\"/>" + lines;
+}
+
+/// Drawings stay small: of very many the furthest.
+constexpr std::size_t kMostMarks = 150;
+
+std::string marks_beyond(const ControlChart& chart,
+                         const std::vector<std::string>& names,
+                         const Scale& x,
+                         const Scale& y) {
+  std::vector<std::size_t> order(chart.beyond.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(chart.beyond[a].value - chart.centre) >
+           std::abs(chart.beyond[b].value - chart.centre);
+  });
+  if (order.size() > kMostMarks) order.resize(kMostMarks);
+  std::string out;
+  for (const std::size_t i : order)
+    out += fmt::format(
+        "<circle class=\"beyond\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\"><title>{}</title></circle>",
+        x.at(static_cast<double>(chart.beyond[i].index)),
+        y.at(chart.beyond[i].value),
+        html_text(names[i]));
+  return out;
+}
+
+}  // namespace
+
+std::string svg_histogram(const Histogram& h, const LotAxis& axis, const std::string& title) {
+  if (h.count.empty()) return "";
+  double low = h.low, high = h.low + h.step * static_cast<double>(h.count.size());
+  // A limit near the values belongs into the picture.
+  if (axis.limit && *axis.limit < high + (high - low) && *axis.limit > low - (high - low)) {
+    low = std::min(low, *axis.limit);
+    high = std::max(high, *axis.limit);
+  }
+  const auto most = static_cast<double>(*std::max_element(h.count.begin(), h.count.end()));
+  const Scale x = scale_of(low, high, kLotLeft, kLotWidth - kLotRight);
+  const Scale y{0, std::max(most, 1.0) * 1.05, kLotHeight - kLotBottom, kLotTop};
+  std::string out = opening(title) + values_axis(x, axis, false);
+  for (const double n : round_numbers(0, y.high))
+    if (n == std::floor(n))
+      out += line("fine", kLotLeft, y.at(n), kLotWidth - kLotRight, y.at(n)) +
+             label(kLotLeft - 6, y.at(n) + 4, "end", count_text(static_cast<std::uint64_t>(n)));
+  out += bars(h, x, y) + marks(axis, x);
+  std::string caption = "How many devices have which value";
+  if (h.below + h.above > 0)
+    caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
+  return out + closing(caption + ".");
+}
+
+std::string svg_control_chart(const ControlChart& chart,
+                              std::size_t values,
+                              const LotAxis& axis,
+                              const std::vector<std::string>& beyond,
+                              const std::vector<ChartBound>& bounds,
+                              const std::string& title) {
+  const Scale x{-0.5, static_cast<double>(values) - 0.5, kLotLeft, kLotWidth - kLotRight};
+  const Scale y = chart_scale(chart, axis);
+  std::string out = opening(title) + values_axis(y, axis, true);
+  for (const ChartBound& bound : bounds) {
+    const double at = x.at(static_cast<double>(bound.index) - 0.5);
+    out += line("bound", at, kLotTop, at, kLotHeight - kLotBottom);
+    if (bounds.size() <= 6) out += label(at, kLotTop - 4, "start", bound.name);
+  }
+  out += chart_values(chart, x, y);
+  for (const double value : {chart.limits.low, chart.limits.high})
+    out += line("control", kLotLeft, y.at(value), kLotWidth - kLotRight, y.at(value));
+  out += line("mean", kLotLeft, y.at(chart.centre), kLotWidth - kLotRight, y.at(chart.centre));
+  if (axis.limit && *axis.limit > y.low && *axis.limit < y.high)
+    out += line("limit", kLotLeft, y.at(*axis.limit), kLotWidth - kLotRight, y.at(*axis.limit)) +
+           label(kLotWidth - kLotRight, y.at(*axis.limit) - 3, "end", "limit");
+  out += marks_beyond(chart, beyond, x, y);
+  out += fmt::format(
+      "<text class=\"axis\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">devices by batch and "
+      "name</text>",
+      (kLotLeft + kLotWidth - kLotRight) / 2,
+      kLotHeight - 8);
+  out += label(kLotLeft, kLotHeight - kLotBottom + 16, "start", "1") +
+         label(kLotWidth - kLotRight, kLotHeight - kLotBottom + 16, "end", count_text(values));
+  return out +
+         closing(fmt::format(
+             "{} of {} outside of mean ± 3 σ of the moving range ({} expected by chance), {} of "
+             "eight or more on one side ({} expected).",
+             chart.beyond.size(),
+             count_text(values),
+             number_text(chart.beyond_by_chance, 2),
+             chart.runs == 1 ? "1 run" : fmt::format("{} runs", chart.runs),
+             number_text(chart.runs_by_chance, 2)));
+}
+
+}  // namespace libchar

@@ -1,0 +1,465 @@
+#include "libchar/report/fleet_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
+#include "libchar/log/recording_json.hpp"
+#include "libchar/report/coefficient_table.hpp"
+#include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/fleet_figures.hpp"
+#include "libchar/report/detail/html_page.hpp"
+#include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
+
+namespace libchar {
+namespace {
+
+/// Figures of more quantities than that are left to lot.json: the page has to open in a second.
+constexpr std::size_t kMostFigures = 150;
+constexpr std::size_t kMostFailed = 1000, kFailedOnPage = 100, kOutliersInJson = 100;
+
+// ---- the document ----
+
+Json counts_json(const LotCounts& c) {
+  return {{"members", c.members},
+          {"counted", c.counted},
+          {"not_detected", c.not_detected},
+          {"doubtful", c.doubtful},
+          {"no_result", c.no_result}};
+}
+
+void add_figures(Json& out, const std::optional<LotFigures>& f) {
+  out["mean"] = f ? json_number(f->mean) : Json(nullptr);
+  out["mean_ci95"] = f ? interval_json(f->mean_ci95) : Json(nullptr);
+  out["spread"] = f ? json_number(f->spread) : Json(nullptr);
+  out["spread_ci95"] = f ? interval_json(f->spread_ci95) : Json(nullptr);
+}
+
+Json device_json(const DeviceRecord& r) {
+  return {
+      {"device", json_text(r.device)},
+      {"type", json_text(r.type)},
+      {"batch", json_text(r.batch)},
+      {"report", r.report.empty() ? Json(nullptr) : Json(json_text(r.report + "/report.html"))}};
+}
+
+Json batches_json(const QuantityLot& q) {
+  Json out = Json::array();
+  for (const BatchLot& b : q.batches) {
+    Json one = {{"batch", json_text(b.batch)}};
+    one.update(counts_json(b.counts));
+    add_figures(one, b.figures);
+    one["median"] = json_number(b.median);
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+Json chart_json(const FleetReport& report, const QuantityLot& q) {
+  if (!q.chart) return nullptr;
+  const ControlChart& c = *q.chart;
+  Json out = {{"centre", c.centre},
+              {"sigma", c.sigma},
+              {"limits", interval_json(c.limits)},
+              {"of", in_logarithm(q.quantity) ? "logarithm" : "value"},
+              {"beyond", Json::array()},
+              {"beyond_count", c.beyond.size()},
+              {"beyond_by_chance", c.beyond_by_chance},
+              {"runs", c.runs},
+              {"runs_by_chance", c.runs_by_chance}};
+  for (std::size_t i = 0; i < std::min(kOutliersInJson, c.beyond.size()); ++i)
+    out["beyond"].push_back(json_text(report.records[q.charted[c.beyond[i].index]].device));
+  return out;
+}
+
+Json capability_json(const std::optional<Capability>& c) {
+  if (!c) return nullptr;
+  return {{"most", c->most},
+          {"text", json_text(c->text)},
+          {"pass", c->pass},
+          {"fail", c->fail},
+          {"not_decided", c->not_decided},
+          {"ppk", json_number(c->ppk)},
+          {"ppk_ci95", c->ppk ? interval_json(c->ppk_ci95) : Json(nullptr)},
+          {"cpk", json_number(c->cpk)},
+          {"above", c->ppk ? json_number(c->above) : Json(nullptr)}};
+}
+
+Json outliers_json(const FleetReport& report, const QuantityLot& q) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < std::min(kOutliersInJson, q.outliers.size()); ++i) {
+    const FleetOutlier& o = q.outliers[i];
+    out.push_back({{"device", json_text(report.records[o.recording].device)},
+                   {"value", json_number(o.value)},
+                   {"deviation", json_number(o.deviation)},
+                   {"p", json_number(o.p)},
+                   {"sentence", json_text(o.sentence)}});
+  }
+  return out;
+}
+
+Json histogram_json(const QuantityLot& q) {
+  const Histogram& h = q.histogram;
+  return {{"of", in_logarithm(q.quantity) ? "logarithm" : "value"},
+          {"low", h.low},
+          {"step", h.step},
+          {"count", h.count},
+          {"below", h.below},
+          {"above", h.above}};
+}
+
+Json quantity_json(const FleetReport& report, const QuantityLot& q) {
+  Json out = {{"type", json_text(q.type)},
+              {"group", json_text(q.group)},
+              {"of_kind", q.of_kind},
+              {"what", std::string(name_of(q.quantity))},
+              {"unit", json_text(q.unit)}};
+  out.update(counts_json(q.counts));
+  add_figures(out, q.figures);
+  out["spread_is"] = in_logarithm(q.quantity) ? "relative" : "absolute";
+  out["quantiles"] = Json::array();
+  for (std::size_t k = 0; k < kLotQuantiles.size(); ++k)
+    out["quantiles"].push_back({kLotQuantiles[k], json_number(q.quantiles[k])});
+  out["histogram"] = histogram_json(q);
+  out["batches"] = batches_json(q);
+  const auto& d = q.batch_difference;
+  out["batch_difference"] = d ? Json{{"between", json_number(d->between)},
+                                     {"between_ci95", interval_json(d->between_ci95)},
+                                     {"within", json_number(d->within)},
+                                     {"p", json_number(d->p)}}
+                              : Json(nullptr);
+  out["repeats"] = q.repeats ? Json{{"devices", q.repeats->devices},
+                                    {"recordings", q.repeats->recordings},
+                                    {"within", json_number(q.repeats->within)},
+                                    {"within_ci95", interval_json(q.repeats->within_ci95)}}
+                             : Json(nullptr);
+  out["chart"] = chart_json(report, q);
+  out["capability"] = capability_json(q.capability);
+  out["outlier_count"] = q.outliers.size();
+  out["outliers"] = outliers_json(report, q);
+  return out;
+}
+
+Json texts_json(const std::vector<std::string>& texts) {
+  Json out = Json::array();
+  for (const std::string& text : texts) out.push_back(json_text(text));
+  return out;
+}
+
+// ---- the page ----
+
+std::string device_link(const DeviceRecord& r) {
+  const std::string name = html_text(r.device);
+  return r.report.empty()
+             ? name
+             : fmt::format("<a href=\"{}/report.html\">{}</a>", html_address(r.report), name);
+}
+
+std::string facts(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" +
+         bullet_list(lot.notes, "cautions");
+}
+
+std::string failed_part(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  if (lot.failed.empty()) return "";
+  std::string rows =
+      "<div class=\"wide\"><table class=\"many\">\n" + table_head({"Device", "Log", "Why"});
+  for (std::size_t i = 0; i < std::min(kFailedOnPage, lot.failed.size()); ++i) {
+    const DeviceRecord& r = report.records[lot.failed[i]];
+    rows += table_row({r.device, r.log, r.problem});
+  }
+  rows += "</tbody></table></div>\n";
+  if (lot.failed.size() > kFailedOnPage)
+    rows +=
+        fmt::format("<p class=\"note\">And {} more: the list of devices below shows them.</p>\n",
+                    count_text(lot.failed.size() - kFailedOnPage));
+  return folded(fmt::format("{} could not be characterized",
+                            html_text(plural(lot.failed.size(), "recording"))),
+                rows);
+}
+
+std::string reason_list(const std::vector<std::string>& reasons) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> shown(
+      reasons.begin(),
+      reasons.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, reasons.size())));
+  if (reasons.size() > kMost) shown.push_back(fmt::format("and {} more", reasons.size() - kMost));
+  return bullet_list(shown, "reasons");
+}
+
+std::string worst_table(const FleetReport& report, std::size_t first, std::size_t end) {
+  std::string out = "<div class=\"wide\"><table class=\"many\">\n" +
+                    table_head({"Device", "Type", "Batch", "Why"});
+  for (std::size_t i = first; i < end; ++i) {
+    const WorstDevice& w = report.lot->worst[i];
+    const DeviceRecord& r = report.records[w.recording];
+    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                       device_link(r),
+                       html_text(r.type),
+                       html_text(r.batch),
+                       reason_list(w.reasons));
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string worst_part(const FleetReport& report) {
+  constexpr std::size_t kOpen = 20;
+  const std::size_t count = report.lot->worst.size(), open = std::min(kOpen, count);
+  if (count == 0) return "";
+  std::string out =
+      "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
+  if (count > open)
+    out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
+  return out +
+         "<p class=\"note\">By how improbable the reason is: so large a deviation from the "
+         "others, of any device of the fleet; or so high a value of a device that stands at its "
+         "limit.</p>\n</section>\n";
+}
+
+std::string quantities_table(const FleetLot& lot, bool of_kind) {
+  std::string rows;
+  for (const QuantityLot& q : lot.quantities)
+    if (q.of_kind == of_kind) rows += table_row(quantity_cells(q, lot));
+  if (rows.empty()) return "";
+  return "<div class=\"wide\"><table class=\"many\">\n" + table_head(quantity_heads(lot, of_kind)) +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string quantities_part(const FleetLot& lot) {
+  const std::string kinds = quantities_table(lot, true), channels = quantities_table(lot, false);
+  std::string out =
+      "<h2>What the devices have in common</h2>\n" + (kinds.empty() ? channels : kinds);
+  if (!kinds.empty()) out += folded("Channel by channel", channels);
+  return out +
+         "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, "
+         "what the uncertainty of each "
+         "alone would make is taken out; ≤: none beyond that, 97.5 % limit. In brackets: 95 % "
+         "intervals. 95 % of devices: "
+         "their values as they were measured. Only what was detected counts, and no mean is given "
+         "where that is under two "
+         "thirds.</p>\n";
+}
+
+std::string figures_part(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  std::string out;
+  std::size_t drawn = 0, left_out = 0;
+  for (std::size_t q = 0; q < lot.quantities.size();) {
+    const QuantityLot& first = lot.quantities[q];
+    std::string body;
+    for (; q < lot.quantities.size() && lot.quantities[q].group == first.group &&
+           lot.quantities[q].type == first.type && lot.quantities[q].of_kind == first.of_kind;
+         ++q) {
+      if (first.of_kind) continue;
+      if (drawn >= kMostFigures) {
+        ++left_out;
+        continue;
+      }
+      const std::string figures = quantity_figures(report, lot.quantities[q]);
+      drawn += !figures.empty();
+      body += figures;
+    }
+    if (!body.empty())
+      out += "<details class=\"channel\"" + std::string(out.empty() ? " open" : "") +
+             ">\n<summary>" + html_text(group_title(first, lot)) + " <span class=\"unit\">" +
+             html_text(first.channel_unit) + "</span></summary>\n" + body + "</details>\n";
+  }
+  if (out.empty()) return "";
+  if (left_out > 0)
+    out += fmt::format(
+        "<p class=\"note\">Figures of {} more quantities are left out; their numbers stand in "
+        "lot.json.</p>\n",
+        left_out);
+  return "<section id=\"channels\">\n<h2>Distributions and control charts</h2>\n" + out +
+         "</section>\n";
+}
+
+std::string devices_part() {
+  return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
+         "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, type, "
+         "batch\"></label>\n"
+         "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option "
+         "value=\"1\">that stand "
+         "out</option><option value=\"2\">that fail a limit</option><option value=\"4\">not "
+         "characterized</option></select></label>\n<button type=\"button\" id=\"device-before\">‹ "
+         "before</button>"
+         "<button type=\"button\" id=\"device-next\">next ›</button>\n<span id=\"device-place\" "
+         "class=\"dim\"></span>\n"
+         "</div>\n<div class=\"wide\"><table class=\"devices\" id=\"devices\">\n" +
+         table_head({"Device", "Type", "Batch", "What is the matter"}) +
+         "</tbody></table></div>\n<p class=\"note\">Every coefficient of every device stands in "
+         "coefficients.csv and "
+         "coefficients.npz beside this page.</p>\n</section>\n";
+}
+
+std::string provenance(const FleetReport& report) {
+  std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n";
+  if (!report.inputs.empty()) {
+    out += "<div class=\"wide\"><table>\n" + table_head({"File", "SHA-256"});
+    for (const LogInfo& one : report.inputs)
+      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"hash\">{}</td></tr>\n",
+                         html_text(one.file),
+                         html_text(one.sha256));
+    out += "</tbody></table></div>\n";
+  }
+  if (!report.command.empty())
+    out += "<p>Command: <code>" + html_text(command_line(report.command)) + "</code></p>\n";
+  return out + "</section>\n";
+}
+
+/// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.
+Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::size_t>& order) {
+  std::optional<std::string> before;
+  bool none = true, simple = true;
+  for (const std::size_t r : order) {
+    const DeviceRecord& one = records[r];
+    none = none && one.report.empty();
+    const bool ends = one.report.ends_with(one.device);
+    const std::string start =
+        ends ? one.report.substr(0, one.report.size() - one.device.size()) : "";
+    if (!before) before = start;
+    simple = simple && ends && start == *before && !one.report.empty();
+  }
+  if (none) return nullptr;
+  if (simple) return json_text(*before);
+  Json out = Json::array();
+  for (const std::size_t r : order) out.push_back(json_text(records[r].report));
+  return out;
+}
+
+/// What the list of devices shows: columns, types and batches by number.
+Json index_json(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  const auto place = [](const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) - words.begin();
+  };
+  // A recording's batch need not be its device's.
+  std::vector<std::string> batches = lot.batches;
+  Json device = Json::array(), type = Json::array(), batch = Json::array(), state = Json::array();
+  for (const std::size_t r : lot.order) {
+    const DeviceRecord& one = report.records[r];
+    device.push_back(json_text(one.device));
+    type.push_back(place(lot.types, one.type));
+    const auto b = place(batches, one.batch);
+    if (b == static_cast<std::ptrdiff_t>(batches.size())) batches.push_back(one.batch);
+    batch.push_back(b);
+    state.push_back((lot.stands_out[r] ? 1 : 0) + (lot.fails[r] ? 2 : 0) +
+                    (one.problem.empty() ? 0 : 4));
+  }
+  return {{"types", texts_json(lot.types)},
+          {"batches", texts_json(batches)},
+          {"report", reports_json(report.records, lot.order)},
+          {"device", std::move(device)},
+          {"type", std::move(type)},
+          {"batch", std::move(batch)},
+          {"state", std::move(state)}};
+}
+
+OutputFile table_file(const FleetReport& report,
+                      const std::filesystem::path& path,
+                      void (*write)(std::span<const DeviceRecord>,
+                                    std::span<const std::size_t>,
+                                    const TakeBytes&)) {
+  OutputFile out{path.string(), ""};
+  write(report.records, report.lot->order, [&](std::string_view piece) { out.text += piece; });
+  return out;
+}
+
+}  // namespace
+
+Json fleet_json(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  std::vector<const LogInfo*> inputs;
+  for (const LogInfo& one : report.inputs) inputs.push_back(&one);
+  Json out = document_head("fleet-lot", report.command, inputs);
+  out["name"] = json_text(report.name);
+  out["verdict"] = json_text(lot.verdict);
+  out["notes"] = texts_json(lot.notes);
+  out["devices"] = lot.devices;
+  out["recordings"] = lot.order.size();
+  out["types"] = texts_json(lot.types);
+  out["batches"] = texts_json(lot.batches);
+  out["outlying"] = lot.outlying;
+  out["limits"] = {{"failing", lot.failing}, {"not_decided", lot.open}, {"keeping", lot.keeping}};
+  out["failed_count"] = lot.failed.size();
+  out["failed"] = Json::array();
+  for (std::size_t i = 0; i < std::min(kMostFailed, lot.failed.size()); ++i) {
+    const DeviceRecord& r = report.records[lot.failed[i]];
+    out["failed"].push_back({{"device", json_text(r.device)},
+                             {"log", json_text(r.log)},
+                             {"problem", json_text(r.problem)}});
+  }
+  out["worst"] = Json::array();
+  for (const WorstDevice& w : lot.worst) {
+    Json one = device_json(report.records[w.recording]);
+    one["p"] = json_number(w.p);
+    one["deviation"] = json_number(w.deviation);
+    one["reasons"] = texts_json(w.reasons);
+    out["worst"].push_back(std::move(one));
+  }
+  out["quantities"] = Json::array();
+  for (const QuantityLot& q : lot.quantities) out["quantities"].push_back(quantity_json(report, q));
+  return out;
+}
+
+std::string fleet_html(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
+                           quantities_part(lot) + "</section>\n" + worst_part(report) +
+                           figures_part(report) + devices_part() + provenance(report);
+  PageParts parts;
+  parts.title = "A fleet of sensors";
+  parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;
+  parts.script = std::string(fleet_page_js());
+  parts.style =
+      std::string(page_css()) + std::string(many_page_css()) + std::string(fleet_page_css());
+  parts.all_numbers = false;
+  return html_page(parts, body, json_in_script(index_json(report)));
+}
+
+std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t worst) {
+  const FleetLot& lot = *report.lot;
+  std::string out = printable(lot.verdict) + "\n";
+  for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
+  std::vector<std::vector<std::string>> rows = {{}};
+  for (const std::string& head : quantity_heads(lot, false)) rows[0].push_back(ascii_lower(head));
+  for (const QuantityLot& q : lot.quantities) {
+    rows.push_back(quantity_cells(q, lot));
+    rows.back().resize(rows[0].size());
+    for (std::string& cell : rows.back()) cell = printable(cell);
+  }
+  if (rows.size() > 1) out += "\n" + text_table(rows, "  ", true, width);
+  if (lot.worst.empty()) return out;
+  out += "\nthe worst first:\n";
+  for (std::size_t i = 0; i < std::min(worst, lot.worst.size()); ++i) {
+    const WorstDevice& w = lot.worst[i];
+    out += "  " + printable(report.records[w.recording].device) + "  " + printable(w.reasons[0]);
+    if (w.reasons.size() > 1) out += fmt::format(" And {} more.", w.reasons.size() - 1);
+    out += "\n";
+  }
+  if (lot.worst.size() > worst) out += fmt::format("  and {} more\n", lot.worst.size() - worst);
+  return out;
+}
+
+std::vector<OutputFile> fleet_files(const FleetReport& report,
+                                    const std::filesystem::path& folder) {
+  std::vector<OutputFile> out;
+  out.push_back({(folder / "index.html").string(), fleet_html(report)});
+  out.push_back(table_file(report, folder / "coefficients.csv", write_coefficients_csv));
+  out.push_back(table_file(report, folder / "coefficients.npz", write_coefficients_npz));
+  out.push_back({(folder / "lot.json").string(), ""});
+  Json document = fleet_json(report);
+  name_files(document, out);
+  out.back().text = dump_json(document);
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,215 @@
+// What is written of a fleet: the same bytes whatever the order, tables that read back, a page of bounded size, nothing injected.
+
+#include "libchar/report/fleet_report.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "libchar/core/csv_cell.hpp"
+#include "libchar/core/decimal.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/log/read.hpp"
+#include "libchar/report/coefficient_table.hpp"
+#include "libchar/report/fleet_comparison_text.hpp"
+#include "tests/lot/made_fleet.hpp"
+#include "tests/support/schemas.hpp"
+#include "tests/support/shared.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+std::vector<DeviceRecord> two_batches(std::size_t each = 100) {
+  test::MadeLot one, two;
+  one.devices = two.devices = each;
+  two.batch = "2";
+  two.prefix = "b";
+  two.mean[0] *= 1.2;
+  auto records = test::made_lot(one, 1);
+  test::append(records, test::made_lot(two, 2));
+  records[7].channels[0].values[1].value *= 20;
+  records[9].problem = "is empty";
+  records[9].channels.clear();
+  return records;
+}
+
+std::string csv_of(const std::vector<DeviceRecord>& records) {
+  std::string out;
+  write_coefficients_csv(
+      records, fleet_lot(records).order, [&](std::string_view piece) { out += piece; });
+  return out;
+}
+
+std::string npz_of(const std::vector<DeviceRecord>& records) {
+  std::string out;
+  write_coefficients_npz(
+      records, fleet_lot(records).order, [&](std::string_view piece) { out += piece; });
+  return out;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+std::size_t column_of(const std::vector<std::string>& heads, const std::string& name) {
+  const auto at = std::find(heads.begin(), heads.end(), name);
+  REQUIRE(at != heads.end());
+  return static_cast<std::size_t>(at - heads.begin());
+}
+
+}  // namespace
+
+TEST_CASE("a fleet's files do not depend on the order of its records") {
+  auto records = two_batches();
+  const auto files_of = [](const std::vector<DeviceRecord>& all) {
+    const FleetLot lot = fleet_lot(all);
+    return fleet_files({all, &lot, "fleet", {"sensorchar", "fleet"}, {}}, "out");
+  };
+  const auto before = files_of(records);
+  std::reverse(records.begin(), records.end());
+  std::swap(records[3], records[90]);
+  const auto after = files_of(records);
+  REQUIRE(before.size() == 4);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    CAPTURE(before[i].path);
+    CHECK(before[i].path == after[i].path);
+    CHECK((before[i].text == after[i].text));
+  }
+}
+
+TEST_CASE("lot.json keeps its schema and names its files with their digests") {
+  const auto records = two_batches();
+  FleetLotOptions options;
+  options.limits[""] = parse_limits(
+      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    bias_instability: "
+      "{value: 3e-3, unit: deg/s}\n",
+      "limits.yaml");
+  const FleetLot lot = fleet_lot(records, options);
+  const auto files = fleet_files({records, &lot, "fleet", {}, {}}, "out");
+  CHECK(test::schema_fault(files[3].text) == "");
+  const auto document = nlohmann::json::parse(files[3].text);
+  CHECK(document["devices"] == 200);
+  CHECK(document["failed"][0]["device"] == "imu10");
+  CHECK(document["worst"][0]["device"] == "imu8");
+  CHECK(document["files"].size() == 4);
+  CHECK(document["files_sha256"].contains("coefficients.npz"));
+  // Alone, without limits and batches, too.
+  test::MadeLot made;
+  made.devices = 1;
+  const auto one = test::made_lot(made, 3);
+  const FleetLot small = fleet_lot(one);
+  CHECK(test::schema_fault(dump_json(fleet_json({one, &small, "", {}, {}}))) == "");
+}
+
+TEST_CASE("the table of coefficients holds every number to its last digit") {
+  const auto records = two_batches(20);
+  const auto rows = cells_of(csv_of(records));
+  CHECK(rows.size() == 1 + 2 * 39);
+  const std::size_t device = column_of(rows[0], "device"), channel = column_of(rows[0], "channel"),
+                    white = column_of(rows[0], "white_noise"),
+                    high = column_of(rows[0], "turn_on_bias_high95"),
+                    status = column_of(rows[0], "random_walk_status");
+  CHECK(std::count(rows[0].begin(), rows[0].end(), "quantization") == 0);
+  std::size_t found = 0;
+  for (const auto& row : rows)
+    for (const DeviceRecord& r : records)
+      for (const RecordedChannel& c : r.channels)
+        if (row[device] == r.device && row[channel] == c.name) {
+          ++found;
+          CHECK(parse_double(row[white]).value() == c.values[0].value);
+          CHECK(parse_double(row[high]).value() == c.values[3].ci95.high);
+          CHECK(row[status] == "detected");
+        }
+  CHECK(found == 78);
+}
+
+TEST_CASE("what a name of a device would be in a spreadsheet is no formula") {
+  auto records = two_batches(20);
+  records[0].device = "=1+1";
+  records[1].device = "a,\"b\"\nc";
+  const std::string csv = csv_of(records);
+  CHECK_THAT(csv, Contains(csv_cell("=1+1")) && Contains(csv_cell("a,\"b\"\nc")));
+  CHECK_THAT(csv, !Contains(",=1+1,"));
+}
+
+TEST_CASE("the arrays of coefficients are read by our own reader of .npz") {
+  auto records = two_batches(20);
+  records[0].device = "µ-1";
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "coefficients.npz").string();
+  write_whole_file(path, npz_of(records), true);
+  ReadOptions options;
+  options.rate_hz = 1;
+  options.channels = {"white_noise", "turn_on_bias_sd"};
+  const Recording read = read_recording(path, options);
+  const FleetLot lot = fleet_lot(records);
+  REQUIRE(read.samples.size() == 2);
+  std::size_t row = 0;
+  for (const std::size_t r : lot.order)
+    for (const RecordedChannel& c : records[r].channels) {
+      CHECK(read.samples[0][row] == c.values[0].value);
+      CHECK(read.samples[1][row++] == c.values[3].sd);
+    }
+  CHECK(row == read.samples[0].size());
+}
+
+TEST_CASE("the page of a fleet grows by names, not by drawings") {
+  const auto size = [](std::size_t devices) {
+    test::MadeLot made;
+    made.devices = devices;
+    const auto records = test::made_lot(made, 4);
+    const FleetLot lot = fleet_lot(records);
+    return static_cast<double>(fleet_html({records, &lot, "", {}, {}}).size());
+  };
+  const double each = (size(20000) - size(2000)) / 18000;
+  CHECK(each < 60);  // bytes: name, type, batch, state
+}
+
+TEST_CASE(
+    "the page of a fleet links the worst devices, and no name becomes a tag or another address") {
+  auto records = two_batches();
+  const std::string bad = "<script>alert(1)</script>\"'";
+  records[7].device = bad;
+  records[7].report = "javascript:" + bad;
+  records[8].type = bad;
+  const FleetLot lot = fleet_lot(records);
+  const std::string page = fleet_html({records, &lot, bad, {bad}, {}});
+  CHECK_THAT(page, !Contains("<script>alert") && !Contains("href=\"javascript:"));
+  CHECK_THAT(
+      page,
+      Contains("href=\"./javascript%3A%3Cscript%3Ealert%281%29%3C/script%3E%22%27/report.html\""));
+  CHECK_THAT(page, Contains("id=\"device-search\""));
+}
+
+TEST_CASE("the text of a fleet has its table and its worst devices") {
+  const auto records = two_batches();
+  const FleetLot lot = fleet_lot(records);
+  const std::string text = fleet_text({records, &lot, "", {}, {}});
+  CHECK_THAT(text,
+             Contains("1 device stands out") && Contains("gyro_x") &&
+                 Contains("the worst first:\n  imu8  gyro_x: Bias instability"));
+  CHECK_THAT(text, Contains("1 recording could not be characterized"));
+}
+
+TEST_CASE("a comparison of lots keeps its schema and has a table") {
+  test::MadeLot other;
+  other.mean[0] *= 1.1;
+  const auto a = test::made_lot({}, 1), b = test::made_lot(other, 2);
+  const FleetComparison c = compare_lots(a, b, {.name_a = "March", .name_b = "April"});
+  const std::string document = dump_json(fleet_comparison_json(c));
+  CHECK(test::schema_fault(document) == "");
+  CHECK_THAT(fleet_comparison_text(c),
+             Contains("mean of March") && Contains("larger than of March ["));
+}
