@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libchar/core/units.hpp"
+
 namespace libchar {
 namespace {
 
@@ -63,6 +65,14 @@ std::span<const DeviationRow> deviation_rows() {
 
 const DeviationRow& deviation_row(DeviationType type) {
   return kRows[static_cast<std::size_t>(type)];
+}
+
+std::string deviation_unit(DeviationType type, std::string_view unit) {
+  const DeviationRow& row = deviation_row(type);
+  if (!row.as_time && row.family != DeviationFamily::interval) return std::string(unit);
+  if (unit.empty() || dimensionless(unit)) return "s";
+  return unit.ends_with("/s") ? std::string(unit.substr(0, unit.size() - 2))
+                              : std::string(unit) + "·s";
 }
 
 std::string_view name_of(DeviationType type) {

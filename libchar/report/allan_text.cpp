@@ -19,7 +19,7 @@ std::string allan_csv(const std::vector<Channel>& channels, const std::vector<Al
       const auto or_empty = [&](double value) { return stated ? shortest(value) : ""; };
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
                           csv_cell(channels[c].name),
-                          csv_cell(channels[c].unit),
+                          csv_cell(deviation_unit(curves[c].type, channels[c].unit)),
                           shortest(p.tau_s),
                           shortest(p.deviation),
                           or_empty(p.ci68.low),

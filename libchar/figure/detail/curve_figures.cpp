@@ -77,6 +77,31 @@ bool is_of_allan_family(const std::string& statistic) {
          statistic == "Total deviation";
 }
 
+bool of_one_kind(const std::string& a, const std::string& b) {
+  return a == b || (is_of_allan_family(a) && is_of_allan_family(b));
+}
+
+std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen,
+                                    const std::string& name) {
+  std::set<std::string> found;
+  for (const ChosenCurve& one : chosen)
+    if (one.name == name) found.insert(one.curve->statistic);
+  return found;
+}
+
+/// Several statistics of one curve each (allan --type oadev,mdev) are meant to be seen beside each other, and are told apart by their
+/// names; of which curve is meant is said too where there are several.
+void name_by_statistic(std::vector<ChosenCurve>& chosen) {
+  std::set<std::string> names;
+  for (const ChosenCurve& one : chosen) names.insert(one.name);
+  if (std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return statistics_of(chosen, name).size() == 1;
+      }))
+    return;
+  for (ChosenCurve& one : chosen)
+    one.name = names.size() == 1 ? one.curve->statistic : one.name + ", " + one.curve->statistic;
+}
+
 void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   const ChosenCurve& first = chosen[0];
   for (const ChosenCurve& other : chosen) {
@@ -92,8 +117,21 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
                    "",
                    fmt::format("choose some with `channels` ('{}*'), a figure for each unit",
                                first.curve->channel.substr(0, 3))});
+    if (other.curve->value_unit != first.curve->value_unit &&
+        other.curve->statistic != first.curve->statistic && other.curve->is_allan)
+      throw Error({ErrorKind::input,
+                   "E0976",
+                   "",
+                   fmt::format("curves in unlike units do not share an axis: {} in {}, {} in {}",
+                               first.curve->statistic,
+                               first.curve->value_unit,
+                               other.curve->statistic,
+                               other.curve->value_unit),
+                   "",
+                   "a figure for each unit"});
     const std::string &a = first.curve->statistic, &b = other.curve->statistic;
-    if (a != b && !(is_of_allan_family(a) && is_of_allan_family(b)))
+    if (!of_one_kind(a, b) &&
+        statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
       throw Error({ErrorKind::input,
                    "E0983",
                    "",
@@ -130,6 +168,7 @@ std::vector<ChosenCurve> chosen_curves(std::span<const FigureSource> sources,
                 is_allan ? "allan" : "psd",
                 is_allan ? "it holds no Allan curve" : "it holds no spectrum");
   refuse_unlike(out);
+  name_by_statistic(out);
   return out;
 }
 
@@ -278,7 +317,10 @@ Chart curves_figure(std::span<const FigureSource> sources,
   Chart out;
   std::string statistic = first.statistic;
   for (const ChosenCurve& one : chosen)
-    if (one.curve->statistic != statistic) statistic = "Allan deviation";
+    if (one.curve->statistic != first.statistic)
+      statistic = of_one_kind(one.curve->statistic, first.statistic) && statistic != "Deviation"
+                      ? "Allan deviation"
+                      : "Deviation";
   out.x = {.title = is_allan ? "Averaging time τ [s]" : "Frequency [Hz]", .log = true, .rows = {}};
   out.y = {.title = axis_title(statistic, first.value_unit), .log = true, .rows = {}};
   const bool alone = chosen.size() == 1;

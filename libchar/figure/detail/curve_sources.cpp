@@ -86,7 +86,9 @@ void add_allan_curves(FigureSource& out, const MapReader& document) {
     SourceCurve curve;
     read_named(curve, channel);
     curve.statistic = statistic_of(channel.text_or("type", type));
-    curve.value_unit = curve.unit;
+    curve.value_unit = channel.has("value_unit")
+                           ? usual_figure_unit(channel.text_or("value_unit", ""))
+                           : curve.unit;
     curve.x = report_numbers(channel, "tau_s");
     const std::size_t n = curve.x.size();
     if (n == 0) continue;
@@ -327,7 +329,8 @@ SourceCurve source_curve(const std::string& channel,
                          const AllanCurve& curve) {
   SourceCurve out;
   out.channel = channel;
-  out.unit = out.value_unit = usual_figure_unit(unit);
+  out.unit = usual_figure_unit(unit);
+  out.value_unit = usual_figure_unit(deviation_unit(curve.type, unit));
   out.statistic = deviation_row(curve.type).title;
   for (const AllanPoint& p : curve.points) {
     const bool known = p.edf > 0;

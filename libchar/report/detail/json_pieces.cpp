@@ -65,6 +65,8 @@ Json interval_json(const Interval& interval) {
 
 Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const ModelCurve* model) {
   Json out = named(channel);
+  if (const std::string unit = deviation_unit(curve.type, channel.unit); unit != channel.unit)
+    out["value_unit"] = unit;
   for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "ci68", "reliable"})
     out[key] = Json::array();
   for (const AllanPoint& p : curve.points) {
