@@ -296,7 +296,7 @@ class CounterWatch {
   void join(const CounterWatch& later, std::optional<double> across, double value) {
     possible_ = possible_ && later.possible_;
     if (!possible_) return;
-    if (steps_ == 0) usual_ = later.usual_;
+    if (steps_ == 0) usual_ = later.steps_ > 0 ? later.usual_ : across.value_or(0);
     if (across) step(*across, value);
     const double apart = std::fabs(later.usual_ - usual_);
     if (apart <= 1e-6 * std::fabs(usual_) + 0x1p-51 * std::fabs(value)) same_ += later.same_;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/parts.hpp"
+
 using namespace libchar;
 
 namespace {
@@ -67,4 +69,32 @@ TEST_CASE("trace: extremes of each block, whatever the pieces, in a few hundred 
           [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
     }
   }
+}
+
+TEST_CASE("trace: parts joined are the record, whatever their length and that of the last") {
+  for (const std::size_t leaf : {16u, 2048u, 16384u})
+    for (const std::size_t n : {5u, 2048u, 2049u, 100003u, 16384u * 7 + 1}) {
+      std::vector<double> x = noise(n);
+      if (n > 6000)
+        std::fill(x.begin() + 2000, x.begin() + 5000, std::numeric_limits<double>::quiet_NaN());
+      const TraceMeter joined = test::joined_parts<TraceMeter>(
+          x,
+          leaf,
+          [](std::span<const double> part, bool) {
+            TraceMeter meter;
+            meter.push(part);
+            return meter;
+          },
+          [](TraceMeter& before, const TraceMeter& later) { before.join(later); });
+      const Trace a = trace_in_pieces(x, n), b = joined.finish();
+      CAPTURE(leaf, n);
+      REQUIRE(a.block == b.block);
+      REQUIRE(a.missing == b.missing);
+      std::size_t wrong = 0;
+      for (std::size_t i = 0; i < a.low.size(); ++i)
+        if (std::isnan(a.low[i]) ? !std::isnan(b.low[i])
+                                 : a.low[i] != b.low[i] || a.high[i] != b.high[i])
+          ++wrong;
+      REQUIRE(wrong == 0);
+    }
 }

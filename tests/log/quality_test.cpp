@@ -249,3 +249,70 @@ TEST_CASE("quality does not depend on the sizes of blocks, from one sample to th
     CHECK(parts.difference_kurtosis == whole.difference_kurtosis);
   }
 }
+
+namespace {
+
+/// Channels that a meter has something to say of, as noise, coarse steps, clipped, stuck, counting, missing.
+std::vector<std::vector<double>> odd_channels(std::size_t n) {
+  std::mt19937_64 engine(n);
+  std::normal_distribution<double> normal;
+  std::vector<std::vector<double>> out(9, std::vector<double>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = normal(engine);
+    out[0][i] = 1e6 + x;
+    out[1][i] = std::round(2 * x) / 4;
+    out[2][i] = std::clamp(1.3 * x, -1.5, 1.5);
+    out[3][i] = i % 500 < 150 ? 0.25 : x;
+    out[4][i] = static_cast<double>(i) * 0.125;
+    out[5][i] = engine() % 3 == 0 ? std::nan("") : static_cast<double>(static_cast<float>(x));
+    out[6][i] = 7;
+    out[7][i] = i < n / 2 ? std::nan("") : i % 7 == 0 ? 1e200 : std::round(x);
+    out[8][i] = static_cast<double>(i % 100);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("quality: parts joined are the record, wherever it is cut") {
+  std::mt19937_64 engine(4);
+  for (const std::size_t n : {3u, 64u, 3000u, 20011u})
+    for (const std::vector<double>& x : odd_channels(n))
+      for (int cuts = 0; cuts < 6; ++cuts) {
+        QualityMeter whole, joined;
+        whole.push(x);
+        for (std::size_t at = 0; at < n;) {
+          const std::size_t count = std::min<std::size_t>(n - at, 1 + engine() % (n < 100 ? 4 : n));
+          QualityMeter part;
+          part.push({x.data() + at, count});
+          StateWriter to("quality", 1);
+          part.write_state(to);
+          const std::string bytes = to.finish();
+          StateReader from(bytes, "x", "quality", 1);
+          QualityMeter again;
+          again.read_state(from);
+          from.finish();
+          joined.join(again);
+          at += count;
+        }
+        const ChannelQuality a = whole.finish(), b = joined.finish();
+        REQUIRE(b.samples == a.samples);
+        REQUIRE(b.missing == a.missing);
+        REQUIRE(b.beyond == a.beyond);
+        REQUIRE(b.mean == Approx(a.mean).epsilon(1e-13).margin(1e-15));
+        REQUIRE(b.standard_deviation == Approx(a.standard_deviation).epsilon(1e-12));
+        REQUIRE(b.minimum == a.minimum);
+        REQUIRE(b.maximum == a.maximum);
+        REQUIRE(b.resolution == a.resolution);
+        REQUIRE(b.distinct_values == a.distinct_values);
+        REQUIRE(b.saturated == a.saturated);
+        REQUIRE(b.longest_stuck == a.longest_stuck);
+        REQUIRE(b.at_minimum == a.at_minimum);
+        REQUIRE(b.at_maximum == a.at_maximum);
+        REQUIRE(b.repeats == a.repeats);
+        REQUIRE(b.difference_kurtosis == Approx(a.difference_kurtosis).epsilon(1e-12));
+        REQUIRE(b.difference_sd == Approx(a.difference_sd).epsilon(1e-12));
+        REQUIRE(b.counter == a.counter);
+        REQUIRE(b.float32 == a.float32);
+      }
+}
