@@ -262,6 +262,7 @@ std::string characterize_stretch(const std::string& path,
       tree.add(std::move(node));
     });
   }
+  read = {};
   return write_stretch(state, tree.nodes());
 }
 

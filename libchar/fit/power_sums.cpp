@@ -16,6 +16,7 @@
 #include <optional>
 #include <utility>
 
+#include "libchar/core/free_memory.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/detail/pooled_power.hpp"
 #include "libchar/fit/detail/record_powers.hpp"
@@ -68,7 +69,6 @@ struct Segment {
     if (samples == 0) shift = run.shift;
     samples += run.samples;
     const double moved = std::sqrt(static_cast<double>(kSamplesAMean)) * (run.shift - shift);
-    means.reserve(means.size() + run.means.size());
     for (const double mean : run.means) means.push_back(mean + moved);
   }
 };
@@ -212,18 +212,22 @@ void join(PowerSums& sums, PowerSums later) {
   if (!later.tail.empty()) sums.tail = std::move(later.tail);
 }
 
-PowerBinner binner_of(const PowerSums& sums) {
+PowerBinner binner_of(PowerSums sums) {
   std::vector<PooledPower> powers;
   std::uint64_t samples = 0;
   Segment segment;
-  for (const PowerRun& run : sums.runs) {
+  std::size_t left = 0;
+  for (const PowerRun& run : sums.runs) left += run.means.size();
+  for (PowerRun& run : sums.runs) {
     if (run.samples == 0) continue;
     if (segment.samples > 0 && run.gap > std::max(kLongGap, samples / 100)) {
       add_means(segment, false, powers);
       segment = {};
     }
-    segment.add(run);
+    if (segment.samples == 0) segment.means.reserve(left);
+    left -= run.means.size();
     samples += run.samples;
+    segment.add(std::exchange(run, {}));
   }
   const std::uint64_t tail = sums.tail.size();
   const bool alone = tail == segment.samples;
@@ -236,7 +240,7 @@ PowerBinner binner_of(const PowerSums& sums) {
   return PowerBinner(std::move(powers));
 }
 
-void write_state(const PowerSums& sums, StateWriter& to) {
+void write_state(PowerSums sums, StateWriter& to) {
   const auto write = [&](const PooledSums& pooled) {
     to.number(pooled.transforms);
     to.reals(pooled.power);
@@ -244,11 +248,14 @@ void write_state(const PowerSums& sums, StateWriter& to) {
   write(sums.blocks);
   for (const PooledSums& piece : sums.pieces) write(piece);
   to.number(sums.runs.size());
-  for (const PowerRun& run : sums.runs) {
+  constexpr std::size_t kGiveBackEvery = 256;  // runs of 16 KB, mostly
+  for (std::size_t i = 0; i < sums.runs.size(); ++i) {
+    const PowerRun run = std::exchange(sums.runs[i], {});
     to.number(run.gap);
     to.number(run.samples);
     to.real(run.shift);
     to.reals(run.means);
+    if ((i + 1) % kGiveBackEvery == 0) give_back_free_memory();
   }
   to.reals(sums.tail);
 }

@@ -57,10 +57,11 @@ class PowerPart final : public BlockTaker {
 /// Adds the part that follows directly.
 void join(PowerSums& sums, PowerSums later);
 
-/// A binner that has seen the record.
-PowerBinner binner_of(const PowerSums& sums);
+/// A binner that has seen the record. The sums are used up: the series of means of a long record does not stand in memory twice.
+PowerBinner binner_of(PowerSums sums);
 
-void write_state(const PowerSums& sums, StateWriter& to);
+/// The means are let go of as they are written.
+void write_state(PowerSums sums, StateWriter& to);
 PowerSums read_power_sums(StateReader& from);
 
 }  // namespace libchar

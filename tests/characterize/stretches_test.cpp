@@ -12,8 +12,10 @@
 #include <random>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "tests/support/noise.hpp"
+#include "tests/support/places.hpp"
 
 using namespace libchar;
 
@@ -126,6 +128,55 @@ TEST_CASE("a log in stretches is what a streamed one is") {
   agree(joined, whole, {});
 }
 
+TEST_CASE("a log in stretches: an offset of 1e9 standard deviations, a drift, another segment") {
+  const RawLog log("offset", 3 * kLeafSamples + 50000, sensor(5e7, 1e-8));
+  CharacterizeOptions options;
+  options.spectrum.segment = 1 << 14U;
+  options.spectrum.overlap = 0.75;
+  const Characterization whole = as_stream(log.path(), options);
+  const Characterization joined =
+      characterize_from_stretches(states_of(log.path(), 3, options), options);
+  // Of the stream the blocks of the fit are shorter where they are not half a segment, and quantized to 1e-7 of the noise.
+  agree(joined, whole, {.allan = 1e-12, .mean = 1e-12, .spectrum = 1e-10, .fit = 0.3});
+}
+
+TEST_CASE("a log in stretches: missing samples, at boundaries and beyond them") {
+  auto noise = sensor(0.3);
+  std::mt19937_64 generator(5);
+  const RawLog log("holes", 4 * kLeafSamples + 70000, [&](std::uint64_t i) {
+    const double x = noise(i);
+    const bool long_gap = i > 2 * kLeafSamples - 3000 && i < 2 * kLeafSamples + 3000;
+    if (long_gap || generator() % 100000 == 0) return std::nan("");
+    return i == 77777 ? 1e200 : x;
+  });
+  const Characterization whole = as_stream(log.path());
+  const Characterization joined = characterize_from_stretches(states_of(log.path(), 2), {});
+  agree(joined, whole, {.allan = 1e-12, .mean = 1e-13, .spectrum = 1e-12, .fit = 0.05});
+  REQUIRE(joined.channels[0].quality.beyond == 1);
+  for (const std::uint64_t stretches : {1, 5}) {
+    const Characterization other =
+        characterize_from_stretches(states_of(log.path(), stretches), {});
+    equal_bits(other, joined);
+    REQUIRE(one_line(*other.log.warnings.find("missing_cell"), "") ==
+            one_line(*joined.log.warnings.find("missing_cell"), ""));
+  }
+}
+
+TEST_CASE("a log in stretches: spikes are left out of the leaves that have them") {
+  auto noise = sensor(0.3);
+  const RawLog log("spikes", 3 * kLeafSamples + 5, [&](std::uint64_t i) {
+    const bool wild = i > kLeafSamples && i < 2 * kLeafSamples && i % 5003 == 17;
+    return noise(i) + (wild ? 40.0 : 0.0);
+  });
+  const Characterization whole = as_stream(log.path());
+  const Characterization joined = characterize_from_stretches(states_of(log.path(), 3), {});
+  equal_bits(characterize_from_stretches(states_of(log.path(), 1), {}), joined);
+  const NoiseFit &a = *whole.channels[0].fit, &b = *joined.channels[0].fit;
+  REQUIRE(find_remedy(b, "spikes") != nullptr);
+  REQUIRE(find_remedy(b, "spikes")->count == find_remedy(a, "spikes")->count);
+  REQUIRE(b.theta[0] == Approx(a.theta[0]).epsilon(1e-3));
+}
+
 TEST_CASE("the bits of a log in stretches depend neither on the division nor on the order") {
   const RawLog log("divided", 7 * kLeafSamples + 9, sensor(0.3));
   const Characterization one = characterize_from_stretches(states_of(log.path(), 1), {});
@@ -136,4 +187,96 @@ TEST_CASE("the bits of a log in stretches depend neither on the division nor on 
     std::shuffle(states.begin(), states.end(), generator);
     equal_bits(characterize_from_stretches(states, {}), one);
   }
+}
+
+namespace {
+
+/// One leaf and a bit, in two states.
+struct TwoStates {
+  RawLog log{"two", kLeafSamples + 5000, sensor(0.3)};
+  std::vector<NamedState> states = states_of(log.path(), 2);
+};
+
+std::string refusal_of_states(std::span<const NamedState> states,
+                              const CharacterizeOptions& options = {}) {
+  try {
+    characterize_from_stretches(states, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal_of_stretch(const std::string& path,
+                               const CharacterizeOptions& options,
+                               StretchRange range = {0, 1}) {
+  try {
+    characterize_stretch(path, options, range, "x");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("states that are missing, double, foreign, or of other settings are refused by name") {
+  const TwoStates two;
+  const std::vector<NamedState>& states = two.states;
+  REQUIRE_THAT(refusal_of_states({}), Catch::Contains("E0725"));
+  REQUIRE_THAT(refusal_of_states({states.data(), 1}),
+               Catch::Contains("state0: error E0725: no state has the leaves 1 to 1 behind it"));
+  REQUIRE_THAT(refusal_of_states({states.data() + 1, 1}),
+               Catch::Contains("state1: error E0725: no state has the leaves 0 to 0 in front"));
+  const std::vector<NamedState> twice = {states[0], states[1], {"copy", states[0].bytes}};
+  REQUIRE_THAT(refusal_of_states(twice),
+               Catch::Contains("copy: error E0725: covers leaf 0, which state0 does too"));
+  const std::vector<NamedState> foreign = {
+      states[0],
+      state_in_memory("other", characterize_stretch(two.log.path(), {}, {1, 2}, "log 2"))};
+  REQUIRE_THAT(refusal_of_states(foreign),
+               Catch::Contains("other: error E0724: is of another log"));
+  CharacterizeOptions options;
+  options.spectrum.segment = 1 << 14U;
+  REQUIRE_THAT(refusal_of_states(states, options), Catch::Contains("E0724"));
+  options = {};
+  options.reading.threads = 1;
+  options.memory_bytes = 1 << 20U;
+  REQUIRE(refusal_of_states(states, options) == "");
+}
+
+TEST_CASE("states that are cut or changed anywhere are refused, and never read") {
+  const TwoStates two;
+  const std::string whole = two.states[0].bytes();
+  for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 40) {
+    CAPTURE(at);
+    std::string other = whole;
+    other[at] = static_cast<char>(other[at] ^ 1);
+    const std::vector<NamedState> changed = {state_in_memory("bad", other), two.states[1]};
+    REQUIRE_THAT(refusal_of_states(changed), Catch::Contains("bad: error E0723"));
+    const std::vector<NamedState> cut = {state_in_memory("bad", whole.substr(0, at)),
+                                         two.states[1]};
+    REQUIRE_THAT(refusal_of_states(cut), Catch::Contains("bad: error E0723"));
+  }
+  REQUIRE(stretch_head(two.states[1]).range.first_leaf == 1);
+  REQUIRE(stretch_head(two.states[1]).identity == "log 1");
+}
+
+TEST_CASE("logs and options that cannot be divided are refused in a sentence") {
+  const TwoStates two;
+  const std::string& path = two.log.path();
+  CharacterizeOptions options;
+  REQUIRE_THAT(refusal_of_stretch(path, options, {1, 3}),
+               Catch::Contains("E0727: the log has 2 leaves of 1048576 samples"));
+  options.data = SampleKind::phase;
+  REQUIRE_THAT(refusal_of_stretch(path, options),
+               Catch::Contains("E0726") && Catch::Contains("phase data takes all samples at once"));
+  options = {};
+  options.spectrum.segment = 100000;
+  REQUIRE_THAT(refusal_of_stretch(path, options), Catch::Contains("do not divide a leaf"));
+  options = {};
+  options.reading.from_s = 1;
+  REQUIRE_THAT(refusal_of_stretch(path, options), Catch::Contains("a part of it already"));
+  REQUIRE_THAT(refusal_of_stretch((test::fixtures_folder() / "imu_at_rest.csv").string(), {}),
+               Catch::Contains("its rows have no fixed places (csv)"));
 }

@@ -163,12 +163,12 @@ void ChannelStage::take_leaves(ChannelSums sums) {
   streams_ = std::make_unique<ChannelStreams>();
   streams_->in_leaves = true;
   if (wants_fit()) streams_->allan = AllanPyramid(sums.allan);
-  if (wants_fit()) streams_->bins = binner_of(sums.bins);
+  if (wants_fit()) streams_->bins = binner_of(std::move(sums.bins));
   if (options_->wanted.spectrum)
     streams_->spectrum.emplace(streamed_spectrum(options_->spectrum), sums.spectrum);
   if (!sums.cleaned || !needs_second_pass()) return;
   streams_->spikes_found = sums.spikes;
-  streams_->cleaned.emplace(binner_of(sums.cleaned->bins));
+  streams_->cleaned.emplace(binner_of(std::move(sums.cleaned->bins)));
   streams_->cleaned_allan = AllanPyramid(sums.cleaned->allan);
 }
 

@@ -128,17 +128,17 @@ void LeafStage::join(ChannelSums& sums, ChannelSums later) {
   add_count(later.spikes, sums.spikes);
 }
 
-void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
+void LeafStage::write_state(ChannelSums sums, StateWriter& to) {
   to.number(sums.beyond);
   sums.quality.write_state(to);
   sums.trace.write_state(to);
   libchar::write_state(sums.allan, to);
   WelchParts::write_state(sums.spectrum, to);
-  libchar::write_state(sums.bins, to);
+  libchar::write_state(std::move(sums.bins), to);
   to.flag(sums.cleaned.has_value());
   if (sums.cleaned) {
     libchar::write_state(sums.cleaned->allan, to);
-    libchar::write_state(sums.cleaned->bins, to);
+    libchar::write_state(std::move(sums.cleaned->bins), to);
   }
   write_count(sums.spikes, to);
 }

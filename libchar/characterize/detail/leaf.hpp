@@ -46,7 +46,8 @@ class LeafStage {
   /// Adds the leaves that follow directly.
   void join(ChannelSums& sums, ChannelSums later);
 
-  static void write_state(const ChannelSums& sums, StateWriter& to);
+  /// What is written is let go of.
+  static void write_state(ChannelSums sums, StateWriter& to);
   ChannelSums read_state(StateReader& from) const;
 
  private:

@@ -3,6 +3,8 @@
 #include <bit>
 #include <utility>
 
+#include "libchar/core/free_memory.hpp"
+
 namespace libchar {
 namespace {
 
@@ -113,10 +115,8 @@ std::string write_stretch(const StretchState& state, std::vector<LeafNode>& node
   for (LeafNode& node : nodes) {
     to.number(node.height);
     to.number(node.place);
-    for (ChannelSums& sums : node.channels) {
-      LeafStage::write_state(sums, to);
-      sums = {};
-    }
+    for (ChannelSums& sums : node.channels) LeafStage::write_state(std::exchange(sums, {}), to);
+    give_back_free_memory();
   }
   return to.finish();
 }
