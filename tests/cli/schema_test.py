@@ -1,9 +1,10 @@
 """Every document that the program prints and writes, and every file that it reads, against docs/schema, by a validator that is not ours.
 
-usage: schema_test.py PROGRAM       exits with 77 where jsonschema or yaml is not installed
+usage: schema_test.py PROGRAM MAKE_FLEET       exits with 77 where jsonschema or yaml is not installed
 
 - every schema is a schema of draft 2020-12, and the documents of every verb (documents.py) pass it;
 - models, scenes, what a replay learnt and limits, written by the program or shipped, pass theirs as YAML;
+- what the library writes of a fleet (MAKE_FLEET) passes its own;
 - each schema says something: a document without a key that it requires, or with another type, is refused;
 - what a later version may add is accepted.
 """
@@ -107,6 +108,10 @@ with tempfile.TemporaryDirectory() as scratch:
             hold(yaml.load(path.read_text(), Loader), path.name)
     for path in sorted(folder.glob("*.f64.json")):
         hold(json.loads(path.read_text()), path.name, "sidecar.schema.json")
+with tempfile.TemporaryDirectory() as scratch:
+    subprocess.run([sys.argv[2], "40", scratch], check=True)
+    for path in sorted(pathlib.Path(scratch).glob("*.json")):
+        hold(json.loads(path.read_text()), path.name)
 for path, document in shipped():
     hold(document, path.relative_to(root).as_posix())
 hold(json.loads(subprocess.run([program, "--generate", "json"], check=True, capture_output=True).stdout), "--generate json")

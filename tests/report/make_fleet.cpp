@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "libchar/core/whole_file.hpp"
+#include "libchar/report/fleet_comparison_text.hpp"
 #include "libchar/report/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
 
@@ -81,6 +83,13 @@ int main(int argc, char** argv) {
     for (const OutputFile& file :
          fleet_files({records, &lot, "made of numbers", {"make_fleet", kind}, {}}, folder))
       write_whole_file(file.path, file.text, true);
+    write_whole_file(folder + "/record.json", device_record_text(records[0]), true);
+    const auto half = static_cast<std::ptrdiff_t>(records.size() / 2);
+    const std::vector<DeviceRecord> first(records.begin(), records.begin() + half),
+        second(records.begin() + half, records.end());
+    write_whole_file(folder + "/comparison.json",
+                     dump_json(fleet_comparison_json(compare_lots(first, second))),
+                     true);
     write_whole_file(folder + "/lot.txt", fleet_text({records, &lot, "", {}, {}}), true);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_fleet: %s\n", error.what());

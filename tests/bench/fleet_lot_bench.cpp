@@ -1,0 +1,163 @@
+// How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "libchar/lot/lot_comparison.hpp"
+#include "libchar/report/fleet_report.hpp"
+#include "tests/lot/made_fleet.hpp"
+
+namespace {
+
+using namespace libchar;
+
+constexpr DeviceQuantity kQuantities[] = {DeviceQuantity::white_noise,
+                                          DeviceQuantity::bias_instability,
+                                          DeviceQuantity::random_walk,
+                                          DeviceQuantity::turn_on_bias};
+
+struct Tally {
+  int lots = 0, mean = 0, spread = 0;
+};
+
+bool holds(const Interval& i, double value) {
+  return i.low <= value && value <= i.high;
+}
+
+void print_rate(const std::string& what, int count, int of, const std::string& expected) {
+  const double share = static_cast<double>(count) / of;
+  fmt::print("  {:<58} {:6.2f} % ± {:.2f}   expected {}\n",
+             what,
+             100 * share,
+             100 * std::sqrt(share * (1 - share) / of),
+             expected);
+}
+
+void coverage(const std::string& title, const test::MadeLot& made, int lots) {
+  Tally tally[4];
+  int named = 0;
+  for (int i = 0; i < lots; ++i) {
+    const FleetLot lot = fleet_lot(test::made_lot(made, 1000000 + static_cast<std::uint64_t>(i)));
+    named += lot.outlying > 0;
+    for (const QuantityLot& q : lot.quantities) {
+      if (q.of_kind || !q.figures) continue;
+      const bool bias = q.quantity == DeviceQuantity::turn_on_bias;
+      const std::size_t k = bias ? 3 : static_cast<std::size_t>(q.quantity);
+      ++tally[k].lots;
+      tally[k].mean += holds(q.figures->mean_ci95, bias ? made.bias : made.mean[k]);
+      tally[k].spread += holds(q.figures->spread_ci95, bias ? made.bias_spread : made.spread[k]);
+    }
+  }
+  fmt::print("{}: {} lots of {} devices\n", title, lots, made.devices);
+  for (std::size_t k = 0; k < 4; ++k) {
+    print_rate(
+        title_of(kQuantities[k]) + ", mean in its interval", tally[k].mean, tally[k].lots, "95 %");
+    print_rate(title_of(kQuantities[k]) + ", spread in its interval",
+               tally[k].spread,
+               tally[k].lots,
+               "95 %");
+  }
+  print_rate("lots in which a device is named", named, lots, "at most 1 %");
+}
+
+bool any_difference(const FleetComparison& c) {
+  for (const LotDifference& d : c.differences)
+    if (d.mean_differs || d.spread_differs) return true;
+  return false;
+}
+
+void comparisons(std::size_t devices, int lots) {
+  test::MadeLot made, other;
+  made.devices = other.devices = devices;
+  other.mean[0] *= 1.03;
+  other.spread[1] *= 1.5;
+  int alike = 0, mean = 0, spread = 0, covered = 0;
+  for (int i = 0; i < lots; ++i) {
+    const auto seed = 5000000 + 3 * static_cast<std::uint64_t>(i);
+    const auto a = test::made_lot(made, seed);
+    alike += any_difference(compare_lots(a, test::made_lot(made, seed + 1)));
+    const FleetComparison c = compare_lots(a, test::made_lot(other, seed + 2));
+    mean += c.differences[0].mean_differs;
+    covered += holds(c.differences[0].change_ci95, 1.03);
+    spread += c.differences[1].spread_differs;
+  }
+  fmt::print("two lots of {} devices each, 16 tests in all\n", devices);
+  print_rate("lots alike, any difference", alike, lots, "at most 5 %");
+  print_rate("white noise 3 % larger (spread 5 %), found", mean, lots, "");
+  print_rate("the ratio in its interval", covered, lots, "95 %");
+  print_rate("bias instability with 1.5 times the spread, found", spread, lots, "");
+}
+
+void batches(int lots) {
+  int alarms = 0, tests = 0;
+  for (int i = 0; i < lots; ++i) {
+    test::MadeLot made;
+    made.devices = 20;
+    std::vector<DeviceRecord> records;
+    for (int b = 0; b < 6; ++b) {
+      made.batch = std::to_string(b);
+      made.prefix = made.batch + "-";
+      test::append(
+          records,
+          test::made_lot(
+              made, 9000000 + 6 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(b)));
+    }
+    for (const QuantityLot& q : fleet_lot(records).quantities)
+      if (!q.of_kind && q.batch_difference) {
+        ++tests;
+        alarms += q.batch_difference->p < 0.05;
+      }
+  }
+  fmt::print("six batches of 20 devices\n");
+  print_rate("batches alike, p below .05", alarms, tests, "5 %");
+}
+
+void size_of_a_fleet(std::size_t devices) {
+  auto from = std::chrono::steady_clock::now();
+  const auto lap = [&](const std::string& what) {
+    const auto now = std::chrono::steady_clock::now();
+    fmt::print("  {:<30} {:6.2f} s\n", what, std::chrono::duration<double>(now - from).count());
+    from = std::chrono::steady_clock::now();
+  };
+  test::MadeLot made;
+  made.devices = devices;
+  made.channels = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
+  fmt::print("{} devices of six channels\n", devices);
+  std::vector<std::string> lines;
+  for (const DeviceRecord& r : test::made_lot(made, 1)) lines.push_back(device_record_text(r));
+  lap("records made and written");
+  std::vector<DeviceRecord> records;
+  for (const std::string& line : lines) records.push_back(parse_device_record(line, "fleet"));
+  lap("records read");
+  const FleetLot lot = fleet_lot(records);
+  lap("the lot");
+  const auto files = fleet_files({records, &lot, "", {}, {}}, "fleet");
+  lap("page, document, tables");
+  for (const OutputFile& file : files)
+    fmt::print("  {:<30} {:6.1f} MB\n", file.path, static_cast<double>(file.text.size()) / 1e6);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
+  const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
+  test::MadeLot few, equal;
+  few.devices = 8;
+  for (double& s : equal.spread) s = 0;
+  equal.bias_spread = 0;
+  if (lots > 0) {
+    coverage("a lot", {}, lots);
+    coverage("a small lot", few, lots);
+    coverage("devices without a spread", equal, lots);
+    batches(lots / 4);
+    for (const std::size_t n : {5, 30, 200}) comparisons(n, lots);
+  }
+  if (devices > 0) size_of_a_fleet(devices);
+  return 0;
+}
