@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"
 
 using namespace libchar;
@@ -17,6 +18,8 @@ std::string changed_bag(const test::TemporaryFolder& folder, const std::string& 
 }  // namespace
 
 TEST_CASE("bag: an IMU has the generator's numbers, whatever the chunks are packed with") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(BZIP2);
   for (const char* name : {"ros1_none.bag", "ros1_bz2.bag", "ros1_lz4.bag"}) {
     INFO(name);
     const test::Rows rows =
@@ -59,6 +62,8 @@ TEST_CASE("bag: topics are listed by the index, or by a look at everything") {
 }
 
 TEST_CASE("bag: any message by its definition, stamps of 0 give way to the time of recording") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(BZIP2);
   const test::Rows load =
       test::read_rows("bag", test::ros("ros1_lz4.bag"), test::of_topic("/load"));
   CHECK(test::channel_names(load.info) ==
@@ -87,11 +92,15 @@ TEST_CASE("bag: any message by its definition, stamps of 0 give way to the time 
 }
 
 TEST_CASE("bag: cut at every 1000th byte, whole messages are read and the loss is said") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(BZIP2);
   for (const char* name : {"ros1_none.bag", "ros1_lz4.bag", "ros1_bz2.bag"})
     test::check_cuts("bag", name, "/imu/data_raw");
 }
 
 TEST_CASE("bag: a broken chunk is left out and said, other versions are refused") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(BZIP2);
   const test::TemporaryFolder folder;
   for (const char* name : {"ros1_lz4.bag", "ros1_bz2.bag"}) {
     INFO(name);
@@ -115,6 +124,7 @@ TEST_CASE("bag: a broken chunk is left out and said, other versions are refused"
 }
 
 TEST_CASE("bag: cut in front of its first whole message, where it ends and inside what is said") {
+  NEEDS_LIBRARY(BZIP2);
   const test::TemporaryFolder folder;
   const std::string bytes = test::slurp(test::ros("ros1_bz2.bag"));
   CHECK_THAT(

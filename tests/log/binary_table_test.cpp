@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libchar/log/read.hpp"
+#include "tests/log/libraries.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -248,6 +249,12 @@ void check_table_log(const TableLog& expected) {
 }  // namespace
 
 TEST_CASE("binary logs are read right at the first try: names, units, rate, stamps, values") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(ZSTD);
+  NEEDS_LIBRARY(BZIP2);
+  NEEDS_LIBRARY(ZLIB);
+  NEEDS_LIBRARY(HDF5);
+  NEEDS_LIBRARY(SQLITE);
   std::set<std::string> files;
   for (const TableLog& log : all_logs()) {
     check_table_log(log);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "libchar/log/csv/header.hpp"
+#include "tests/log/libraries.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;
@@ -182,7 +183,8 @@ TEST_CASE("the first line that cannot be is named with line, column and byte") {
                   "`overflow_as_missing`") == 0);
   CHECK(failure("").find("log.csv:1:1 (byte 0): error E0322: the file is empty") == 0);
   CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
-  CHECK(failure("\x1F\x8B\x08").find("compressed") != std::string::npos);
+  CHECK(failure("\x1F\x8B\x08").find(LIBCHAR_HAVE_ZLIB ? "compressed" : "cannot unpack") !=
+        std::string::npos);
   CHECK(failure("PK\x03\x04zip").find("ZIP") != std::string::npos);
   CHECK(failure(std::string("t\0,\0x\0\n\0", 8)).find("UTF-16") != std::string::npos);
   CHECK(failure("\xFF\xFEt").find("UTF-16") != std::string::npos);

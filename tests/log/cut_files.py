@@ -20,6 +20,7 @@ WITHOUT_END = {".ulg", ".bin", ".imu"}
 REFUSED = {"log_v4.mat"}  # also as a whole
 OPTIONS = {"float.imu": ["--preset", "NAVCHIP_FLT"], "int.imu": ["--preset", "NAVCHIP_INT"], ".npy": ["--rate", "100Hz"], ".npz": ["--rate", "100Hz"],
            ".mat": ["--rate", "100Hz"], ".h5": ["--rate", "100Hz"]}
+WITHOUT_LIBRARY = re.compile(r"this program (is|was) built without|this build cannot unpack")
 SAID = re.compile(r": error E\d{4}: ")
 
 
@@ -50,7 +51,7 @@ def wrong(program, name, whole, path):
     if "Sanitizer" in said or "runtime error" in said:
         return "a sanitizer's report:\n" + said[:3000], False
     if ran.returncode == 3:
-        if whole and name not in REFUSED:
+        if whole and name not in REFUSED and not WITHOUT_LIBRARY.search(said):
             return "a whole file is refused: " + said, True
         lines = [line for line in said.splitlines() if ": warning: " not in line]
         return ("" if len(lines) == 1 and SAID.search(lines[0]) else "no single sentence: " + said), True

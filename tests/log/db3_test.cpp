@@ -2,11 +2,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"
 
 using namespace libchar;
 
 TEST_CASE("db3: an IMU of Humble by the definitions that the program brings") {
+  NEEDS_LIBRARY(SQLITE);
   const test::Rows rows =
       test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/imu0/data"));
   test::check_imu(rows, 200);
@@ -22,6 +24,7 @@ TEST_CASE("db3: an IMU of Humble by the definitions that the program brings") {
 }
 
 TEST_CASE("db3: a type that nobody defines is said, since Iron the file defines it") {
+  NEEDS_LIBRARY(SQLITE);
   const LogInfo humble = log_listing(test::ros("humble.db3").string(), {});
   REQUIRE(humble.topics.size() == 4);
   for (const LogTopic& topic : humble.topics) {
@@ -41,6 +44,7 @@ TEST_CASE("db3: a type that nobody defines is said, since Iron the file defines 
 }
 
 TEST_CASE("db3: cut anywhere, what is in front of the cut is read or the file refused") {
+  NEEDS_LIBRARY(SQLITE);
   const std::string bytes = test::slurp(test::ros("humble.db3"));
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder / "cut.db3";
@@ -62,6 +66,7 @@ TEST_CASE("db3: cut anywhere, what is in front of the cut is read or the file re
 }
 
 TEST_CASE("db3: another database, and a recording that was not closed, are told") {
+  NEEDS_LIBRARY(SQLITE);
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder / "a b?#%.db3";
   std::ofstream(path, std::ios::binary) << test::slurp(test::ros("humble.db3"));
@@ -76,6 +81,7 @@ TEST_CASE("db3: another database, and a recording that was not closed, are told"
 }
 
 TEST_CASE("db3: cut in front of its first message it is told to be cut, and where") {
+  NEEDS_LIBRARY(SQLITE);
   const std::string bytes = test::slurp(test::ros("humble.db3"));
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder / "cut.db3";

@@ -6,23 +6,17 @@
 #include "libchar/log/arrays/child_process.hpp"
 #include "libchar/log/arrays/hdf5_worker.hpp"
 #include "tests/log/array_log.hpp"
+#include "tests/log/libraries.hpp"
 
 using namespace libchar;
 using test::array_fault;
 using test::array_log;
 using test::check_common_log;
 
-#define NEEDS_HDF5()                         \
-  if (!hdf5_is_here()) {                     \
-    WARN("SKIPPED: this build has no HDF5"); \
-    return;                                  \
-  }                                          \
-  REQUIRE(hdf5_is_here())
-
 TEST_CASE(
     "hdf5: datasets of one length are one table, with their units, in any chunks, orders and "
     "filters") {
-  NEEDS_HDF5();
+  NEEDS_LIBRARY(HDF5);
   const Recording log = array_log("log.h5");
   check_common_log(log);
   CHECK(log.info.format == "hdf5");
@@ -38,7 +32,7 @@ TEST_CASE(
 }
 
 TEST_CASE("hdf5: groups are topics, records bring their own stamps, an attribute is a rate") {
-  NEEDS_HDF5();
+  NEEDS_LIBRARY(HDF5);
   const LogInfo listing = log_listing(test::fixture("arrays/groups.h5").string(), {});
   REQUIRE(listing.topics.size() == 3);
   ReadOptions options;
@@ -71,7 +65,7 @@ TEST_CASE("hdf5: groups are topics, records bring their own stamps, an attribute
 }
 
 TEST_CASE("hdf5: other files, virtual datasets and unknown filters are left out with the reason") {
-  NEEDS_HDF5();
+  NEEDS_LIBRARY(HDF5);
   const Recording log = array_log("refused.h5");
   REQUIRE(log.info.channels.size() == 1);
   CHECK(log.samples[0][19] == 38);
@@ -82,7 +76,7 @@ TEST_CASE("hdf5: other files, virtual datasets and unknown filters are left out 
 }
 
 TEST_CASE("hdf5: a file cut anywhere is refused in one sentence, or read whole") {
-  NEEDS_HDF5();
+  NEEDS_LIBRARY(HDF5);
   for (const char* name : {"log.h5", "groups.h5"}) {
     const std::string bytes = test::slurp(test::fixture(std::string("arrays/") + name));
     for (std::size_t cut = 1; cut < bytes.size(); cut += 1000) {
@@ -96,7 +90,7 @@ TEST_CASE("hdf5: a file cut anywhere is refused in one sentence, or read whole")
 
 TEST_CASE(
     "hdf5: changed bytes end in a sentence or in values, and never in a crash of this process") {
-  NEEDS_HDF5();
+  NEEDS_LIBRARY(HDF5);
   const std::string bytes = test::slurp(test::fixture("arrays/log.h5"));
   for (std::size_t at = 8; at < bytes.size(); at += 97) {
     std::string changed = bytes;

@@ -4,6 +4,7 @@
 
 #include "libchar/log/arrays/hdf5_worker.hpp"
 #include "tests/log/array_log.hpp"
+#include "tests/log/libraries.hpp"
 
 using namespace libchar;
 using test::array_fault;
@@ -12,6 +13,7 @@ using test::check_common_log;
 using test::with_bytes;
 
 TEST_CASE("matlab: arrays of version 5, compressed or not, are one table") {
+  NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"log_v5.mat", "log_v5_compressed.mat"}) {
     INFO(name);
     const Recording log = array_log(name);
@@ -28,10 +30,7 @@ TEST_CASE("matlab: arrays of version 5, compressed or not, are one table") {
 }
 
 TEST_CASE("matlab: version 7.3 is read by the same rules") {
-  if (!hdf5_is_here()) {
-    WARN("SKIPPED: this build has no HDF5");
-    return;
-  }
+  NEEDS_LIBRARY(HDF5);
   const Recording log = array_log("log_v73.mat");
   check_common_log(log);
   CHECK(log.info.format == "matlab");
@@ -46,6 +45,7 @@ TEST_CASE("matlab: version 7.3 is read by the same rules") {
 }
 
 TEST_CASE("matlab: structs are groups, rows of stamps are stamps, classes are kept") {
+  NEEDS_LIBRARY(ZLIB);
   ReadOptions options;
   options.topic = "imu";
   const Recording log = array_log("struct_v5.mat", options);
@@ -74,6 +74,7 @@ TEST_CASE("matlab: version 4 and what is no MATLAB file are refused with what to
 }
 
 TEST_CASE("matlab: a file cut anywhere is refused in one sentence, or has fewer arrays") {
+  NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"log_v5.mat", "log_v5_compressed.mat", "struct_v5.mat"}) {
     const std::string bytes = test::slurp(test::fixture(std::string("arrays/") + name));
     std::size_t refused = 0;
@@ -94,6 +95,7 @@ TEST_CASE("matlab: a file cut anywhere is refused in one sentence, or has fewer 
 TEST_CASE(
     "matlab: changed bytes of compressed arrays are noticed, others end in a sentence or in "
     "values") {
+  NEEDS_LIBRARY(ZLIB);
   const std::string bytes = test::slurp(test::fixture("arrays/log_v5_compressed.mat"));
   const Recording truth = array_log("log_v5_compressed.mat");
   for (std::size_t at = 128; at < bytes.size(); ++at) {

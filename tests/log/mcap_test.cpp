@@ -6,6 +6,7 @@
 
 #include "libchar/core/crc32.hpp"
 #include "libchar/log/ros/decompress.hpp"
+#include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"
 
 using namespace libchar;
@@ -39,6 +40,8 @@ std::string mcap_record(char op, const std::string& content) {
 }  // namespace
 
 TEST_CASE("MCAP: an IMU in CDR has the generator's numbers, whatever the chunks are packed with") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(ZSTD);
   for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap"}) {
     INFO(name);
     const test::Rows rows = test::read_rows("mcap", test::ros(name), test::of_topic("/imu0/data"));
@@ -54,6 +57,7 @@ TEST_CASE("MCAP: an IMU in CDR has the generator's numbers, whatever the chunks 
 }
 
 TEST_CASE("MCAP: topics are listed with types, counts, rates and fields, or why there are none") {
+  NEEDS_LIBRARY(ZSTD);
   const LogInfo listing = log_listing(test::ros("ros2_zstd.mcap").string(), {});
   const LogTopic& imu = topic_called(listing.topics, "/imu0/data");
   CHECK(imu.type == "sensor_msgs/msg/Imu");
@@ -131,6 +135,7 @@ TEST_CASE("MCAP: any message by its embedded definition") {
 
 TEST_CASE(
     "MCAP: only the fields that are asked for, joints by their place, JSON by its first message") {
+  NEEDS_LIBRARY(LZ4);
   const test::Rows one = test::read_rows(
       "mcap", test::ros("ros2_lz4.mcap"), test::of_topic("/odd", {"cells[1].state", "gains[1]"}));
   REQUIRE(one.columns.size() == 2);
@@ -168,6 +173,8 @@ TEST_CASE("MCAP: whose stamps count can be said") {
 }
 
 TEST_CASE("MCAP: cut at every 1000th byte, whole messages are read and the loss is said") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(ZSTD);
   for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap", "ros2_unchunked.mcap"})
     test::check_cuts("mcap", name, "/imu0/data");
 }
@@ -194,6 +201,8 @@ TEST_CASE("MCAP: of a cut file every whole message in front of the cut is read")
 }
 
 TEST_CASE("MCAP: a broken chunk is left out, said and counted, a changed byte outside too") {
+  NEEDS_LIBRARY(LZ4);
+  NEEDS_LIBRARY(ZSTD);
   const test::TemporaryFolder folder;
   for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap"}) {
     INFO(name);
@@ -271,6 +280,7 @@ TEST_CASE("unpacking stops at what was said, and says what is wrong") {
 }
 
 TEST_CASE("MCAP: cut in front of its first whole message, where it ends and inside what is said") {
+  NEEDS_LIBRARY(ZSTD);
   const test::TemporaryFolder folder;
   const std::string zstd = test::slurp(test::ros("ros2_zstd.mcap"));
   CHECK_THAT(test::refusal("mcap", changed_mcap(folder, zstd.substr(0, 3000))),

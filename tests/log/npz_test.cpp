@@ -7,6 +7,7 @@
 
 #include "libchar/log/read.hpp"
 #include "tests/log/array_log.hpp"
+#include "tests/log/libraries.hpp"
 
 using namespace libchar;
 using test::array_fault;
@@ -16,6 +17,7 @@ using test::with_bytes;
 
 TEST_CASE(
     "npz: arrays of one length are one table, stored or deflated, in either order of either type") {
+  NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"log.npz", "compressed.npz"}) {
     INFO(name);
     const Recording log = array_log(name);
@@ -81,6 +83,7 @@ TEST_CASE("npz: tables of several lengths and records with stamps of their own a
 }
 
 TEST_CASE("npz: groups share the stamps above them, a name with .. is a name") {
+  NEEDS_LIBRARY(ZLIB);
   const Recording log = array_log("groups.npz");
   CHECK(log.info.topic == "imu");
   REQUIRE(log.info.channels.size() == 2);
@@ -94,6 +97,7 @@ TEST_CASE("npz: groups share the stamps above them, a name with .. is a name") {
 }
 
 TEST_CASE("npz: blocks of any size give the same rows") {
+  NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"compressed.npz", "turned.npz"}) {
     const Recording whole = array_log(name);
     for (const std::size_t bytes : {1, 60, 100, 1000}) {
@@ -112,6 +116,7 @@ TEST_CASE("npz: what is found by its content needs no suffix") {
 }
 
 TEST_CASE("npz: an archive cut anywhere is refused in one sentence") {
+  NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"log.npz", "compressed.npz", "groups.npz"}) {
     const std::string bytes = test::slurp(test::fixture(std::string("arrays/") + name));
     for (std::size_t cut = 0; cut < bytes.size(); cut += cut < 100 ? 1 : 37) {
@@ -124,6 +129,7 @@ TEST_CASE("npz: an archive cut anywhere is refused in one sentence") {
 }
 
 TEST_CASE("npz: no changed byte is read in silence, whatever it says") {
+  NEEDS_LIBRARY(ZLIB);
   // Names, times of day and attributes are not covered by a checksum; the numbers and their headers are.
   for (const char* name : {"log.npz", "compressed.npz"}) {
     const std::string bytes = test::slurp(test::fixture(std::string("arrays/") + name));
@@ -143,6 +149,7 @@ TEST_CASE("npz: no changed byte is read in silence, whatever it says") {
 }
 
 TEST_CASE("npz: archives that lie about their sizes are refused before they are unpacked") {
+  NEEDS_LIBRARY(ZLIB);
   const std::string bytes = test::slurp(test::fixture("arrays/compressed.npz"));
   const std::size_t entry = bytes.find("PK\x01\x02");
   REQUIRE(entry != std::string::npos);

@@ -5,6 +5,7 @@
 
 #include "libchar/core/log_files.hpp"
 #include "libchar/core/sha256.hpp"
+#include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"
 
 using namespace libchar;
@@ -85,6 +86,7 @@ TEST_CASE("rosbag2: parts are one log in the order of metadata.yaml") {
 }
 
 TEST_CASE("rosbag2: topics of the parts are merged by name and type") {
+  NEEDS_LIBRARY(SQLITE);
   const test::TemporaryFolder folder;
   for (const char* name : {"humble.db3", "jazzy.db3"})
     std::filesystem::copy_file(test::ros(name), folder / name);

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "libchar/core/error.hpp"
+#include "tests/log/libraries.hpp"
 #include "tests/log/log_text.hpp"
 #include "tests/support/shared.hpp"
 
@@ -86,6 +87,9 @@ Recording read_bytes(const std::string& bytes, const std::string& suffix, std::s
 }  // namespace
 
 TEST_CASE("a compressed log is the log, and its hash is that of the file as it is stored") {
+  NEEDS_LIBRARY(ZLIB);
+  NEEDS_LIBRARY(ZSTD);
+  NEEDS_LIBRARY(LZMA);
   const Recording plain = test::read_text(rows_text());
   for (const Packed& file : packed_files())
     for (const std::size_t block : {std::size_t{1}, std::size_t{64}, std::size_t{1} << 21U}) {
@@ -100,6 +104,9 @@ TEST_CASE("a compressed log is the log, and its hash is that of the file as it i
 }
 
 TEST_CASE("compressed data that end early give their whole rows and a warning") {
+  NEEDS_LIBRARY(ZLIB);
+  NEEDS_LIBRARY(ZSTD);
+  NEEDS_LIBRARY(LZMA);
   for (const Packed& file : packed_files()) {
     const std::string bytes = from_hex(file.hex);
     std::size_t most = 0;
@@ -122,6 +129,9 @@ TEST_CASE("compressed data that end early give their whole rows and a warning") 
 }
 
 TEST_CASE("damaged compressed data are an error, two members are one log") {
+  NEEDS_LIBRARY(ZLIB);
+  NEEDS_LIBRARY(ZSTD);
+  NEEDS_LIBRARY(LZMA);
   const Packed& gzip = packed_files()[0];
   std::string bytes = from_hex(gzip.hex);
   bytes[bytes.size() - 6] = static_cast<char>(bytes[bytes.size() - 6] ^ 1);  // of the checksum
@@ -137,6 +147,9 @@ TEST_CASE("damaged compressed data are an error, two members are one log") {
 }
 
 TEST_CASE("only text is read compressed") {
+  NEEDS_LIBRARY(ZLIB);
+  NEEDS_LIBRARY(ZSTD);
+  NEEDS_LIBRARY(LZMA);
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.npy.gz").string();
   std::ofstream(path, std::ios::binary) << from_hex(packed_files()[0].hex);

@@ -139,7 +139,7 @@ std::string why_not_packed(std::string_view method) {
                            printable(method, 40));
 }
 
-std::string unpack(std::string_view method,
+std::string unpack([[maybe_unused]] std::string_view method,
                    std::span<const std::byte> packed,
                    std::uint64_t most,
                    std::vector<std::byte>& to) {
