@@ -3,36 +3,64 @@
 usage: PYTHONPATH=build/python tests/bench/python_bench.py [--samples 1000000] [--rounds 7]
 """
 import argparse
+import pathlib
 import statistics
+import tempfile
 import time
 
 import numpy as np
 
+import libchar
 from libchar import _libchar, functions
 
-parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--samples", type=int, default=1_000_000)
-parser.add_argument("--rounds", type=int, default=7)
-options = parser.parse_args()
-record = np.random.default_rng(1).normal(size=options.samples)
+MODEL = "format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: 100\ndensity: two-sided\nwhite_noise: {value: 0.01}\n"
 inside = []
-call = _libchar.characterize_columns
+characterize_columns = _libchar.characterize_columns
 
 
 def timed(*arguments):
-    made = call(*arguments)
+    made = characterize_columns(*arguments)
     inside.append(made.seconds())
     return made
 
 
-functions._libchar.characterize_columns = timed
-print(f"{options.samples} samples, median of {options.rounds}: seconds of the Python function, of the C++ call, ratio")
-for name in ("allan", "fit", "characterize"):
-    function, walls = getattr(functions, name), []
-    inside.clear()
-    for _ in range(options.rounds):
+def calls(samples, folder):
+    """(name, what Python calls): a record in memory; a simulation of as many samples; a replay of a recording of five channels in a file."""
+    record = np.random.default_rng(1).normal(size=samples)
+    for name in ("allan", "fit", "characterize", "psd"):
+        yield name, lambda name=name: getattr(functions, name)(record, 100.0)
+    yield "simulate", lambda: functions.simulate(MODEL, duration_s=samples / 100)
+    log = str(pathlib.Path(folder) / "log.f64")
+    array = libchar.simulate(MODEL, duration_s=samples / 500, devices=4, truth="sine,amplitude=2,frequency_hz=0.1")
+    libchar.write(log, array)
+    yield "replay", lambda: functions.replay(log, sensors=["gyro*"], reference="truth", learning=(0, samples / 1500))
+
+
+def measure(call, rounds):
+    """Seconds of each round: of the function, and of the library in it."""
+    walls, own = [], []
+    for _ in range(rounds):
+        inside.clear()
         begin = time.perf_counter()
-        function(record, 100.0)
+        call()
         walls.append(time.perf_counter() - begin)
-    ratios = [wall / own for wall, own in zip(walls, inside)]
-    print(f"{name:14} {statistics.median(walls):8.4f} {statistics.median(inside):8.4f} {statistics.median(ratios):6.3f}")
+        own.append(inside[0] if inside else _libchar.library_seconds())
+    return walls, own
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--samples", type=int, default=1_000_000)
+    parser.add_argument("--rounds", type=int, default=7)
+    options = parser.parse_args()
+    functions._libchar.characterize_columns = timed
+    print(f"{options.samples} samples, median of {options.rounds}: seconds of the Python function, of the C++ call, ratio")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, call in calls(options.samples, folder):
+            walls, own = measure(call, options.rounds)
+            ratio = statistics.median(wall / one for wall, one in zip(walls, own))
+            print(f"{name:14} {statistics.median(walls):8.4f} {statistics.median(own):8.4f} {ratio:6.3f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -47,6 +47,23 @@ class Interruptible : public Progress {
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
+/// Seconds that the last psd, simulate or replay of this thread spent in the library: tests/bench/python_bench.py has what Python adds.
+thread_local double g_library_seconds = 0;
+
+class LibraryCall {
+ public:
+  LibraryCall() = default;
+  LibraryCall(const LibraryCall&) = delete;
+  LibraryCall& operator=(const LibraryCall&) = delete;
+  ~LibraryCall() {
+    g_library_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// Options that were given by name; those that are None stay as they are.
 class Given {
  public:
@@ -317,16 +334,23 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
   const auto path = file ? source.cast<std::string>() : "";
   const RecordingView view = file ? RecordingView{} : recording_of(source.cast<py::dict>());
   LogSpectra spectra;
+  std::vector<std::vector<std::optional<Interval>>> intervals;
   {
     const py::gil_scoped_release released;
     Interruptible progress;
+    const LibraryCall call;
     spectra = file ? log_spectra(path, o, progress) : log_spectra(view, o);
+    IntervalFactors factors(0.95);
+    for (const ChannelSpectrum& c : spectra.channels)
+      intervals.push_back(spectrum_intervals(c.spectrum, factors));
   }
   py::list out;
-  IntervalFactors factors(0.95);
-  for (ChannelSpectrum& c : spectra.channels) {
+  for (std::size_t k = 0; k < spectra.channels.size(); ++k) {
+    ChannelSpectrum& c = spectra.channels[k];
     std::vector<double> low, high;
-    for (const std::optional<Interval>& interval : spectrum_intervals(c.spectrum, factors)) {
+    low.reserve(intervals[k].size());
+    high.reserve(intervals[k].size());
+    for (const std::optional<Interval>& interval : intervals[k]) {
       low.push_back(interval ? interval->low : kMissing);
       high.push_back(interval ? interval->high : kMissing);
     }
@@ -369,6 +393,7 @@ py::dict simulate(const std::string& model, bool text, const py::dict& options) 
   Recording recording;
   {
     const py::gil_scoped_release released;
+    const LibraryCall call;
     recording = libchar::simulate(sensor, o);
   }
   return recording_dict(std::move(recording));
@@ -401,7 +426,21 @@ Scene scene_of(const std::string& path, const py::dict& reading, const Given& gi
   return scene;
 }
 
-py::dict replay(const std::string& path, const py::dict& reading, const py::dict& options) {
+/// A replay that Python keeps, to ask for parts of it: its page takes as long as a short replay.
+class Replayed {
+ public:
+  explicit Replayed(ReplayResult result) : result_(std::move(result)) {}
+  py::object document() const {
+    return to_python(with_valid_text(replay_json(replay_view(result_))));
+  }
+  std::string html() const { return replay_html(replay_view(result_)); }
+  std::string markdown() const { return replay_markdown(replay_view(result_)); }
+
+ private:
+  ReplayResult result_;
+};
+
+Replayed replay(const std::string& path, const py::dict& reading, const py::dict& options) {
   const Given given(options);
   const Scene scene = scene_of(path, reading, given);
   ReplayOptions o;
@@ -414,18 +453,10 @@ py::dict replay(const std::string& path, const py::dict& reading, const py::dict
   given.read("allan", o.allan);
   given.read("budget_s", o.budget_s);
   given.read("timing", o.timing);
-  py::gil_scoped_release released;
+  const py::gil_scoped_release released;
   Interruptible progress;
-  const ReplayResult result = libchar::replay(scene, o, progress);
-  const ReplayView view = replay_view(result);
-  const Json document = with_valid_text(replay_json(view));
-  const std::string html = replay_html(view), markdown = replay_markdown(view);
-  const py::gil_scoped_acquire gil;
-  py::dict out;
-  out["document"] = to_python(document);
-  out["html"] = html;
-  out["markdown"] = markdown;
-  return out;
+  const LibraryCall call;
+  return Replayed(libchar::replay(scene, o, progress));
 }
 
 /// The three classes that Python has for the kinds of Error: set by libchar/errors.py.
@@ -468,6 +499,10 @@ PYBIND11_MODULE(_libchar, module) {
       .def("html", &Characterized::html)
       .def("write", &Characterized::write)
       .def("seconds", &Characterized::seconds);
+  py::class_<Replayed>(module, "Replayed")
+      .def("document", &Replayed::document)
+      .def("html", &Replayed::html)
+      .def("markdown", &Replayed::markdown);
   module.def("set_errors", &set_errors);
   module.def("version", [] { return std::string(version()); });
   module.def("build", &build);
@@ -477,6 +512,7 @@ PYBIND11_MODULE(_libchar, module) {
   module.def("psd", &psd);
   module.def("simulate", &simulate);
   module.def("replay", &replay);
+  module.def("library_seconds", [] { return g_library_seconds; });
   module.def("write_recording",
              [](const std::string& path, const py::dict& columns, bool overwrite) {
                const RecordingView view = recording_of(columns);

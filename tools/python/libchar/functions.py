@@ -288,7 +288,7 @@ def replay(source: Source, *, sensors: Names = None, reference: Union[None, str,
             log = str(pathlib.Path(folder) / "recording.f64")
             _libchar.write_recording(log, columns, False)
             made = _libchar.replay(log, {}, options)
-    document = made["document"]
+    document = made.document()
     ran = [Algorithm(a["name"], a["status"], a.get("why"), a.get("rmse"), a.get("regret"), a.get("ns_per_sample"), a)
            for a in document["algorithms"]]
-    return ReplayResult(document["verdict"], ran, document, made["html"], made["markdown"])
+    return ReplayResult(document["verdict"], ran, document, made)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from typing import Any, Iterator, Optional
 
 import numpy as np
@@ -225,8 +226,17 @@ class ReplayResult(_Result):
     verdict: str
     algorithms: list[Algorithm]
     document: dict[str, Any] = dataclasses.field(repr=False)  #: report.json
-    html: str = dataclasses.field(repr=False)  #: the page
-    markdown: str = dataclasses.field(repr=False)
+    _kept: _libchar.Replayed = dataclasses.field(repr=False, compare=False)
+
+    @functools.cached_property
+    def html(self) -> str:
+        """The report as one self-contained page."""
+        return self._kept.html()
+
+    @functools.cached_property
+    def markdown(self) -> str:
+        """The report in Markdown."""
+        return self._kept.markdown()
 
     def __getitem__(self, name: str) -> Algorithm:
         """An algorithm by its name."""
