@@ -15,6 +15,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/fit/shaped_curves.hpp"
+#include "libchar/lot/detail/record_scanner.hpp"
 
 namespace libchar {
 namespace {
@@ -274,6 +275,11 @@ std::string device_record_text(const DeviceRecord& record) {
 }
 
 DeviceRecord parse_device_record(std::string_view text, const std::string& path) {
+  if (auto scanned = scan_device_record(text)) return *std::move(scanned);
+  return read_device_record(text, path);
+}
+
+DeviceRecord read_device_record(std::string_view text, const std::string& path) {
   const Document document = parse_json_document(text, path);
   check_format(document, path, "device-record", 1);
   const MapReader map = open_level(document, path, "");

@@ -3,11 +3,11 @@
 #include "libchar/lot/device_record.hpp"
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/lot/detail/record_scanner.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/schemas.hpp"
 
@@ -166,4 +166,38 @@ TEST_CASE("a device record that is none is refused with file, place and key") {
   CHECK_THAT(refusal("{", ""), Contains("r.jsonl:1"));
   // Keys of a later program.
   CHECK(refusal("\"type\":", "\"colour\":\"red\",\"type\":") == "accepted");
+}
+
+TEST_CASE(
+    "the fast way to read a record and the slow one agree, on good lines and on broken ones") {
+  test::Gaussian gauss(3);
+  const std::string good = device_record_text(filled());
+  DeviceRecord bare = filled();
+  bare.channels.pop_back();  // its name needs escapes
+  const std::string plain = device_record_text(bare);
+  CHECK(scan_device_record(plain) == bare);
+  CHECK(scan_device_record(plain + "\n") == bare);
+  CHECK_FALSE(scan_device_record(good));
+  const std::string letters = "0123456789-+.eE\"\\{}[]:,nul tx\xff";
+  int scanned = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string line = plain;
+    const auto at = static_cast<std::size_t>(gauss.uniform() * static_cast<double>(line.size()));
+    const char letter =
+        letters[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(letters.size()))];
+    const double way = gauss.uniform();
+    if (way < 0.4)
+      line[at] = letter;
+    else if (way < 0.7)
+      line.erase(at, 1);
+    else
+      line.insert(at, 1, letter);
+    const auto fast = scan_device_record(line);
+    if (!fast) continue;
+    ++scanned;
+    CAPTURE(line);
+    REQUIRE_NOTHROW(read_device_record(line, "") == *fast);
+    CHECK(read_device_record(line, "") == *fast);
+  }
+  CHECK(scanned > 3000);
 }
