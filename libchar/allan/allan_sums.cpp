@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_sums.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -238,12 +239,16 @@ AllanSums read_allan_sums(StateReader& from) {
       terms.terms = from.number();
       terms.starts = from.number();
     }
-    if (level.count == 0 || level.head.count != std::min<std::uint64_t>(level.count, kReach) ||
+    if (level.head.count != std::min<std::uint64_t>(level.count, kReach) ||
         level.tail.count != level.head.count)
       from.refuse("a level of the pyramid");
   }
-  if ((sums.samples == 0) != sums.levels.empty() || sums.levels.size() > 63)
+  // What follows is joined by these numbers.
+  if (sums.levels.size() != static_cast<std::size_t>(std::bit_width(sums.samples)) ||
+      sums.missing > sums.samples)
     from.refuse("levels of the pyramid");
+  for (std::size_t l = 0; l < sums.levels.size(); ++l)
+    if (sums.levels[l].count != sums.samples >> l) from.refuse("values of a level of the pyramid");
   return sums;
 }
 

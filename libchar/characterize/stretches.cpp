@@ -10,10 +10,12 @@
 
 #include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/detail/leaf_tree.hpp"
+#include "libchar/characterize/detail/stretch_order.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/free_memory.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/version.hpp"
@@ -73,70 +75,6 @@ void keep_head(LogInfo read, LogInfo& log) {
   log.warnings = std::move(warnings);
 }
 
-[[noreturn]] void refuse_states(const char* code,
-                                std::string name,
-                                std::string what,
-                                std::string hint) {
-  throw Error({ErrorKind::input, code, std::move(name), std::move(what), "", std::move(hint)});
-}
-
-struct OrderedState {
-  const NamedState* state;
-  StretchHead head;
-};
-
-/// They are of one log and of these settings, and cover it: in the order of their leaves.
-std::vector<OrderedState> in_order(std::span<const NamedState> states,
-                                   const std::string& settings) {
-  std::vector<OrderedState> all;
-  for (const NamedState& state : states) all.push_back({&state, stretch_head(state)});
-  std::stable_sort(all.begin(), all.end(), [](const OrderedState& a, const OrderedState& b) {
-    return a.head.range.first_leaf < b.head.range.first_leaf;
-  });
-  if (all.empty()) refuse_states("E0725", "", "there is no state to be joined", "");
-  std::uint64_t next = 0;
-  const std::string* before = &all.front().state->name;
-  for (const OrderedState& one : all) {
-    const StretchHead &head = one.head, &first = all.front().head;
-    const std::string& name = one.state->name;
-    if (head.identity != first.identity || head.samples != first.samples)
-      refuse_states("E0724",
-                    name,
-                    fmt::format("is of another log than {}: {} of {} samples, not {} of {}",
-                                all.front().state->name,
-                                head.identity,
-                                head.samples,
-                                first.identity,
-                                first.samples),
-                    "join states of one log");
-    if (head.settings != settings)
-      refuse_states("E0724",
-                    name,
-                    "was made with other settings, or by another version of the program",
-                    "give the settings of all stretches, and make them with one version");
-    const auto [from, end] = head.range;
-    if (from < next)
-      refuse_states("E0725",
-                    name,
-                    fmt::format("covers leaf {}, which {} does too", from, *before),
-                    "leave one of them out");
-    if (from > next)
-      refuse_states("E0725",
-                    name,
-                    fmt::format("no state has the leaves {} to {} in front of it", next, from - 1),
-                    "characterize that stretch, and give its state");
-    next = end;
-    before = &name;
-  }
-  const std::uint64_t leaves = leaves_of(all.front().head.samples);
-  if (next < leaves)
-    refuse_states("E0725",
-                  *before,
-                  fmt::format("no state has the leaves {} to {} behind it", next, leaves - 1),
-                  "characterize that stretch, and give its state");
-  return all;
-}
-
 /// The nodes of a state into the tree; they are of its range, and follow each other.
 void add_nodes(StateReader& from,
                const StretchHead& head,
@@ -150,8 +88,12 @@ void add_nodes(StateReader& from,
     const std::uint64_t samples =
         std::min(next * kLeafSamples, head.samples) - node.first_leaf() * kLeafSamples;
     for (const ChannelSums& sums : node.channels)
-      if (sums.allan.samples != samples && sums.allan.samples != 0)
-        from.refuse("a node has another number of samples than its leaves");
+      for (const std::uint64_t seen : {sums.allan.samples,
+                                       sums.spectrum.samples,
+                                       sums.trace.samples(),
+                                       sums.cleaned ? sums.cleaned->allan.samples : 0})
+        if (seen != samples && seen != 0)  // 0: of what was not asked for
+          from.refuse("a node has another number of samples than its leaves");
     tree.add(std::move(node));
   }
   if (next != head.range.end_leaf) from.refuse("its nodes are not those of its range");
@@ -285,7 +227,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
                                              Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
-  const std::vector<OrderedState> ordered = in_order(states, settings_digest(options));
+  const std::vector<OrderedState> ordered = states_in_order(states, settings_digest(options));
   CharacterizeWorkspace workspace;
   CharacterizeOptions chosen = options;
   std::vector<LeafStage> stages;
@@ -309,6 +251,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
   }
   std::vector<ChannelSums> whole = tree.whole();
   finish_log(ordered.front().head.samples, whole, result.log);
+  give_back_free_memory();  // the transform of a long series of means takes much of its own
   // The result says where nothing was asked for.
   if (options.spectrum.segment == 0 && !(options.segment_s > 0)) chosen.spectrum.segment = 0;
   result.channels = finish_channels(std::move(whole), result.log, chosen, workspace, progress);

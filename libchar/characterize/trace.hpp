@@ -21,6 +21,7 @@ class TraceMeter {
  public:
   void push(std::span<const double> samples);
   Trace finish() const;
+  std::uint64_t samples() const { return blocks_.size() * length_ + filled_; }
 
   /// The samples that `later` has seen follow directly: the same as if they had been pushed here. They must be at most the largest power of two that
   /// divides the number of those before: else std::logic_error.

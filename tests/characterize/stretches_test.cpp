@@ -189,6 +189,40 @@ TEST_CASE("the bits of a log in stretches depend neither on the division nor on 
   }
 }
 
+TEST_CASE("logs in stretches as short as a sample, and what was not asked for") {
+  for (const std::uint64_t rows : {1, 5, 3000, 40000, 70000}) {
+    CAPTURE(rows);
+    const RawLog log("short", rows, sensor(0.3));
+    const Characterization joined = characterize_from_stretches(states_of(log.path(), 1), {});
+    REQUIRE(joined.channels[0].quality.samples == rows);
+    REQUIRE(joined.channels[0].fit.has_value() == (rows > 5));
+    REQUIRE(joined.channels[0].spectrum.value.empty() == (rows < 65536));
+  }
+  const RawLog log("wanted", kLeafSamples + 100000, sensor(0.3));
+  for (const Wanted wanted : {Wanted{true, false, false, false},
+                              Wanted{false, true, false, false},
+                              Wanted{false, false, true, false},
+                              Wanted{true, true, false, true}}) {
+    CharacterizeOptions options;
+    options.wanted = wanted;
+    agree(characterize_from_stretches(states_of(log.path(), 2, options), options),
+          as_stream(log.path(), options),
+          {.fit = 0.3});  // without a spectrum a stream has shorter blocks
+  }
+}
+
+TEST_CASE("a log of frequencies in stretches") {
+  auto noise = sensor(0);
+  const RawLog log(
+      "frequency", kLeafSamples + 100000, [&](std::uint64_t i) { return 1e7 + 1e-3 * noise(i); });
+  CharacterizeOptions options;
+  options.data = SampleKind::frequency;
+  options.nominal_frequency = 1e7;
+  agree(characterize_from_stretches(states_of(log.path(), 2, options), options),
+        as_stream(log.path(), options),
+        {.allan = 1e-11, .mean = 1e-9, .spectrum = 1e-10});
+}
+
 namespace {
 
 /// One leaf and a bit, in two states.
