@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-EXIT = {"usage": 2, "input": 3, "numeric": 4, "output": 5, "check": 6}
+EXIT = {"usage": 2, "input": 3, "numeric": 4, "output": 5, "check": 6, "again": 75}
 ROW = re.compile(r"^\| (E\d{4}) \| ([\d, ]+) \| (.+?) \| ?(.*?) ?\|$")
 
 root = pathlib.Path(sys.argv[1])

@@ -59,7 +59,8 @@ faults, used = [], set()
 for path in sorted((root / "libchar").rglob("*.[ch]pp")):
     for line, string in strings(path.read_text()):
         place = f"{path.relative_to(root)}:{line}"
-        if FLAG.search(string):
+        # Scripts for other programs name those programs' flags.
+        if FLAG.search(string) and "libchar/fleet/engines/" not in place:
             faults.append(f"{place}: names a flag; the library has options, such as `rate_hz`: {string}")
         for word in WORD.findall(string):
             used.add(word)

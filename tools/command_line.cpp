@@ -336,6 +336,33 @@ Option VerbOptions::add_word(const std::string& names,
   return add_parsed(names, value_name, read, help).known_words(std::move(words));
 }
 
+std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
+                                          const std::vector<std::string>& verbs) {
+  const std::size_t at = command.size() > 2 && command[1] == "help" ? 2 : 1;
+  if (command.size() <= at) return command;
+  const std::string first = command[at] + "-";
+  std::vector<std::string> seconds;
+  for (const std::string& verb : verbs)
+    if (verb.starts_with(first)) seconds.push_back(verb.substr(first.size()));
+  const bool is_verb = std::find(verbs.begin(), verbs.end(), command[at]) != verbs.end();
+  if (seconds.empty() || is_verb) return command;
+  const std::string second = command.size() > at + 1 ? command[at + 1] : "";
+  if (std::find(seconds.begin(), seconds.end(), second) == seconds.end()) {
+    const auto near = libchar::nearest(second, seconds);
+    throw Error({ErrorKind::usage,
+                 "E0203",
+                 "sensorchar " + command[at],
+                 fmt::format("which one? one of {}", fmt::join(seconds, ", ")),
+                 second,
+                 near ? fmt::format("did you mean {} {}?", command[at], *near)
+                      : fmt::format("sensorchar {} {} --help", command[at], seconds[0])});
+  }
+  std::vector<std::string> joined = command;
+  joined[at] = first + second;
+  joined.erase(joined.begin() + static_cast<std::ptrdiff_t>(at) + 1);
+  return joined;
+}
+
 CommandLine::CommandLine(const std::string& program,
                          const std::string& what,
                          const std::string& version,

@@ -124,6 +124,11 @@ class VerbOptions {
   KnownWords* words_;
 };
 
+/// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A first word alone, and one with a second
+/// that makes no verb, is refused with those that do.
+std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
+                                          const std::vector<std::string>& verbs);
+
 /// A program with verbs.
 class CommandLine {
  public:

@@ -37,7 +37,12 @@ int main(int argc, char** argv) {
         "What sensors do to what they measure: noise, models and fusion from recordings.",
         fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
         "Begin with: sensorchar inspect LOG");
-    for (const VerbEntry& verb : verbs()) line.add(verb, call.session);
+    std::vector<std::string> names;
+    for (const VerbEntry& verb : verbs()) {
+      line.add(verb, call.session);
+      names.push_back(verb.name);
+    }
+    call.session.command = with_joined_verb(call.session.command, names);
     ProgramUsage usage = line.usage();
     usage.released = SENSORCHAR_RELEASED;
     const auto page =

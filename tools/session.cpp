@@ -38,6 +38,8 @@ int exit_code(ErrorKind kind) {
       return 5;
     case ErrorKind::check:
       return 6;
+    case ErrorKind::again:
+      return 75;  // EX_TEMPFAIL of sysexits.h
   }
   return 1;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -64,10 +65,16 @@ void keep_to_threads_given() {
     if (limited) tbb::parallel_for(std::size_t{0}, 4 * wanted, [](std::size_t) {});
     return;
   }
-  // For good: where it ends the pool wants its threads at once, in a destructor.
-  static auto* const control =
-      new tbb::global_control(tbb::global_control::max_allowed_parallelism, given + 1);
-  static_cast<void>(control);
+  keep_to_threads(static_cast<int>(given) + 1);
+}
+
+void keep_to_threads(int threads) {
+  // For good: where one ends the pool wants its threads at once, in a destructor.
+  using Controls = std::vector<std::unique_ptr<tbb::global_control>>;
+  static Controls* const controls = new Controls;
+  controls->push_back(
+      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(std::max(1, threads))));
 }
 
 }  // namespace libchar

@@ -12,4 +12,8 @@ int processors_given();
 /// one heap. For programs, at their start.
 void keep_to_threads_given();
 
+/// Everything in this process that works in parallel keeps to `threads` (at least one) from now on: a job among others on its machine.
+/// Results never depend on it.
+void keep_to_threads(int threads);
+
 }  // namespace libchar

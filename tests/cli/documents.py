@@ -45,6 +45,8 @@ RUNS = [
     ["compare", "report", "judged"], ["compare", "replay", "replay"], ["compare", "pooled", "pooled"],
     ["convert", IMU, "-o", "imu.npy"], ["convert", IMU, "-o", "imu.f64"],
     ["verify", "report"], ["verify", "report", "--rerun", "again"],
+    ["fleet", "plan", "first.csv", "second.csv", "-o", "fleet"], ["fleet", "run", "fleet"], ["fleet", "status", "fleet"],
+    ["fleet", "export", "fleet", "--to", "slurm"],
     ["bench", "report/gyro_z.sensor.yaml", "scenes/rv-5.1-faults.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
      "characterization,design,fusion", "--algorithms", "mean,median"],
 ]

@@ -191,7 +191,11 @@ def examples():
     shutil.copy(root / "fixtures/imu_at_rest.csv", scratch / "imu.csv")
     (scratch / "curve.csv").write_text("tau,adev\n" + "".join(f"{0.1 * 1.5 ** k},{0.02 / 1.5 ** (k / 2) + 0.001}\n" for k in range(20)))
     shutil.copy(root / "fixtures/npy/c_order.npy", scratch / "counts.npy")
-    before = {"compare": ["cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"]}
+    cut = [f"sensorchar convert imu.csv -o logs/a0{k}.npy --from {100 * k} --to {100 * k + 100}" for k in range(4)]
+    (scratch / "line7.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: {reading: {rate_hz: 50}}}\ndevices:\n" + "".join(
+        f"  - {{log: logs/a0{k}.npy, batch: '2026-1{1 + k % 2}'}}\n" for k in range(4)))
+    before = {"compare": ["cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"],
+              "fleet-plan": ["mkdir logs", *cut], "fleet-compare": ["cp -r fleet march", "cp -r fleet april"]}
     for verb in usage["verbs"]:
         expect(len(verb["examples"]) >= 2, f"{verb['name']} has fewer than two examples")
         for command in before.get(verb["name"], []):
@@ -199,7 +203,8 @@ def examples():
             expect(ran.returncode == 0, f"{command}: {ran.stderr}")
         for example in verb["examples"]:
             command = example["command"]
-            expect(command.startswith(f"sensorchar {verb['name']} "), f"{command} is no example of {verb['name']}")
+            expect(command.startswith((f"sensorchar {verb['name']} ", f"sensorchar {verb['name'].replace('-', ' ')} ")),
+                   f"{command} is no example of {verb['name']}")
             if command in LONG:
                 continue
             ran = run(command, scratch)

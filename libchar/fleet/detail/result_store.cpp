@@ -1,0 +1,178 @@
+#include "libchar/fleet/detail/result_store.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "libchar/characterize/stretches.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/whole_file.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kWorking = ".working-";
+constexpr std::string_view kDamaged = ".damaged-";
+constexpr std::size_t kMostRecord = std::size_t{64} << 20U;
+
+std::string this_machine() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  std::string out = name.data();
+  for (char& c : out)
+    if (c == '-' || c == '/') c = '_';
+  return out.empty() ? "unnamed" : out;
+}
+
+/// ".working-ID-MACHINE-PROCESS-NUMBER"
+std::string working_name(const std::string& id) {
+  static std::atomic<int> number{0};
+  return fmt::format("{}{}-{}-{}-{}", kWorking, id, this_machine(), ::getpid(), number++);
+}
+
+/// Of a worker of this machine that is no more.
+bool is_litter(const std::string& name) {
+  const std::string mine = fmt::format("-{}-", this_machine());
+  const std::size_t at = name.find(mine);
+  if (!name.starts_with(kWorking) || at == std::string::npos) return false;
+  const int process = std::atoi(name.c_str() + at + mine.size());
+  return process > 0 && process != ::getpid() && ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+void remove_litter_in(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (is_litter(entry.path().filename().string())) fs::remove_all(entry.path(), ignored);
+}
+
+[[noreturn]] void cannot_write(const fs::path& path, int number) {
+  throw Error({ErrorKind::output,
+               "E0790",
+               path.string(),
+               "the result cannot be written: " + std::generic_category().message(number),
+               "",
+               ""});
+}
+
+std::string digest_of(std::string_view text) {
+  Sha256 hash;
+  hash.update(text);
+  return hash.finish();
+}
+
+[[noreturn]] void damaged(const fs::path& file, const std::string& why) {
+  throw Error({ErrorKind::input,
+               "E0791",
+               file.string(),
+               "this result is damaged: " + why,
+               "",
+               "run the unit again: a damaged result counts as none"});
+}
+
+/// The text under the digest in the first line.
+std::string checked_text(const fs::path& file, std::size_t most) {
+  std::string text = file_text(file.string(), most);
+  constexpr std::size_t kDigits = 64;
+  if (text.size() < kDigits + 1 || text[kDigits] != '\n') damaged(file, "it is cut");
+  const std::string digest = text.substr(0, kDigits);
+  text.erase(0, kDigits + 1);
+  if (digest_of(text) != digest) damaged(file, "its content is not that of its digest");
+  return text;
+}
+
+}  // namespace
+
+std::string result_folder(const std::string& id) {
+  return id.substr(0, 2) + "/" + id;
+}
+
+ResultFolder::ResultFolder(const fs::path& fleet, const std::string& id) : fleet_(fleet), id_(id) {
+  const fs::path parent = (fleet / "results" / result_folder(id)).parent_path();
+  std::error_code error;
+  fs::create_directories(parent, error);
+  if (error) cannot_write(parent, error.value());
+  remove_litter_in(parent);
+  path_ = parent / working_name(id);
+  fs::create_directory(path_, error);
+  if (error) cannot_write(path_, error.value());
+}
+
+ResultFolder::~ResultFolder() {
+  std::error_code ignored;
+  if (!published_) fs::remove_all(path_, ignored);
+}
+
+bool ResultFolder::publish() {
+  const fs::path final_name = fleet_ / "results" / result_folder(id_);
+  sync_folder(path_.string());
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    if (::rename(path_.c_str(), final_name.c_str()) == 0) {
+      published_ = true;
+      sync_folder(final_name.parent_path().string());
+      return true;
+    }
+    if (errno != EEXIST && errno != ENOTEMPTY) cannot_write(final_name, errno);
+    if (has_result(fleet_, id_, fs::exists(path_ / kStateFile))) return false;
+    const fs::path aside =
+        final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
+    if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT)
+      cannot_write(final_name, errno);
+  }
+  return false;
+}
+
+void write_record(const fs::path& folder, const DeviceRecord& record) {
+  const std::string text = device_record_text(record);
+  write_whole_file((folder / kRecordFile).string(), digest_of(text) + "\n" + text);
+}
+
+std::optional<DeviceRecord> stored_record(const fs::path& fleet, const std::string& id) {
+  const fs::path file = fleet / "results" / result_folder(id) / kRecordFile;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  return parse_device_record(checked_text(file, kMostRecord), file.string());
+}
+
+std::string state_path(const fs::path& fleet, const std::string& id) {
+  return (fleet / "results" / result_folder(id) / kStateFile).string();
+}
+
+bool stored_state(const fs::path& fleet, const std::string& id) {
+  const std::string path = state_path(fleet, id);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return false;
+  stretch_head(state_in_file(path));
+  return true;
+}
+
+bool has_result(const fs::path& fleet, const std::string& id, bool of_stretch) {
+  try {
+    return of_stretch ? stored_state(fleet, id) : stored_record(fleet, id).has_value();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::vector<std::string> unpublished(const fs::path& fleet) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  for (const auto& group : fs::directory_iterator(fleet / "results", ignored))
+    for (const auto& entry : fs::directory_iterator(group.path(), ignored))
+      if (entry.path().filename().string().starts_with(kWorking))
+        out.push_back(entry.path().filename().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace libchar

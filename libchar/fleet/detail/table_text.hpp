@@ -1,0 +1,24 @@
+#pragma once
+// A small table of texts: a CSV file that people write by hand or in a spreadsheet.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace libchar {
+
+struct TableRow {
+  int line = 0;                    ///< in the file, from 1
+  std::vector<std::string> cells;  ///< one a head
+};
+
+struct TableText {
+  std::vector<std::string> heads;
+  std::vector<TableRow> rows;
+};
+
+/// Separated by commas, or by semicolons where the first line has no comma; cells may be quoted; empty lines and those that begin with #
+/// are left out. Throws Error(input) for a row of another number of cells, a head that stands twice, a quote that is never closed.
+TableText parse_table_text(std::string_view text, const std::string& path);
+
+}  // namespace libchar

@@ -1,0 +1,31 @@
+#pragma once
+// The files of each engine (jobs.hpp has their list).
+
+#include "libchar/fleet/jobs.hpp"
+
+namespace libchar {
+
+/// Two job arrays, the second (joins) behind the first; a job that fails is put into the queue again.
+std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs,
+                                    const std::filesystem::path& folder,
+                                    const JobOptions& options);
+/// A rule with the jobs as its wildcards; a job is done when its file jobs/NAME.done is there.
+std::vector<OutputFile> snakemake_files(const std::vector<FleetJob>& jobs,
+                                        const std::filesystem::path& folder,
+                                        const JobOptions& options);
+/// A list of commands, and the call of parallel with a log of the jobs that are done.
+std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
+                                       const std::filesystem::path& folder,
+                                       const JobOptions& options);
+
+/// A word quoted for a POSIX shell where it has to be.
+std::string quoted_for_shell(const std::string& word);
+
+/// Largest memory of jobs in MB, and the time limit of the longest in minutes, with what a worker may be slower.
+struct JobLimits {
+  std::uint64_t memory_mb = 0, minutes = 0;
+};
+JobLimits limits_of(const std::vector<FleetJob>& jobs, const JobOptions& options);
+JobLimits limits_of(const FleetJob& job, const JobOptions& options);
+
+}  // namespace libchar

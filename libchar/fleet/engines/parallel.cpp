@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include "libchar/fleet/engines/engine_files.hpp"
+
+namespace libchar {
+namespace {
+
+std::string call(const std::string& list, const JobOptions& options) {
+  return fmt::format(
+      "parallel --jobs {} --retries {} {} \"$@\" '{} fleet run --quiet --threads 1 $(cat "
+      "jobs/{{}}.txt)' < {}\n",
+      options.at_once > 0 ? std::to_string(options.at_once) : "100%",
+      options.retries + 1,
+      "--memfree 64M",
+      quoted_for_shell(options.program),
+      list);
+}
+
+}  // namespace
+
+std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
+                                       const std::filesystem::path& folder,
+                                       const JobOptions& options) {
+  std::string first, joins;
+  for (const FleetJob& job : jobs) (job.after.empty() ? first : joins) += job.name + "\n";
+  std::string script =
+      "#!/bin/sh\n# Runs the jobs of a fleet on this machine; words behind the script's name go to "
+      "parallel (--sshlogin …).\ncd \"$(dirname \"$0\")\" || exit\n";
+  std::vector<OutputFile> files;
+  const auto add = [&](const std::string& names, const char* list) {
+    if (names.empty()) return;
+    files.push_back({(folder / list).string(), names});
+    script += call(list, options);
+  };
+  add(first, "jobs/list-1.txt");
+  add(joins, "jobs/list-2.txt");
+  files.push_back({(folder / "fleet.parallel.sh").string(), script});
+  return files;
+}
+
+}  // namespace libchar

@@ -1,0 +1,219 @@
+#include "libchar/fleet/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "libchar/characterize/settings.hpp"
+#include "libchar/core/document.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
+#include "libchar/core/schema.hpp"
+#include "libchar/core/utf8.hpp"
+#include "libchar/fleet/detail/table_text.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kManifestFormat = "fleet-manifest";
+const std::vector<std::string> kDeviceKeys = {
+    "device", "log", "type", "batch", "temperature_c", "limits"};
+constexpr std::size_t kMostManifest = std::size_t{256} << 20U;
+
+std::vector<std::string> keys_with(std::vector<std::string> more) {
+  std::vector<std::string> keys = kDeviceKeys;
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+/// Entries with the same options share them.
+class OptionsTable {
+ public:
+  explicit OptionsTable(Manifest& manifest) : manifest_(manifest) {}
+  std::size_t index(const CharacterizeOptions& options) {
+    const std::string text = json_of(settings_of(options)).dump();
+    const auto [at, fresh] = known_.emplace(text, manifest_.options.size());
+    if (fresh) manifest_.options.push_back(options);
+    return at->second;
+  }
+
+ private:
+  Manifest& manifest_;
+  std::map<std::string, std::size_t> known_;
+};
+
+std::string absolute_path(const std::string& named, const fs::path& folder) {
+  if (named.empty()) return "";
+  return (fs::path(named).is_absolute() ? fs::path(named) : folder / named)
+      .lexically_normal()
+      .string();
+}
+
+fs::path folder_of(const std::string& path) {
+  return fs::absolute(path).parent_path();
+}
+
+CharacterizeOptions options_at(const MapReader& at, CharacterizeOptions options) {
+  if (!at.has("options")) return options;
+  read_fields(characterize_fields(), at.map("options", keys_of(characterize_fields())), options);
+  return options;
+}
+
+void read_device(const MapReader& at, const fs::path& folder, FleetDevice& device) {
+  device.device = at.text_or("device", device.device);
+  device.type = at.text_or("type", device.type);
+  device.batch = at.text_or("batch", device.batch);
+  if (const auto t = at.maybe_number("temperature_c", {-273.15, 1e4})) device.temperature_c = t;
+  if (at.has("limits")) device.limits = absolute_path(at.text("limits"), folder);
+  if (at.has("log")) device.log = absolute_path(at.text("log"), folder);
+}
+
+std::string name_of_log(const std::string& log) {
+  return fs::path(log).stem().string();
+}
+
+Manifest parse_tree(std::string_view text,
+                    const std::string& path,
+                    const CharacterizeOptions& options) {
+  const Document document = parse_document(text, path);
+  check_format(document, path, kManifestFormat, 1);
+  const MapReader top(document, path, "", {"format", "version", "defaults", "devices"});
+  const fs::path folder = folder_of(path);
+  Manifest manifest;
+  OptionsTable table(manifest);
+  FleetDevice defaults;
+  CharacterizeOptions common = options;
+  if (top.has("defaults")) {
+    const MapReader at =
+        top.map("defaults", {"type", "batch", "temperature_c", "limits", "options"});
+    read_device(at, folder, defaults);
+    common = options_at(at, options);
+  }
+  const std::size_t common_index = table.index(common);
+  std::size_t k = 0;
+  for (const Document& one : top.list("devices")) {
+    const MapReader at(one, path, fmt::format("devices[{}]", k++), keys_with({"options"}));
+    FleetDevice device = defaults;
+    at.require("log");
+    read_device(at, folder, device);
+    if (device.device.empty()) device.device = name_of_log(device.log);
+    device.options = at.has("options") ? table.index(options_at(at, common)) : common_index;
+    device.where = at.where(one);
+    manifest.devices.push_back(std::move(device));
+  }
+  return manifest;
+}
+
+/// A cell of a table as a key of a document: what is empty is absent.
+Document cell_document(const std::string& key, const std::string& cell, int line, int column) {
+  Document value;
+  value.kind = Document::Kind::text;
+  value.text = cell;
+  value.line = line;
+  value.column = column;
+  if (key != "temperature_c") return value;
+  try {
+    std::size_t used = 0;
+    value.number = std::stod(cell, &used);
+    if (used == cell.size()) value.kind = Document::Kind::number;
+  } catch (const std::exception&) {
+    return value;  // the reader says that it is no number
+  }
+  return value;
+}
+
+Manifest parse_table(std::string_view text,
+                     const std::string& path,
+                     const CharacterizeOptions& options) {
+  const TableText table = parse_table_text(text, path);
+  const fs::path folder = folder_of(path);
+  Manifest manifest;
+  manifest.options.push_back(options);
+  for (const TableRow& row : table.rows) {
+    Document one;
+    one.kind = Document::Kind::map;
+    one.line = row.line;
+    one.column = 1;
+    for (std::size_t c = 0; c < table.heads.size(); ++c)
+      if (!row.cells[c].empty())
+        one.map.push_back({table.heads[c],
+                           row.line,
+                           1,
+                           cell_document(table.heads[c], row.cells[c], row.line, 1)});
+    const MapReader at(one, path, "", kDeviceKeys);
+    FleetDevice device;
+    at.require("log");
+    read_device(at, folder, device);
+    if (device.device.empty()) device.device = name_of_log(device.log);
+    device.where = fmt::format("{}:{}:1", path, row.line);
+    manifest.devices.push_back(std::move(device));
+  }
+  return manifest;
+}
+
+bool is_table(const std::string& path) {
+  return fs::path(path).extension() == ".csv";
+}
+
+void check_devices(const Manifest& manifest, const std::string& path) {
+  if (manifest.devices.empty())
+    throw Error({ErrorKind::input, "E0780", path, "the fleet has no device", "", ""});
+  for (const FleetDevice& one : manifest.devices)
+    if (one.device.empty() || first_invalid_utf8(one.device) != std::string::npos)
+      throw Error({ErrorKind::input,
+                   "E0780",
+                   one.where,
+                   "a device needs a name in UTF-8",
+                   one.device,
+                   "give it a name"});
+}
+
+}  // namespace
+
+Manifest parse_manifest(std::string_view text,
+                        const std::string& path,
+                        const CharacterizeOptions& options) {
+  Manifest manifest =
+      is_table(path) ? parse_table(text, path, options) : parse_tree(text, path, options);
+  check_devices(manifest, path);
+  return manifest;
+}
+
+Manifest read_manifest(const std::string& path, const CharacterizeOptions& options) {
+  return parse_manifest(file_text(path, kMostManifest), path, options);
+}
+
+Manifest manifest_of_logs(const std::vector<std::string>& logs,
+                          const CharacterizeOptions& options) {
+  Manifest manifest;
+  manifest.options.push_back(options);
+  std::map<std::string, int> names;
+  for (const std::string& log : logs) ++names[name_of_log(log)];
+  for (const std::string& log : logs) {
+    FleetDevice device;
+    device.log = absolute_path(log, fs::current_path());
+    device.device = names[name_of_log(log)] > 1 ? log : name_of_log(log);
+    device.where = log;
+    manifest.devices.push_back(std::move(device));
+  }
+  check_devices(manifest, "");
+  return manifest;
+}
+
+bool is_manifest(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  const std::string head = file_text(path, 4096);
+  if (is_table(path)) {
+    const std::string first = head.substr(0, head.find_first_of("\r\n"));
+    return first == "log" || first.starts_with("log,") || first.find(",log") != std::string::npos;
+  }
+  return head.find(kManifestFormat) != std::string::npos;
+}
+
+}  // namespace libchar

@@ -1,0 +1,96 @@
+#include "libchar/fleet/merge.hpp"
+
+#include <fmt/format.h>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/fleet/status.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNotThere = "its result is not there yet";
+
+void refuse_missing(const FleetPlan& plan, const FleetStatus& status, const fs::path& folder) {
+  if (status.missing.empty()) return;
+  const FleetUnit& first = plan.units[status.missing[0]];
+  throw Error(
+      {ErrorKind::input,
+       "E0789",
+       folder.string(),
+       fmt::format("{} of {} units have no result, the first is {} of {}{}",
+                   status.missing.size(),
+                   status.units,
+                   task_file(status.missing[0]),
+                   plan.devices[first.device].device,
+                   status.damaged.empty() ? "" : "; " + status.damaged[0]),
+       "",
+       fmt::format("run them with: sensorchar fleet run {}, or merge what there is with `partial`",
+                   folder.string())});
+}
+
+/// What the plan says of the device, over what its log said.
+void name_device(const PlannedDevice& planned, DeviceRecord& record) {
+  record.device = planned.device;
+  record.type = planned.type;
+  record.batch = planned.batch;
+  record.temperature_c = planned.temperature_c;
+  record.log = planned.log;
+  record.sha256 = planned.sha256;
+}
+
+std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::path& relative_to) {
+  if (!unit.reports) return "";
+  const fs::path report = fs::absolute(folder) / "results" / result_folder(unit.id);
+  return relative_to.empty() ? report.lexically_normal().string()
+                             : report.lexically_normal()
+                                   .lexically_relative(fs::absolute(relative_to).lexically_normal())
+                                   .string();
+}
+
+/// Channels of one log that were units of their own stand together again.
+void add_result(const DeviceRecord& found, DeviceRecord& record) {
+  record.program = found.program;
+  record.settings = found.settings;
+  if (record.problem.empty()) record.problem = found.problem;
+  record.channels.insert(record.channels.end(), found.channels.begin(), found.channels.end());
+}
+
+}  // namespace
+
+std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
+                                         const fs::path& folder,
+                                         const MergeOptions& options,
+                                         Progress& progress) {
+  if (!options.partial) refuse_missing(plan, fleet_status(plan, folder, progress), folder);
+  std::vector<DeviceRecord> out(plan.devices.size());
+  for (std::size_t d = 0; d < out.size(); ++d) {
+    out[d].problem = plan.devices[d].problem;
+    name_device(plan.devices[d], out[d]);
+  }
+  for (std::size_t k = 0; k < plan.units.size(); ++k) {
+    const FleetUnit& unit = plan.units[k];
+    if (unit.kind == UnitKind::stretch) continue;
+    if (k % 256 == 0)
+      progress.update(static_cast<double>(k) / static_cast<double>(plan.units.size()), "merging");
+    DeviceRecord& record = out[unit.device];
+    std::optional<DeviceRecord> found;
+    try {
+      found = stored_record(folder, unit.id);
+    } catch (const Error&) {
+      if (!options.partial) throw;
+    }
+    if (!found) {
+      if (record.problem.empty()) record.problem = kNotThere;
+      continue;
+    }
+    if (record.channels.empty() && found->problem.empty())
+      record.report = report_of(unit, folder, options.relative_to);
+    add_result(*found, record);
+  }
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,283 @@
+#include "libchar/fleet/plan.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/document.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
+#include "libchar/core/schema.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/unit_cost.hpp"
+#include "libchar/log/channel_names.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPlanFormat = "fleet-plan";
+constexpr std::size_t kMostPlan = std::size_t{4} << 30U;
+
+struct LookedAt {
+  LogInfo head;
+  std::string sha256, problem;
+};
+
+LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options) {
+  LookedAt out;
+  try {
+    out.head = read_log_head(device.log, options.reading);
+    out.sha256 = digest_of_log(device.log);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.hint = "";  // the sentence that holds these has its own
+    out.problem = one_line(problem);
+  }
+  return out;
+}
+
+std::vector<LookedAt> look_at_all(const Manifest& manifest, Progress& progress) {
+  constexpr std::size_t kAtOnce = 64;
+  std::vector<LookedAt> out(manifest.devices.size());
+  for (std::size_t first = 0; first < out.size(); first += kAtOnce) {
+    progress.update(static_cast<double>(first) / static_cast<double>(out.size()),
+                    "looking into the logs");
+    tbb::parallel_for(first, std::min(out.size(), first + kAtOnce), [&](std::size_t d) {
+      const FleetDevice& device = manifest.devices[d];
+      out[d] = look_at(device, manifest.options[device.options]);
+    });
+  }
+  return out;
+}
+
+void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& logs) {
+  constexpr std::size_t kNamed = 5;
+  std::vector<std::string> said;
+  std::size_t count = 0;
+  std::string where;
+  for (std::size_t d = 0; d < logs.size(); ++d) {
+    if (logs[d].problem.empty()) continue;
+    if (count++ == 0) where = manifest.devices[d].where;
+    if (said.size() < kNamed) said.push_back(logs[d].problem);
+  }
+  if (count == 0) return;
+  throw Error({ErrorKind::input,
+               "E0782",
+               where,
+               fmt::format("{} of {} logs cannot be read: {}{}",
+                           count,
+                           logs.size(),
+                           fmt::join(said, "; "),
+                           count > kNamed ? "; …" : ""),
+               "",
+               "mend the manifest, or plan the others with `skip_unreadable`"});
+}
+
+/// Nothing is counted twice.
+void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& logs) {
+  std::map<std::pair<std::string, std::size_t>, std::size_t> first;
+  for (std::size_t d = 0; d < logs.size(); ++d) {
+    if (!logs[d].problem.empty()) continue;
+    const std::size_t options = manifest.devices[d].options;
+    const auto [at, fresh] = first.emplace(std::pair{logs[d].sha256, options}, d);
+    if (!fresh)
+      throw Error({ErrorKind::input,
+                   "E0783",
+                   manifest.devices[d].where,
+                   fmt::format("the logs of {} and {} are the same, byte by byte",
+                               printable(manifest.devices[at->second].device),
+                               printable(manifest.devices[d].device)),
+                   manifest.devices[d].log,
+                   "leave one of them out: it would count twice"});
+  }
+}
+
+class UnitMaker {
+ public:
+  UnitMaker(const FleetPlanOptions& options, const CostModel& cost, FleetPlan& plan)
+      : options_(options), cost_(cost), plan_(plan) {}
+
+  void add(const LookedAt& log, FleetUnit unit) {
+    const bool large = unit.bytes > options_.split_bytes;
+    if (large && why_not_divided(log.head, unit.options).empty()) return add_stretches(log, unit);
+    if (!options_.by_channel || log.head.channels.size() < 2) return add_unit(log, unit);
+    for (const Channel& channel : log.head.channels) {
+      FleetUnit one = unit;
+      one.options.reading.channels = {channel.name};
+      add_unit(log, one);
+    }
+  }
+
+ private:
+  void add_unit(const LookedAt& log, FleetUnit unit) {
+    unit.id = unit_id(unit);
+    unit.cost = cost_.of(unit, log.head);
+    plan_.units.push_back(std::move(unit));
+  }
+
+  void add_stretches(const LookedAt& log, const FleetUnit& unit) {
+    const std::uint64_t leaves = leaves_of(log.head.rows);
+    const std::uint64_t stretches =
+        std::clamp<std::uint64_t>(unit.bytes / options_.stretch_bytes, 1, leaves);
+    FleetUnit join = unit;
+    join.kind = UnitKind::join;
+    for (std::uint64_t k = 0; k < stretches; ++k) {
+      FleetUnit one = unit;
+      one.kind = UnitKind::stretch;
+      one.stretch = {leaves * k / stretches, leaves * (k + 1) / stretches};
+      add_unit(log, one);
+      join.parts.push_back(plan_.units.back().id);
+    }
+    add_unit(log, join);
+  }
+
+  const FleetPlanOptions& options_;
+  const CostModel& cost_;
+  FleetPlan& plan_;
+};
+
+Json device_json(const PlannedDevice& one) {
+  Json out = {{"device", one.device}, {"log", one.log}};
+  if (!one.type.empty()) out["type"] = one.type;
+  if (!one.batch.empty()) out["batch"] = one.batch;
+  if (one.temperature_c) out["temperature_c"] = *one.temperature_c;
+  if (!one.limits.empty()) out["limits"] = one.limits;
+  if (!one.sha256.empty()) out["sha256"] = one.sha256;
+  if (!one.problem.empty()) out["problem"] = one.problem;
+  return out;
+}
+
+PlannedDevice parse_device(const Document& document, const std::string& path) {
+  const MapReader at(
+      document,
+      path,
+      "",
+      {"device", "log", "type", "batch", "temperature_c", "limits", "sha256", "problem"});
+  PlannedDevice out;
+  out.device = at.text("device");
+  out.log = at.text("log");
+  out.type = at.text_or("type", "");
+  out.batch = at.text_or("batch", "");
+  out.temperature_c = at.maybe_number("temperature_c");
+  out.limits = at.text_or("limits", "");
+  out.sha256 = at.text_or("sha256", "");
+  out.problem = at.text_or("problem", "");
+  return out;
+}
+
+[[noreturn]] void refuse_plan(const fs::path& file, const std::string& what) {
+  throw Error({ErrorKind::input,
+               "E0784",
+               file.string(),
+               what,
+               "",
+               "make a plan with: sensorchar fleet plan MANIFEST -o DIR"});
+}
+
+/// The next line, without its end; the rest of the text stays.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
+
+}  // namespace
+
+FleetPlan plan_fleet(const Manifest& manifest,
+                     const FleetPlanOptions& options,
+                     Progress& progress) {
+  const std::vector<LookedAt> logs = look_at_all(manifest, progress);
+  if (!options.skip_unreadable) refuse_unreadable(manifest, logs);
+  refuse_same_logs(manifest, logs);
+  progress.update(-1, "measuring this machine");
+  const CostModel cost = measured_cost();
+  FleetPlan plan;
+  UnitMaker units(options, cost, plan);
+  for (std::size_t d = 0; d < logs.size(); ++d) {
+    const FleetDevice& one = manifest.devices[d];
+    plan.devices.push_back({one.device,
+                            one.type,
+                            one.batch,
+                            one.limits,
+                            one.log,
+                            logs[d].sha256,
+                            one.temperature_c,
+                            logs[d].problem});
+    if (!logs[d].problem.empty()) continue;
+    FleetUnit unit;
+    unit.device = d;
+    unit.log = one.log;
+    unit.sha256 = logs[d].sha256;
+    unit.bytes = logs[d].head.bytes;
+    unit.options = manifest.options[one.options];
+    unit.reports = options.reports;
+    units.add(logs[d], unit);
+  }
+  return plan;
+}
+
+std::string task_file(std::size_t unit) {
+  return fmt::format("tasks/{:06}.json", unit + 1);
+}
+
+void write_plan(const FleetPlan& plan, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder / "tasks", error);
+  if (error)
+    throw Error({ErrorKind::output,
+                 "E0790",
+                 (folder / "tasks").string(),
+                 "cannot be made: " + error.message(),
+                 "",
+                 ""});
+  const Json head = {{"format", kPlanFormat},
+                     {"version", 1},
+                     {"devices", plan.devices.size()},
+                     {"units", plan.units.size()}};
+  std::string text = head.dump() + "\n";
+  for (const PlannedDevice& one : plan.devices)
+    text += with_valid_text(device_json(one)).dump() + "\n";
+  for (std::size_t k = 0; k < plan.units.size(); ++k) {
+    const std::string line = unit_text(plan.units[k]) + "\n";
+    write_whole_file((folder / task_file(k)).string(), line, true);
+    text += line;
+  }
+  // Tasks of an earlier, longer plan are none of this one.
+  for (std::size_t k = plan.units.size(); fs::remove(folder / task_file(k), error); ++k) {
+  }
+  write_whole_file((folder / "plan.jsonl").string(), text, true);
+}
+
+FleetPlan read_plan(const fs::path& folder) {
+  const fs::path file = folder / "plan.jsonl";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) refuse_plan(file, "there is no plan in this folder");
+  const std::string whole = file_text(file.string(), kMostPlan);
+  const std::string path = file.string();
+  std::string_view text = whole;
+  const Document head = parse_document(take_line(text), path);
+  check_format(head, path, kPlanFormat, 1);
+  const MapReader at(head, path, "", {"format", "version", "devices", "units"});
+  FleetPlan plan;
+  const std::uint64_t devices = at.count("devices"), units = at.count("units");
+  for (std::uint64_t d = 0; d < devices && !text.empty(); ++d)
+    plan.devices.push_back(parse_device(parse_document(take_line(text), path), path));
+  for (std::uint64_t k = 0; k < units && !text.empty(); ++k)
+    plan.units.push_back(parse_unit(take_line(text), path));
+  if (plan.devices.size() != devices || plan.units.size() != units)
+    refuse_plan(file, "the plan is cut");
+  for (const FleetUnit& unit : plan.units)
+    if (unit.device >= devices) refuse_plan(file, "a unit is of no device of the plan");
+  return plan;
+}
+
+}  // namespace libchar

@@ -1,0 +1,57 @@
+#pragma once
+// A fleet's work in units: what is to be computed, what each unit is expected to cost, and where its result will be.
+//
+//   DIR/plan.jsonl     every unit, a line each, behind a line about the fleet
+//   DIR/tasks/N.json  the same units, a file each, for schedulers
+//   DIR/results/      what they give (result_store.hpp)
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libchar/core/progress.hpp"
+#include "libchar/fleet/manifest.hpp"
+#include "libchar/fleet/unit.hpp"
+
+namespace libchar {
+
+struct FleetPlanOptions {
+  bool by_channel = false;  ///< a unit for each channel of a log
+  bool reports = true;      ///< each device's page and tables besides its record
+  std::uint64_t split_bytes =
+      std::uint64_t{4}
+      << 30U;  ///< logs larger than this are divided in stretches where their format allows
+  std::uint64_t stretch_bytes = std::uint64_t{1} << 30U;  ///< about, of a stretch
+  bool skip_unreadable = false;  ///< plan the others; those that cannot be read stand in the report
+};
+
+/// A device of the plan: what the report says beside the result.
+struct PlannedDevice {
+  std::string device, type, batch, limits, log, sha256;
+  std::optional<double> temperature_c;
+  std::string problem;  ///< why its log could not be planned
+};
+
+struct FleetPlan {
+  std::vector<PlannedDevice> devices;  ///< in the order of the manifest
+  std::vector<FleetUnit> units;  ///< of the devices in their order; a join behind its stretches
+};
+
+/// Looks into every log and takes its digest. Throws Error(input) for logs that cannot be read (all of them named, the first few with
+/// the reason) or that are one log twice.
+FleetPlan plan_fleet(const Manifest& manifest,
+                     const FleetPlanOptions& options,
+                     Progress& progress = no_progress());
+
+/// Writes DIR/plan.jsonl and the tasks. A plan that stands there is replaced; results stay, and those of units that are still the same are
+/// used. Throws Error(output).
+void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
+
+/// Throws Error(input) for what is no plan, or one of another version of the program.
+FleetPlan read_plan(const std::filesystem::path& folder);
+
+/// The file of a unit's task, relative to the folder of the plan.
+std::string task_file(std::size_t unit);
+
+}  // namespace libchar

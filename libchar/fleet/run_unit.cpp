@@ -1,0 +1,170 @@
+#include "libchar/fleet/run_unit.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <limits>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/settings.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/output_files.hpp"
+#include "libchar/core/version.hpp"
+#include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/report/report_files.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_changed(const FleetUnit& unit) {
+  throw Error({ErrorKind::input,
+               "E0785",
+               unit.log,
+               "the log was changed after the fleet was planned",
+               "",
+               "plan the fleet again: units of logs that did not change keep their results"});
+}
+
+void check_log_is_there(const FleetUnit& unit) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(unit.log, error);
+  if (error || ::access(unit.log.c_str(), R_OK) != 0)
+    throw Error({ErrorKind::again,
+                 "E0786",
+                 unit.log,
+                 "the log that was planned cannot be opened now",
+                 "",
+                 "mount or restore it and run the unit again, or plan the fleet without it"});
+  if (bytes != unit.bytes) refuse_changed(unit);
+}
+
+/// The same words whoever computes it, and in however many stretches.
+void finish_characterization(const FleetUnit& unit, Characterization& result) {
+  result.command = {"sensorchar", "fleet", "run"};
+  result.settings = settings_of(unit.options);
+  result.seconds = std::numeric_limits<double>::quiet_NaN();
+}
+
+Characterization of_log(const FleetUnit& unit, Progress& progress) {
+  CharacterizeOptions options = unit.options;
+  options.reading.hash = true;
+  Characterization result = characterize(unit.log, options, progress);
+  if (result.log.sha256 != unit.sha256) refuse_changed(unit);
+  return result;
+}
+
+std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) {
+  std::vector<NamedState> states;
+  std::vector<std::string> missing;
+  for (const std::string& part : unit.parts)
+    has_result(fleet, part, true) ? states.push_back(state_in_file(state_path(fleet, part)))
+                                  : missing.push_back(part);  // or damaged: computed again
+  if (!missing.empty())
+    throw Error({ErrorKind::again,
+                 "E0787",
+                 unit.log,
+                 fmt::format("{} of {} stretches of this log are not there yet: {}{}",
+                             missing.size(),
+                             unit.parts.size(),
+                             missing[0],
+                             missing.size() > 1 ? " …" : ""),
+                 "",
+                 "run them first"});
+  return states;
+}
+
+/// Stretches look at the file's size only.
+void check_digest(const FleetUnit& unit) {
+  if (digest_of_log(unit.log) != unit.sha256) refuse_changed(unit);
+}
+
+Characterization of_parts(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
+  const std::vector<NamedState> states = states_of(unit, fleet);
+  check_digest(unit);
+  Characterization result = characterize_from_stretches(states, unit.options, progress);
+  result.log.sha256 = unit.sha256;
+  return result;
+}
+
+/// What the content does not allow, and no other try will.
+bool is_of_content(const Problem& problem) {
+  return problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric ||
+         problem.kind == ErrorKind::usage;
+}
+
+DeviceRecord write_results(const FleetUnit& unit,
+                           Characterization& result,
+                           const fs::path& folder) {
+  finish_characterization(unit, result);
+  if (unit.reports)
+    write_outputs(report_files(characterization_view(result), folder), folder, {}, false);
+  return record_of(result, unit.options.data);
+}
+
+DeviceRecord record_in(const FleetUnit& unit,
+                       const fs::path& fleet,
+                       const fs::path& folder,
+                       Progress& progress) {
+  std::optional<Characterization> result;
+  DeviceRecord record;
+  try {
+    result = unit.kind == UnitKind::join ? of_parts(unit, fleet, progress) : of_log(unit, progress);
+  } catch (const Error& error) {
+    const Problem& problem = error.problem();
+    if (!is_of_content(problem) || problem.code == "E0785") throw;
+    check_log_is_there(unit);  // else it is the place, not the content
+    record.problem = one_line(problem);
+  }
+  if (result) record = write_results(unit, *result, folder);
+  if (!result) record.program = version();
+  record.log = unit.log;
+  record.sha256 = unit.sha256;
+  return record;
+}
+
+UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
+  ResultFolder folder(fleet, unit.id);
+  UnitRun out;
+  if (unit.kind == UnitKind::stretch) {
+    write_whole_file(
+        (folder.path() / kStateFile).string(),
+        characterize_stretch(unit.log, unit.options, unit.stretch, unit.sha256, progress));
+  } else {
+    const DeviceRecord record = record_in(unit, fleet, folder.path(), progress);
+    write_record(folder.path(), record);
+    out.problem = record.problem;
+    if (!record.problem.empty()) out.outcome = UnitOutcome::no_result;
+  }
+  if (!folder.publish()) out.outcome = UnitOutcome::already_there;
+  return out;
+}
+
+}  // namespace
+
+UnitRun run_unit(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
+  if (has_result(fleet, unit.id, unit.kind == UnitKind::stretch))
+    return {UnitOutcome::already_there, ""};
+  check_log_is_there(unit);
+  try {
+    return compute(unit, fleet, progress);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    if (problem.kind != ErrorKind::output) throw;
+    problem.kind = ErrorKind::again;
+    throw Error(problem);
+  } catch (const std::bad_alloc&) {
+    throw Error({ErrorKind::again,
+                 "E0788",
+                 unit.log,
+                 "not enough memory for this unit",
+                 "",
+                 "give the job more memory"});
+  }
+}
+
+}  // namespace libchar

@@ -1,0 +1,49 @@
+#include "libchar/fleet/status.hpp"
+
+#include "libchar/core/error.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+
+namespace libchar {
+namespace {
+
+enum class Found { nothing, result, no_result };
+
+Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
+  if (unit.kind == UnitKind::stretch)
+    return stored_state(folder, unit.id) ? Found::result : Found::nothing;
+  const auto record = stored_record(folder, unit.id);
+  if (!record) return Found::nothing;
+  return record->problem.empty() ? Found::result : Found::no_result;
+}
+
+}  // namespace
+
+FleetStatus fleet_status(const FleetPlan& plan,
+                         const std::filesystem::path& folder,
+                         Progress& progress) {
+  FleetStatus out;
+  out.devices = plan.devices.size();
+  out.units = plan.units.size();
+  for (std::size_t k = 0; k < plan.units.size(); ++k) {
+    if (k % 256 == 0)
+      progress.update(static_cast<double>(k) / static_cast<double>(out.units),
+                      "looking at results");
+    Found found = Found::nothing;
+    try {
+      found = look_at(plan.units[k], folder);
+    } catch (const Error& error) {
+      out.damaged.push_back(one_line(error.problem()));
+    }
+    if (found == Found::nothing) {
+      out.missing.push_back(k);
+      out.seconds_left += plan.units[k].cost.seconds;
+    } else {
+      ++out.done;
+      if (found == Found::no_result) ++out.no_result;
+    }
+  }
+  out.unpublished = unpublished(folder);
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,105 @@
+#include "libchar/fleet/unit.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "libchar/characterize/settings.hpp"
+#include "libchar/core/document.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/schema.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/version.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::string_view kTaskFormat = "fleet-task";
+constexpr std::size_t kIdDigits = 32;
+
+/// What the result depends on.
+Json content_of(const FleetUnit& unit) {
+  Json out = {{"version_of_program", version()},
+              {"kind", name_of(unit.kind)},
+              {"sha256", unit.sha256},
+              {"config", json_of(settings_of(unit.options))},
+              {"reports", unit.reports}};
+  if (unit.kind == UnitKind::stretch)
+    out["leaves"] = {unit.stretch.first_leaf, unit.stretch.end_leaf};
+  if (unit.kind == UnitKind::join) out["parts"] = unit.parts;
+  return out;
+}
+
+UnitKind kind_at(const MapReader& at) {
+  return *find_enum<UnitKind>(at.word("kind", words_of<UnitKind>()));
+}
+
+StretchRange stretch_at(const MapReader& at) {
+  const std::vector<double> ends = at.numbers("leaves");
+  if (ends.size() != 2 || !(ends[0] >= 0) || !(ends[1] > ends[0]))
+    at.refuse("leaves", "expected the first leaf and the one behind the last");
+  return {static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])};
+}
+
+}  // namespace
+
+std::string unit_id(const FleetUnit& unit) {
+  Sha256 hash;
+  hash.update("fleet-unit 1\n" + with_valid_text(content_of(unit)).dump());
+  return hash.finish().substr(0, kIdDigits);
+}
+
+std::string unit_text(const FleetUnit& unit) {
+  Json out = {{"format", kTaskFormat}, {"version", 1}, {"id", unit.id}, {"log", unit.log}};
+  out["bytes"] = unit.bytes;
+  out.update(content_of(unit));
+  out["device"] = unit.device;
+  out["cost"] = {{"seconds", unit.cost.seconds}, {"memory_bytes", unit.cost.memory_bytes}};
+  return with_valid_text(std::move(out)).dump();
+}
+
+FleetUnit parse_unit(std::string_view text, const std::string& path) {
+  const Document document = parse_document(text, path);
+  check_format(document, path, kTaskFormat, 1);
+  const MapReader at(document,
+                     path,
+                     "",
+                     {"format",
+                      "version",
+                      "id",
+                      "version_of_program",
+                      "kind",
+                      "device",
+                      "log",
+                      "sha256",
+                      "bytes",
+                      "leaves",
+                      "parts",
+                      "reports",
+                      "config",
+                      "cost"});
+  FleetUnit unit;
+  unit.id = at.text("id");
+  unit.kind = kind_at(at);
+  unit.device = at.count_or("device", 0);
+  unit.log = at.text("log");
+  unit.sha256 = at.text("sha256");
+  unit.bytes = at.count("bytes");
+  unit.reports = at.flag_or("reports", true);
+  if (unit.kind == UnitKind::stretch) unit.stretch = stretch_at(at);
+  if (unit.kind == UnitKind::join) unit.parts = at.texts("parts");
+  read_fields(
+      characterize_fields(), at.map("config", keys_of(characterize_fields())), unit.options);
+  const MapReader cost = at.map("cost", {"seconds", "memory_bytes"});
+  unit.cost = {cost.number("seconds", kNotNegative), cost.count("memory_bytes")};
+  if (at.text("version_of_program") != version())
+    at.refuse(
+        "version_of_program",
+        fmt::format("the task was planned by another version of the program than {}", version()),
+        "plan the fleet again with this one; results of the other version stay");
+  if (unit_id(unit) != unit.id)
+    at.refuse("id", "the task was changed after it was planned", "plan the fleet again");
+  return unit;
+}
+
+}  // namespace libchar

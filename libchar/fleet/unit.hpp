@@ -1,0 +1,52 @@
+#pragma once
+// A unit of a fleet's work: one log, one channel of it, a stretch of a long one, or the joining of its stretches. What comes out of a unit
+// depends on the log's content, the settings and the version of the program, and so does its name.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/stretches.hpp"
+#include "libchar/core/enum_table.hpp"
+
+namespace libchar {
+
+enum class UnitKind {
+  log,      ///< one log, or chosen channels of it, from its samples to its report
+  stretch,  ///< a stretch of a long log: a partial state
+  join,     ///< the partial states of a log to its report
+};
+template <>
+inline constexpr auto enum_table<UnitKind> = enum_words<UnitKind>({{UnitKind::log, "log"},
+                                                                   {UnitKind::stretch, "stretch"},
+                                                                   {UnitKind::join, "join"}});
+
+struct UnitCost {
+  double seconds = 0;              ///< on a core of the machine that planned
+  std::uint64_t memory_bytes = 0;  ///< resident at most
+};
+
+struct FleetUnit {
+  std::string id;  ///< 32 hexadecimal digits (unit_id)
+  UnitKind kind = UnitKind::log;
+  std::size_t device = 0;  ///< index in the plan
+  std::string log;         ///< absolute path
+  std::string sha256;      ///< of the log when it was planned
+  std::uint64_t bytes = 0;
+  CharacterizeOptions options;
+  StretchRange stretch;            ///< of a stretch
+  std::vector<std::string> parts;  ///< of a join: the ids of its stretches
+  bool reports = true;  ///< report.html, report.json, curves.csv and models besides the record
+  UnitCost cost;
+};
+
+/// SHA-256 over version, kind, the log's digest, settings, stretch and parts; no paths, no names, no costs.
+std::string unit_id(const FleetUnit& unit);
+
+/// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).
+std::string unit_text(const FleetUnit& unit);
+FleetUnit parse_unit(std::string_view text, const std::string& path);
+
+}  // namespace libchar

@@ -1,0 +1,86 @@
+// What is left of a fleet as jobs of an engine.
+
+#include "libchar/fleet/jobs.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <set>
+
+#include "tests/fleet/fleet_folder.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Units of a second each; the last two are the joins of the first four.
+FleetPlan made_plan() {
+  FleetPlan plan;
+  plan.devices.resize(2);
+  for (std::size_t k = 0; k < 12; ++k) {
+    FleetUnit unit;
+    unit.id = std::string(30, 'a') + std::to_string(10 + k);
+    unit.cost = {1, 100000000 + k};
+    if (k < 4) unit.kind = UnitKind::stretch;
+    if (k >= 10) {
+      unit.kind = UnitKind::join;
+      unit.parts = {plan.units[2 * (k - 10)].id, plan.units[2 * (k - 10) + 1].id};
+    }
+    plan.units.push_back(unit);
+  }
+  return plan;
+}
+
+FleetStatus nothing_done(const FleetPlan& plan) {
+  FleetStatus status;
+  for (std::size_t k = 0; k < plan.units.size(); ++k) status.missing.push_back(k);
+  return status;
+}
+
+}  // namespace
+
+TEST_CASE("every missing unit is in one job; joins come behind the jobs of their stretches") {
+  const FleetPlan plan = made_plan();
+  JobOptions options;
+  options.job_s = 3;
+  const auto jobs = jobs_of(plan, nothing_done(plan), options);
+  std::multiset<std::size_t> units;
+  std::set<std::string> names;
+  for (const FleetJob& job : jobs) {
+    units.insert(job.units.begin(), job.units.end());
+    names.insert(job.name);
+    for (const std::size_t j : job.after) CHECK(j < static_cast<std::size_t>(&job - jobs.data()));
+  }
+  CHECK(units.size() == 12);
+  CHECK(std::set<std::size_t>(units.begin(), units.end()).size() == 12);
+  CHECK(names.size() == jobs.size());
+  CHECK(jobs.back().after == std::vector<std::size_t>{0, 1});
+  CHECK(jobs[0].cost.seconds == 3);
+  FleetStatus status;
+  status.missing = {5};
+  CHECK(jobs_of(plan, status, options).size() == 1);
+  CHECK(jobs_of(plan, {}, options).empty());
+}
+
+TEST_CASE("an export has a list of tasks for each job, and the engine's own files") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = made_plan();
+  JobOptions options;
+  options.job_s = 5;
+  options.program = "/opt/sensor tools/sensorchar";
+  const auto jobs = jobs_of(plan, nothing_done(plan), options);
+  for (const Engine& engine : engines()) {
+    export_jobs(jobs, engine, folder.path(), options);
+    INFO(engine.name);
+    CHECK(fs::exists(folder / engine.file));
+  }
+  std::string tasks;
+  for (const FleetJob& job : jobs) tasks += test::slurp(folder / "jobs" / (job.name + ".txt"));
+  for (std::size_t k = 0; k < 12; ++k) CHECK_THAT(tasks, Contains(task_file(k) + "\n"));
+  const std::string slurm = test::slurp(folder / "fleet.slurm.sh");
+  CHECK_THAT(slurm, Contains("--mem=151M") && Contains("--dependency=\"afterany$before\""));
+  CHECK_THAT(test::slurp(folder / "fleet.slurm.element.sh"),
+             Contains("'/opt/sensor tools/sensorchar' fleet run --quiet --threads 1"));
+  CHECK_THAT(test::slurp(folder / "Snakefile"), Contains("\"mem_mb\": 151"));
+}

@@ -1,0 +1,88 @@
+// Manifests as people write them, and what is wrong with some.
+
+#include "libchar/fleet/manifest.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "libchar/core/error.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+std::string refusal(const std::string& text, const std::string& path = "line7.yaml") {
+  try {
+    parse_manifest(text, path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string kHead = "format: fleet-manifest\nversion: 1\n";
+
+}  // namespace
+
+TEST_CASE("a manifest: defaults, what an entry sets over them, paths from its folder") {
+  const Manifest m =
+      parse_manifest(kHead +
+                         "defaults: {type: imu-x, batch: b1, limits: sheet.yaml, options: "
+                         "{reading: {rate_hz: 200}}}\n"
+                         "devices:\n"
+                         "  - {device: A01, log: a/01.npy, temperature_c: 25}\n"
+                         "  - {log: /logs/02.npy, batch: b2, options: {reading: {rate_hz: 100}}}\n"
+                         "  - {device: A03, log: ../c.csv, options: {reading: {rate_hz: 200}}}\n",
+                     "/fleet/line7.yaml");
+  REQUIRE(m.devices.size() == 3);
+  CHECK(m.devices[0].log == "/fleet/a/01.npy");
+  CHECK(m.devices[0].type == "imu-x");
+  CHECK(m.devices[0].limits == "/fleet/sheet.yaml");
+  CHECK(m.devices[0].temperature_c == 25);
+  CHECK(m.devices[1].device == "02");
+  CHECK(m.devices[1].batch == "b2");
+  CHECK_FALSE(m.devices[1].temperature_c);
+  CHECK(m.devices[2].log == "/c.csv");
+  // The options of the first and the third are the same ones.
+  CHECK(m.options.size() == 2);
+  CHECK(m.options[m.devices[0].options].reading.rate_hz == 200);
+  CHECK(m.options[m.devices[1].options].reading.rate_hz == 100);
+  CHECK(m.devices[2].options == m.devices[0].options);
+}
+
+TEST_CASE("a table is a manifest too: commas or semicolons, quotes, empty cells, comments") {
+  const Manifest m = parse_manifest(
+      "\xEF\xBB\xBF"
+      "device;log;batch;temperature_c\r\n# line 7\r\n\"A;1\";a.csv;b1;21.5\r\n\r\nA2;b.csv;;\r\n",
+      "/fleet/line7.csv");
+  REQUIRE(m.devices.size() == 2);
+  CHECK(m.devices[0].device == "A;1");
+  CHECK(m.devices[0].temperature_c == 21.5);
+  CHECK(m.devices[0].where == "/fleet/line7.csv:3:1");
+  CHECK(m.devices[1].log == "/fleet/b.csv");
+  CHECK(m.devices[1].batch.empty());
+}
+
+TEST_CASE("what is wrong with a manifest is said with its place") {
+  CHECK_THAT(refusal("format: scene\nversion: 1\n"), Contains("fleet-manifest"));
+  CHECK_THAT(refusal(kHead + "devices:\n  - {device: A, lgo: a.csv}\n"),
+             Contains("line7.yaml:4") && Contains("lgo") && Contains("log"));
+  CHECK_THAT(refusal(kHead + "devices:\n  - {device: A}\n"), Contains("log"));
+  CHECK_THAT(refusal(kHead + "devices: []\n"), Contains("no device"));
+  CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, temperature_c: hot}\n"),
+             Contains("temperature_c") && Contains("line7.yaml:4"));
+  CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, options: {reading: {rate: 5}}}\n"),
+             Contains("rate"));
+  CHECK_THAT(refusal("device,log\nA,a.csv,3\n", "t.csv"),
+             Contains("t.csv:2:1: error E0781: 3 cells under 2 heads"));
+  CHECK_THAT(refusal("device,log,log\n", "t.csv"), Contains("stands twice"));
+  CHECK_THAT(refusal("device,log\n\"A,a.csv\n", "t.csv"), Contains("not closed"));
+  CHECK_THAT(refusal("device,log,temperature_c\nA,a.csv,warm\n", "t.csv"), Contains("t.csv:2"));
+}
+
+TEST_CASE("logs alone are devices called as their files are, by folders too where two are alike") {
+  const Manifest m = manifest_of_logs({"a/x.csv", "b/x.csv", "c/y.csv"});
+  CHECK(m.devices[0].device == "a/x.csv");
+  CHECK(m.devices[1].device == "b/x.csv");
+  CHECK(m.devices[2].device == "y");
+}

@@ -1,0 +1,80 @@
+// Plans: what is planned, what comes back of a file, what is refused.
+
+#include "libchar/fleet/plan.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <set>
+
+#include "libchar/core/error.hpp"
+#include "tests/fleet/fleet_folder.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+TEST_CASE("a unit a log, or one a channel; the plan reads back") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 3);
+  CHECK(test::planned(logs).units.size() == 3);
+  FleetPlanOptions options;
+  options.by_channel = true;
+  const FleetPlan plan = test::planned(logs, options);
+  REQUIRE(plan.units.size() == 6);
+  CHECK(plan.units[1].options.reading.channels == std::vector<std::string>{"gy"});
+  CHECK(plan.units[0].cost.seconds > 0);
+  CHECK(plan.units[0].cost.memory_bytes > 1000000);
+  std::set<std::string> ids;
+  for (const FleetUnit& unit : plan.units) ids.insert(unit.id);
+  CHECK(ids.size() == 6);
+  write_plan(plan, folder / "F");
+  const FleetPlan again = read_plan(folder / "F");
+  REQUIRE(again.units.size() == 6);
+  for (std::size_t k = 0; k < 6; ++k) CHECK(unit_text(again.units[k]) == unit_text(plan.units[k]));
+  CHECK(again.devices[2].device == "d2");
+  CHECK(again.devices[2].sha256 == plan.devices[2].sha256);
+}
+
+TEST_CASE("a shorter plan in the same folder leaves no task of the longer one") {
+  const test::TemporaryFolder folder;
+  auto logs = test::write_logs(folder.path(), 3);
+  write_plan(test::planned(logs), folder / "F");
+  logs.pop_back();
+  write_plan(test::planned(logs), folder / "F");
+  CHECK(std::filesystem::exists(folder / "F" / task_file(1)));
+  CHECK_FALSE(std::filesystem::exists(folder / "F" / task_file(2)));
+}
+
+TEST_CASE(
+    "one log twice is refused, and so are logs that cannot be read unless they may be skipped") {
+  const test::TemporaryFolder folder;
+  auto logs = test::write_logs(folder.path(), 2);
+  std::filesystem::copy_file(logs[0], folder / "copy.csv");
+  auto twice = logs;
+  twice.push_back((folder / "copy.csv").string());
+  CHECK_THROWS_WITH(test::planned(twice), Contains("d0 and copy are the same, byte by byte"));
+  auto broken = logs;
+  test::write_file((folder / "broken.csv").string(), "no,numbers\nhere,at all\n");
+  broken.push_back((folder / "broken.csv").string());
+  broken.push_back((folder / "absent.csv").string());
+  CHECK_THROWS_WITH(test::planned(broken),
+                    Contains("2 of 4 logs cannot be read") && Contains("`skip_unreadable`"));
+  FleetPlanOptions options;
+  options.skip_unreadable = true;
+  const FleetPlan plan = test::planned(broken, options);
+  CHECK(plan.units.size() == 2);
+  CHECK_THAT(plan.devices[3].problem, Contains("absent.csv"));
+}
+
+TEST_CASE("a plan that is cut, or is none, is refused") {
+  const test::TemporaryFolder folder;
+  CHECK_THROWS_WITH(read_plan(folder.path()), Contains("no plan"));
+  write_plan(test::planned(test::write_logs(folder.path(), 2)), folder / "F");
+  const std::string text = test::slurp(folder / "F" / "plan.jsonl");
+  const std::string path = (folder / "F" / "plan.jsonl").string();
+  test::write_file(path, text.substr(0, text.rfind("{\"format\"")));
+  CHECK_THROWS_WITH(read_plan(folder / "F"), Contains("cut"));
+  for (std::size_t at = 0; at + 1 < text.size(); at += 97) {
+    test::write_file(path, text.substr(0, at));
+    CHECK_THROWS_AS(read_plan(folder / "F"), Error);
+  }
+}

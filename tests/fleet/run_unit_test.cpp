@@ -1,0 +1,164 @@
+// Workers: whole results or none, whoever is killed, whoever is first.
+
+#include "libchar/fleet/run_unit.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "libchar/core/error.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/fleet/merge.hpp"
+#include "libchar/fleet/status.hpp"
+#include "tests/fleet/fleet_folder.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path result_of(const fs::path& fleet, const FleetUnit& unit) {
+  return fleet / "results" / result_folder(unit.id);
+}
+
+std::string all_records(const FleetPlan& plan, const fs::path& fleet) {
+  std::string out;
+  for (const DeviceRecord& record : merged_records(plan, fleet))
+    out += device_record_text(record) + "\n";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a unit is done once; its folder has the record and the reports") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 1));
+  const fs::path fleet = folder / "F";
+  CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::done);
+  CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::already_there);
+  for (const char* name :
+       {"device.record", "report.html", "report.json", "curves.csv", "gx.sensor.yaml"})
+    CHECK(fs::exists(result_of(fleet, plan.units[0]) / name));
+  const auto record = stored_record(fleet, plan.units[0].id);
+  REQUIRE(record);
+  REQUIRE(record->channels.size() == 2);
+  CHECK(record->channels[1].name == "gy");
+  CHECK(record->channels[1].fitted);
+  CHECK(unpublished(fleet).empty());
+}
+
+TEST_CASE(
+    "results do not depend on the order, on the folder, or on channels being units of their own") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 3);
+  const FleetPlan plan = test::planned(logs);
+  test::run_all(plan, folder / "A");
+  for (std::size_t k = plan.units.size(); k-- > 0;) run_unit(plan.units[k], folder / "B");
+  for (const FleetUnit& unit : plan.units)
+    for (const char* name : {"device.record", "report.html", "report.json", "curves.csv"})
+      CHECK(test::slurp(result_of(folder / "A", unit) / name) ==
+            test::slurp(result_of(folder / "B", unit) / name));
+  FleetPlanOptions options;
+  options.by_channel = true;
+  options.reports = false;
+  const FleetPlan channels = test::planned(logs, options);
+  test::run_all(channels, folder / "C");
+  const auto whole = merged_records(plan, folder / "A");
+  const auto parts = merged_records(channels, folder / "C");
+  REQUIRE(parts.size() == whole.size());
+  for (std::size_t d = 0; d < whole.size(); ++d) CHECK(parts[d].channels == whole[d].channels);
+}
+
+TEST_CASE("a damaged result counts as none, is named, and is computed again") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 2));
+  const fs::path fleet = folder / "F";
+  test::run_all(plan, fleet);
+  const std::string before = all_records(plan, fleet);
+  const fs::path file = result_of(fleet, plan.units[1]) / "device.record";
+  std::string text = test::slurp(file);
+  text[text.size() / 2] ^= 1;
+  test::write_file(file.string(), text);
+  const FleetStatus status = fleet_status(plan, fleet);
+  CHECK(status.done == 1);
+  REQUIRE(status.damaged.size() == 1);
+  CHECK_THAT(status.damaged[0], Contains("damaged") && Contains(plan.units[1].id));
+  CHECK_THROWS_WITH(merged_records(plan, fleet),
+                    Contains("1 of 2 units have no result") && Contains("d1"));
+  CHECK(run_unit(plan.units[1], fleet).outcome == UnitOutcome::done);
+  CHECK(all_records(plan, fleet) == before);
+  test::write_file(file.string(), "");
+  CHECK(run_unit(plan.units[1], fleet).outcome == UnitOutcome::done);
+  CHECK(all_records(plan, fleet) == before);
+}
+
+TEST_CASE("two workers on one unit: one result, no litter") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 1, 2000));
+  const fs::path fleet = folder / "F";
+  std::vector<UnitOutcome> outcomes(4);
+  std::vector<std::thread> workers;
+  for (std::size_t w = 0; w < outcomes.size(); ++w)
+    workers.emplace_back([&, w] { outcomes[w] = run_unit(plan.units[0], fleet).outcome; });
+  for (std::thread& worker : workers) worker.join();
+  CHECK(std::count(outcomes.begin(), outcomes.end(), UnitOutcome::done) == 1);
+  CHECK(unpublished(fleet).empty());
+  CHECK(stored_record(fleet, plan.units[0].id));
+}
+
+TEST_CASE("a log that was changed after planning is told by name, one that is gone may come back") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 2);
+  const FleetPlan plan = test::planned(logs);
+  const std::string text = test::slurp(logs[0]);
+  std::string other = text;
+  other[other.size() - 3] = other[other.size() - 3] == '1' ? '2' : '1';
+  test::write_file(logs[0], other);
+  CHECK_THROWS_WITH(run_unit(plan.units[0], folder / "F"),
+                    Contains("d0.csv") && Contains("changed after the fleet was planned"));
+  test::write_file(logs[0], text + "x");
+  CHECK_THROWS_WITH(run_unit(plan.units[0], folder / "F"), Contains("changed after"));
+  fs::remove(logs[0]);
+  try {
+    run_unit(plan.units[0], folder / "F");
+    FAIL("a log that is not there was characterized");
+  } catch (const Error& error) {
+    CHECK(error.problem().kind == ErrorKind::again);
+  }
+  CHECK(unpublished(folder / "F").empty());
+  test::write_file(logs[0], text);
+  CHECK(run_unit(plan.units[0], folder / "F").outcome == UnitOutcome::done);
+}
+
+TEST_CASE("what a log's content does not allow is a result, and stands in the merged records") {
+  const test::TemporaryFolder folder;
+  auto logs = test::write_logs(folder.path(), 2);
+  // The head is fine, a row in the second block that is read is not.
+  std::string text = test::slurp(logs[1]);
+  const std::string rows = text.substr(text.find('\n') + 1);
+  while (text.size() < (std::size_t{3} << 20U)) text += rows;
+  test::write_file(logs[1], text + "7.00,abc,1\n");
+  const FleetPlan plan = test::planned(logs);
+  const UnitRun run = run_unit(plan.units[1], folder / "F");
+  CHECK(run.outcome == UnitOutcome::no_result);
+  CHECK_THAT(run.problem, Contains("d1.csv:"));
+  run_unit(plan.units[0], folder / "F");
+  CHECK(fleet_status(plan, folder / "F").no_result == 1);
+  const auto records = merged_records(plan, folder / "F");
+  CHECK_THAT(records[1].problem, Contains("d1.csv:"));
+  CHECK(records[1].channels.empty());
+}
+
+TEST_CASE("merging what there is names what there is not") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 2));
+  run_unit(plan.units[1], folder / "F");
+  MergeOptions options;
+  options.partial = true;
+  const auto records = merged_records(plan, folder / "F", options);
+  CHECK_THAT(records[0].problem, Contains("not there yet"));
+  CHECK(records[1].channels.size() == 2);
+  CHECK(records[1].device == "d1");
+}
