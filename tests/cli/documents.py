@@ -46,7 +46,8 @@ RUNS = [
     ["convert", IMU, "-o", "imu.npy"], ["convert", IMU, "-o", "imu.f64"],
     ["verify", "report"], ["verify", "report", "--rerun", "again"],
     ["fleet", "plan", "first.csv", "second.csv", "-o", "fleet"], ["fleet", "run", "fleet"], ["fleet", "status", "fleet"],
-    ["fleet", "export", "fleet", "--to", "slurm"],
+    ["fleet", "export", "fleet", "--to", "slurm"], ["fleet", "merge", "fleet", "-o", "fleet-report"],
+    ["fleet", "plan", "fleet.yaml", "-o", "batches"], ["fleet", "run", "batches"], ["fleet", "compare", "batches", "--batches", "b1,b2"],
     ["bench", "report/gyro_z.sensor.yaml", "scenes/rv-5.1-faults.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
      "characterization,design,fusion", "--algorithms", "mean,median"],
 ]
@@ -57,12 +58,16 @@ def prepare(folder):
     shutil.copy(root / "fixtures/imu_at_rest.csv", folder / IMU)
     shutil.copytree(root / "fixtures/scenes", folder / "scenes")
     (folder / "limits.yaml").write_text(LIMITS)
+    (folder / "fleet.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: {reading: {channels: [gyro_z]}}}\ndevices:\n" + "".join(
+        f"  - {{device: d{k}, log: part{k}.csv, batch: b{1 + k % 2}, temperature_c: 2{k}}}\n" for k in range(4)))
     (folder / "curve.csv").write_text(CURVE)
     lines = (folder / IMU).read_text().splitlines()
     head = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
     first, rows = lines[:head], lines[head:]
     (folder / "first.csv").write_text("\n".join(first + rows[:20000]) + "\n")
     (folder / "second.csv").write_text("\n".join(first + rows[25000:45000]) + "\n")
+    for k in range(4):
+        (folder / f"part{k}.csv").write_text("\n".join(first + rows[12000 * k:12000 * (k + 1)]) + "\n")
     dirty = rows[:3000] + rows[3200:9000] + rows[8990:20000]
     (folder / "dirty.csv").write_text("\n".join([first[-1]] + [line if k % 997 else line.split(",")[0] + ",," for k, line in enumerate(dirty)]) + "\n")
     with open(folder / "warm.csv", "w") as warm:

@@ -106,6 +106,8 @@ with tempfile.TemporaryDirectory() as scratch:
     for path in sorted(folder.rglob("*.yaml")):
         if (folder / "scenes") not in path.parents:
             hold(yaml.load(path.read_text(), Loader), path.name)
+    for path in sorted(folder.rglob("device.record")):
+        hold(json.loads(path.read_text().split("\n", 1)[1]), path.name)
     for path in sorted(folder.glob("*.f64.json")):
         hold(json.loads(path.read_text()), path.name, "sidecar.schema.json")
 with tempfile.TemporaryDirectory() as scratch:

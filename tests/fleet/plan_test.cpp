@@ -53,8 +53,8 @@ TEST_CASE(
   twice.push_back((folder / "copy.csv").string());
   CHECK_THROWS_WITH(test::planned(twice), Contains("d0 and copy are the same, byte by byte"));
   auto broken = logs;
-  test::write_file((folder / "broken.csv").string(), "no,numbers\nhere,at all\n");
-  broken.push_back((folder / "broken.csv").string());
+  test::write_file(folder / "broken.npy", "\x93NUMPY, and no more");
+  broken.push_back((folder / "broken.npy").string());
   broken.push_back((folder / "absent.csv").string());
   CHECK_THROWS_WITH(test::planned(broken),
                     Contains("2 of 4 logs cannot be read") && Contains("`skip_unreadable`"));

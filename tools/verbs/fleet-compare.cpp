@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/whole_file.hpp"
@@ -33,10 +34,18 @@ std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records,
                                    const std::string& batch,
                                    const std::string& fleet) {
   std::vector<DeviceRecord> out;
-  for (const DeviceRecord& record : records)
+  std::set<std::string> batches;
+  for (const DeviceRecord& record : records) {
+    batches.insert(batch_title(record.batch));
     if (record.batch == batch) out.push_back(record);
+  }
   if (out.empty())
-    throw Error({ErrorKind::usage, "E0205", fleet, "no device is of this batch", batch, ""});
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 fleet,
+                 "no device is of this batch",
+                 batch,
+                 fmt::format("it has {}", fmt::join(batches, ", "))});
   return out;
 }
 
@@ -72,7 +81,7 @@ void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
   write_whole_file(verb.output, text, verb.force);
 }
 
-std::function<void()> compare_options(VerbOptions& options, Session& session) {
+std::function<void()> fleet_compare_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CompareFleetsVerb>();
   options.add_texts("DIR", verb->fleets, "folders of two fleets, or of one with --batches")
       .required();
@@ -97,7 +106,7 @@ VerbEntry verb_fleet_compare() {
   return {25,
           "fleet-compare",
           "two fleets, or two batches of one: what differs by more than chance",
-          compare_options,
+          fleet_compare_options,
           {{"two batches of one fleet", "sensorchar fleet compare fleet --batches 2026-11,2026-12"},
            {"two fleets, as JSON", "sensorchar fleet compare march april --json"}}};
 }
