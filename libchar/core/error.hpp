@@ -13,7 +13,7 @@ enum class ErrorKind {
   numeric,  ///< the numbers do not allow a result (singular, too few…)    (exit 4)
   output,   ///< a result cannot be written                                (exit 5)
   check,    ///< a requested check failed                                  (exit 6)
-  again,    ///< not possible now; the same call may succeed later         (exit 75, as schedulers know it)
+  again,  ///< not possible now; the same call may succeed later         (exit 75, as schedulers know it)
 };
 
 /// What happened, in the parts of one sentence. Text fields may hold untrusted bytes of a file: they are escaped by

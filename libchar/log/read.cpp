@@ -491,6 +491,38 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
   return recording;
 }
 
+StampedRows read_stamped_rows(const std::string& log,
+                              const ReadOptions& options,
+                              Progress& progress) {
+  const std::string path = named_log_file(log);
+  const auto source = open_rows(format_of(path, options), path, options);
+  StampedRows out;
+  Warnings warnings;
+  RowBlock block;
+  while (source->next(block, warnings)) {
+    const auto rows = static_cast<std::ptrdiff_t>(block.rows);
+    out.samples.resize(block.columns.size());
+    for (std::size_t c = 0; c < block.columns.size(); ++c)
+      out.samples[c].insert(
+          out.samples[c].end(), block.columns[c].begin(), block.columns[c].begin() + rows);
+    if (!block.time_ns.empty())
+      out.time_ns.insert(out.time_ns.end(), block.time_ns.begin(), block.time_ns.begin() + rows);
+    out.info.rows += block.rows;
+    progress.update(-1, "reading " + path);
+  }
+  source->finish(warnings);
+  const std::uint64_t rows = out.info.rows;
+  out.info = source->info();
+  out.info.rows = rows;
+  out.samples.resize(out.info.channels.size());
+  name_channels(out.info.channels, options);
+  const std::vector<double> factors = scale_channels(out.info.channels, options, nullptr);
+  for (std::size_t c = 0; c < factors.size(); ++c)
+    for (double& value : out.samples[c]) value *= factors[c];
+  out.info.warnings = std::move(warnings);
+  return out;
+}
+
 bool read_once(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);

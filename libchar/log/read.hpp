@@ -94,6 +94,16 @@ std::string why_no_rows(const LogInfo& log);
 /// The code of the Error for a log of several topics of which none was chosen.
 inline constexpr std::string_view kTopicNotChosen = "E0427";
 
+/// The rows of a log as they stand in it, each with its stamp: nothing is ordered and nothing put on a grid.
+struct StampedRows {
+  LogInfo info;
+  std::vector<std::vector<double>> samples;  ///< by channel
+  std::vector<std::int64_t> time_ns;         ///< empty where the log has no stamps
+};
+StampedRows read_stamped_rows(const std::string& path,
+                              const ReadOptions& options,
+                              Progress& progress = no_progress());
+
 /// File, format and topics of a log, without reading its samples; no topics for formats of one table.
 LogInfo log_listing(const std::string& path, const ReadOptions& options);
 

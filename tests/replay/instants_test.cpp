@@ -316,3 +316,20 @@ TEST_CASE("instants: a reference angle is interpolated the short way round") {
   truth(kHead + "recording: log.csv\nreference: {channels: [angle], lag_s: 0.5}\n" + scene);
   truth(kHead + "recording: {file: log.csv, resample_hz: 1.7}\nreference: angle\n" + scene);
 }
+
+TEST_CASE("resample_hz goes by stamps that are dates as by numbers") {
+  const test::SceneBench bench;
+  std::string numbers = "t[s],a\n", dates = "time,a\n";
+  for (int k = 0; k < 60; ++k) {
+    const int ms = 100 * k + (k % 6 == 5 ? 30 : 0);
+    numbers += fmt::format("{}.{:03},{}\n", ms / 1000, ms % 1000, ms);
+    dates += fmt::format("2024-01-05T12:00:{:02}.{:03}Z,{}\n", ms / 1000, ms % 1000, ms);
+  }
+  const auto resampled = [&](const std::string& log) {
+    bench.put("log.csv", log);
+    return read_resampled(bench.path("log.csv"), {}, {"a"}, 20, 1, no_progress()).samples[0];
+  };
+  const std::vector<double> expected = resampled(numbers), got = resampled(dates);
+  REQUIRE(got.size() == expected.size());
+  for (std::size_t i = 0; i < got.size(); ++i) CHECK(got[i] == Approx(expected[i]).margin(1e-6));
+}

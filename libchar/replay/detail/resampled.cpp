@@ -67,21 +67,19 @@ std::vector<std::size_t> rows_in_order(const std::vector<double>& stamps,
   throw Error({ErrorKind::input, "E0907", path, what, "", hint});
 }
 
-// Options of a second reading, which has the stamps as a channel like the others.
-ReadOptions with_stamps_as_channel(ReadOptions reading) {
-  reading.time_column = "none";
-  reading.rate_hz = 1;
+// Options of a second reading, of all channels in the order of the rows.
+ReadOptions of_all_rows(ReadOptions reading) {
   reading.hash = false;
   reading.units.clear();
   reading.channels.clear();
   return reading;
 }
 
-std::vector<double> seconds_since_first(const std::vector<double>& raw, std::int64_t unit_ns) {
+// Whatever the stamps are: numbers, dates, or those of messages.
+std::vector<double> seconds_since_first(const std::vector<std::int64_t>& time_ns) {
   std::vector<double> out;
-  const double factor = static_cast<double>(unit_ns) / 1e9;
-  out.reserve(raw.size());
-  for (const double t : raw) out.push_back((t - raw[0]) * factor);
+  out.reserve(time_ns.size());
+  for (const std::int64_t t : time_ns) out.push_back(static_cast<double>(t - time_ns[0]) / 1e9);
   return out;
 }
 
@@ -91,7 +89,7 @@ struct Column {
   double period = 0;  ///< of an angle; 0: none
 };
 
-std::vector<Column> columns_of(const Recording& rows,
+std::vector<Column> columns_of(const StampedRows& rows,
                                const std::vector<std::string>& wanted,
                                std::size_t first_angle) {
   std::vector<Column> out;
@@ -145,15 +143,13 @@ ResampledLog read_resampled(const std::string& path,
   Nothing nothing;
   ResampledLog out;
   out.log = read_log(path, whole, nothing, progress);
-  const TimeBase time = out.log.time;
-  if (time.column.empty())
+  if (out.log.time.column.empty())
     refuse(path,
            "recording.resample_hz: this log has no time stamps to go by",
            "leave resample_hz out");
-  const Recording rows = read_recording(path, with_stamps_as_channel(whole), progress);
+  const StampedRows rows = read_stamped_rows(path, of_all_rows(whole), progress);
   out.log.warnings = rows.info.warnings;
-  const std::vector<double> stamps =
-      seconds_since_first(rows.samples[column_of(rows.info, time.column)], time.unit_ns);
+  const std::vector<double> stamps = seconds_since_first(rows.time_ns);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
     refuse(path, "recording.resample_hz: fewer than two rows with rising stamps", "");
