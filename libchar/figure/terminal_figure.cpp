@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
@@ -44,8 +45,8 @@ class BrailleCanvas {
 
   void dot(double x, double y, int series) {
     const auto column = std::llround(x), row = std::llround(y);
-    if (column < 0 || row < 0 || column >= static_cast<long long>(2 * columns_) ||
-        row >= static_cast<long long>(4 * rows_))
+    if (column < 0 || row < 0 || std::cmp_greater_equal(column, 2 * columns_) ||
+        std::cmp_greater_equal(row, 4 * rows_))
       return;
     Cell& c = cell(static_cast<std::size_t>(column) / 2, static_cast<std::size_t>(row) / 4);
     constexpr unsigned kBits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};

@@ -63,6 +63,7 @@ std::vector<std::pair<const Part*, std::string>> chosen_parts(
   std::set<std::size_t> used;
   for (const auto& [part, s] : found) used.insert(s);
   std::vector<std::pair<const Part*, std::string>> out;
+  out.reserve(found.size());
   for (const auto& [part, s] : found)
     out.emplace_back(part,
                      told_apart(source_name(sources, s, options),

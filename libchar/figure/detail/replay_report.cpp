@@ -45,6 +45,7 @@ std::size_t input_asked_for(const std::vector<MapReader>& inputs,
                             const std::string& file) {
   if (options.input.empty()) return 0;
   std::vector<std::string> names;
+  names.reserve(inputs.size());
   for (const MapReader& input : inputs) names.push_back(input.text_or("name", ""));
   refuse_unmatched({options.input}, names, file);
   return static_cast<std::size_t>(

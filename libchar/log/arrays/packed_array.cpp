@@ -94,8 +94,9 @@ class PlanarCursor final : public ArrayCursor {
       check_crc(file, array, all.crc());
     }
     for (const std::uint64_t column : columns) {
-      columns_.push_back({std::make_unique<PackedBytes>(file, array.stretch, array.name), {}});
-      columns_.back().bytes->skip(array.data_byte + column * rows.rows * array.element_bytes);
+      auto bytes = std::make_unique<PackedBytes>(file, array.stretch, array.name);
+      bytes->skip(array.data_byte + column * rows.rows * array.element_bytes);
+      columns_.emplace_back().bytes = std::move(bytes);
     }
   }
 

@@ -134,7 +134,8 @@ double load_number(const std::byte* from, Primitive kind, const Walk& walk) {
       return load<double>(from, swap);
     default: {
       const std::int64_t ns = load_time(from, kind, swap);
-      return static_cast<double>(ns / kSecond) + static_cast<double>(ns % kSecond) * 1e-9;
+      const std::int64_t whole_s = ns / kSecond;
+      return static_cast<double>(whole_s) + static_cast<double>(ns % kSecond) * 1e-9;
     }
   }
 }
