@@ -142,7 +142,8 @@ WelchSums WelchParts::read_state(StateReader& from) const {
                     sums.begin.empty() && sums.end.empty() && sums.head.empty() &&
                     sums.tail.empty();
   if (none) return sums;
-  const bool whole = (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
+  const bool whole = (sums.used == 0 || !sums.power.empty()) &&
+                     (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
                      sums.pairs.size() == lags + 1 && sums.begin.size() <= lags &&
                      sums.end.size() == sums.begin.size() &&
                      sums.head.size() <= state_->end_samples() &&

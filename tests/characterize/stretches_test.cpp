@@ -12,6 +12,7 @@
 #include <random>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "tests/support/noise.hpp"
@@ -294,6 +295,27 @@ TEST_CASE("states that are cut or changed anywhere are refused, and never read")
   }
   REQUIRE(stretch_head(two.states[1]).range.first_leaf == 1);
   REQUIRE(stretch_head(two.states[1]).identity == "log 1");
+}
+
+// Whoever changes a state on purpose can give it a digest too: what it says is then refused, or shown, and nothing else happens.
+TEST_CASE("states that are changed and have the digest of that end in a result or a sentence") {
+  const TwoStates two;
+  const std::string whole = two.states[0].bytes();
+  std::mt19937_64 generator(11);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t content = whole.size() - 64;
+    std::size_t at = 20 + generator() % (content - 20);
+    if (i % 3 == 0) at = 20 + generator() % 3000;            // the head
+    if (i % 3 == 1) at = content - 1 - generator() % 40000;  // counts, quality
+    std::string other = whole.substr(0, content);
+    other[at] = static_cast<char>(generator());
+    Sha256 digest;
+    digest.update(other);
+    other += digest.finish();
+    CAPTURE(at);
+    const std::vector<NamedState> states = {state_in_memory("bad", other), two.states[1]};
+    REQUIRE_NOTHROW(refusal_of_states(states));
+  }
 }
 
 TEST_CASE("logs and options that cannot be divided are refused in a sentence") {
