@@ -64,8 +64,8 @@ Json batches_json(const QuantityLot& q) {
 Json chart_json(const FleetReport& report, const QuantityLot& q) {
   if (!q.chart) return nullptr;
   const ControlChart& c = *q.chart;
-  Json out = {{"centre", c.centre},
-              {"sigma", c.sigma},
+  Json out = {{"centre", json_number(c.centre)},
+              {"sigma", json_number(c.sigma)},
               {"limits", interval_json(c.limits)},
               {"of", in_logarithm(q.quantity) ? "logarithm" : "value"},
               {"beyond", Json::array()},
@@ -107,8 +107,8 @@ Json outliers_json(const FleetReport& report, const QuantityLot& q) {
 Json histogram_json(const QuantityLot& q) {
   const Histogram& h = q.histogram;
   return {{"of", in_logarithm(q.quantity) ? "logarithm" : "value"},
-          {"low", h.low},
-          {"step", h.step},
+          {"low", json_number(h.low)},
+          {"step", json_number(h.step)},
           {"count", h.count},
           {"below", h.below},
           {"above", h.above}};

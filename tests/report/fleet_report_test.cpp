@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -111,6 +112,60 @@ TEST_CASE("lot.json keeps its schema and names its files with their digests") {
   const auto one = test::made_lot(made, 3);
   const FleetLot small = fleet_lot(one);
   CHECK(test::schema_fault(dump_json(fleet_json({one, &small, "", {}, {}}))) == "");
+}
+
+TEST_CASE("numbers of any size make a lot, a page and a document") {
+  test::Gaussian gauss(6);
+  const std::vector<double> wild = {0,
+                                    -0.0,
+                                    1e308,
+                                    -1e308,
+                                    1e-308,
+                                    5e-324,
+                                    1e-170,
+                                    1e170,
+                                    kNone,
+                                    1,
+                                    -1,
+                                    std::numeric_limits<double>::infinity(),
+                                    1e-60,
+                                    1e60};
+  const auto any = [&] {
+    return wild[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(wild.size()))];
+  };
+  for (int round = 0; round < 60; ++round) {
+    test::MadeLot made;
+    made.devices = round % 3 == 0 ? 6 : 80;
+    auto records = test::made_lot(made, static_cast<std::uint64_t>(round));
+    for (DeviceRecord& r : records) {
+      r.batch = gauss.uniform() < 0.5 ? "1" : "2";
+      for (RecordedChannel& c : r.channels)
+        for (RecordedValue& v : c.values) {
+          if (gauss.uniform() < 0.2) v.value = any();
+          if (gauss.uniform() < 0.2) v.sd = std::abs(any());
+          if (gauss.uniform() < 0.2) v.ci95 = {std::abs(any()), std::abs(any())};
+        }
+    }
+    FleetLotOptions options;
+    options.limits[""] = parse_limits(
+        "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    bias_instability: "
+        "{value: 2e-3, unit: deg/s}\n",
+        "limits.yaml");
+    const FleetLot lot = fleet_lot(records, options);
+    const FleetReport report{records, &lot, "", {}, {}};
+    CHECK(test::schema_fault(dump_json(fleet_json(report))) == "");
+    // Of the drawings, not of the scripts behind them.
+    const std::string page = fleet_html(report), body = page.substr(0, page.find("<script"));
+    for (const char* const bad :
+         {"=\"nan", "=\"-nan", "nan,", ",nan", "inf,", ",inf", "=\"inf", "=\"-inf"}) {
+      CAPTURE(round, bad);
+      const std::size_t at = body.find(bad);
+      CHECK(at == std::string::npos);
+    }
+    CHECK_FALSE(fleet_text(report).empty());
+    const FleetComparison c = compare_lots(records, test::made_lot(made, 1));
+    CHECK(test::schema_fault(dump_json(fleet_comparison_json(c))) == "");
+  }
 }
 
 TEST_CASE("the table of coefficients holds every number to its last digit") {

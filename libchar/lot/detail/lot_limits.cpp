@@ -39,7 +39,9 @@ LimitFailure failure_of(const RecordedChannel& channel,
                         const RecordedValue& value,
                         const GroupLimit& limit) {
   LimitFailure out;
-  out.deviation = std::log(value.value / limit.most) / value.sd;
+  // Without a standard deviation the interval, which lies above the limit, says it.
+  const double sd = value.sd > 0 ? value.sd : std::log(value.value / value.ci95.low) / kNormal95;
+  out.deviation = std::log(value.value / limit.most) / std::max(sd, 1e-9);
   out.p = std::erfc(out.deviation / std::sqrt(2.0)) / 2;
   out.sentence = fmt::format("{}: {} {} {}, allowed {}.",
                              channel.name,

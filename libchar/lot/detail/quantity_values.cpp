@@ -9,6 +9,9 @@
 namespace libchar {
 namespace {
 
+/// Of values and variances: their sums, squared, have to be numbers.
+constexpr double kLargest = 1e60;
+
 /// Ordered: of several recordings of a member the best says what is known of it.
 enum class Known { no_result, doubtful, not_detected, counted };
 
@@ -23,10 +26,11 @@ Measured measured(const RecordedChannel& channel, DeviceQuantity quantity) {
   if (value->status == Status::not_detected) return {Known::not_detected};
   if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
   const bool logarithm = in_logarithm(quantity);
-  if (!std::isfinite(value->value) || (logarithm && !(value->value > 0)) || !(value->sd > 0) ||
-      !std::isfinite(value->sd))
-    return {Known::doubtful};
-  return {Known::counted, logarithm ? std::log(value->value) : value->value, value->sd * value->sd};
+  const double y = logarithm ? std::log(value->value) : value->value, v = value->sd * value->sd;
+  // A square that a double does not hold is no uncertainty either.
+  const bool usable =
+      std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
+  return usable ? Measured{Known::counted, y, v} : Measured{Known::doubtful};
 }
 
 void count(Known known, LotCounts& out) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
@@ -48,13 +49,17 @@ std::vector<double> ticks_of(const Scale& scale, bool logarithm) {
   if (!logarithm) return round_numbers(scale.low, scale.high);
   const double low = std::exp(scale.low), high = std::exp(scale.high);
   if (high / low < 4) return round_numbers(low, high);
+  // In decades, which are finite where the values are not any more.
+  const double first = scale.low / std::numbers::ln10, last = scale.high / std::numbers::ln10;
+  const int step = std::max(1, static_cast<int>((last - first) / 6));
   std::vector<double> out;
   const bool few = high / low < 300;
-  for (int e = static_cast<int>(std::floor(std::log10(low))); e <= std::ceil(std::log10(high)); ++e)
+  for (int e = static_cast<int>(std::floor(first)); e <= std::ceil(last); e += step)
     for (const int digit : {1, 2, 3, 5, 7}) {
       const double value = digit * std::pow(10.0, e);
       const bool shown = digit == 1 || (few && digit % 3 == 2) || high / low < 20;
-      if (value >= low && value <= high && shown) out.push_back(value);
+      if (value >= low && value <= high && shown && value > 0 && std::isfinite(value))
+        out.push_back(value);
     }
   return out;
 }
