@@ -70,6 +70,7 @@ Json fleet_comparison_json(const FleetComparison& c,
                            const std::vector<std::string>& command,
                            const std::vector<LogInfo>& inputs) {
   std::vector<const LogInfo*> files;
+  files.reserve(inputs.size());
   for (const LogInfo& one : inputs) files.push_back(&one);
   Json out = document_head("fleet-comparison", command, files);
   out["a"] = {{"name", json_text(c.name_a)}, {"devices", c.devices_a}};

@@ -135,6 +135,7 @@ std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
     for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)
       census[c].add(row[c].text, style);
   std::vector<ColumnKind> kinds;
+  kinds.reserve(census.size());
   for (const Census& one : census) kinds.push_back(one.kind());
   return kinds;
 }

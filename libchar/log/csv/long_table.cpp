@@ -72,6 +72,7 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
   if (rising.empty()) return out;
   const double usual = median_in_place(rising, Middle::lower);
   std::vector<double> off;
+  off.reserve(rising.size());
   for (const double step : rising) off.push_back(std::fabs(step - usual));
   const auto most = off.begin() + static_cast<std::ptrdiff_t>(3 * (off.size() - 1) / 4);
   std::nth_element(off.begin(), most, off.end());
