@@ -13,12 +13,6 @@
 namespace libchar {
 namespace {
 
-Json strings(const std::vector<std::string>& texts) {
-  Json out = Json::array();
-  for (const std::string& text : texts) out.push_back(json_text(text));
-  return out;
-}
-
 Json named(const Channel& channel) {
   return {{"name", json_text(channel.name)}, {"unit", json_text(channel.unit)}};
 }
@@ -44,6 +38,12 @@ void add_model(Json& out, const ModelCurve& model) {
 
 }  // namespace
 
+Json texts_json(const std::vector<std::string>& texts) {
+  Json out = Json::array();
+  for (const std::string& text : texts) out.push_back(json_text(text));
+  return out;
+}
+
 Json json_frame(std::string_view format) {
   return {{"format", format}, {"version", 1}};
 }
@@ -54,7 +54,7 @@ Json warnings_json(const Warnings& warnings) {
     out.push_back({{"code", json_text(w.code)},
                    {"message", json_text(w.message)},
                    {"count", w.count},
-                   {"where", strings(w.places)}});
+                   {"where", texts_json(w.places)}});
   return out;
 }
 
@@ -91,7 +91,7 @@ Json allan_channel_json(const Channel& channel, const AllanCurve& curve, const M
   out["samples"] = curve.samples;
   out["missing"] = curve.missing;
   out["stride_divisor"] = curve.stride_divisor;
-  out["notes"] = strings(curve.notes);
+  out["notes"] = texts_json(curve.notes);
   return out;
 }
 
@@ -115,7 +115,7 @@ Json spectrum_channel_json(const Channel& channel,
   out["segments"] = spectrum.segments;
   out["dropped"] = spectrum.dropped;
   out["enbw_hz"] = json_number(spectrum.enbw_hz);
-  out["notes"] = strings(spectrum.notes);
+  out["notes"] = texts_json(spectrum.notes);
   return out;
 }
 

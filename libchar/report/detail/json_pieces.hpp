@@ -9,6 +9,8 @@ namespace libchar {
 
 /// The head of a document: its format and version.
 Json json_frame(std::string_view format);
+/// ["…", …]
+Json texts_json(const std::vector<std::string>& texts);
 /// [{code, message, count, where}…]
 Json warnings_json(const Warnings& warnings);
 /// [low, high]; null where it is not known.
