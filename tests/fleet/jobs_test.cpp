@@ -40,7 +40,7 @@ FleetStatus nothing_done(const FleetPlan& plan) {
 
 }  // namespace
 
-TEST_CASE("every missing unit is in one job; joins come behind the jobs of their stretches") {
+TEST_CASE("every missing unit is in one job, joins come behind the jobs of their stretches") {
   const FleetPlan plan = made_plan();
   JobOptions options;
   options.job_s = 3;

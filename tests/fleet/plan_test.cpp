@@ -12,7 +12,7 @@
 using namespace libchar;
 using Catch::Contains;
 
-TEST_CASE("a unit a log, or one a channel; the plan reads back") {
+TEST_CASE("a unit a log, or one a channel, the plan reads back") {
   const test::TemporaryFolder folder;
   const auto logs = test::write_logs(folder.path(), 3);
   CHECK(test::planned(logs).units.size() == 3);

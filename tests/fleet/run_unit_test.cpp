@@ -32,7 +32,7 @@ std::string all_records(const FleetPlan& plan, const fs::path& fleet) {
 
 }  // namespace
 
-TEST_CASE("a unit is done once; its folder has the record and the reports") {
+TEST_CASE("a unit is done once, its folder has the record and the reports") {
   const test::TemporaryFolder folder;
   const FleetPlan plan = test::planned(test::write_logs(folder.path(), 1));
   const fs::path fleet = folder / "F";

@@ -49,7 +49,7 @@ TEST_CASE("a task reads back as it was written, every setting with it") {
 }
 
 TEST_CASE(
-    "the name of a unit is that of its content: log, settings, stretch; not of places and costs") {
+    "the name of a unit is that of its content: log, settings, stretch, not of places and costs") {
   const FleetUnit unit = some_unit();
   const auto id_with = [&](auto change) {
     FleetUnit other = unit;
