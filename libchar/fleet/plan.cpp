@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
@@ -17,6 +18,7 @@
 #include "libchar/fleet/detail/log_digest.hpp"
 #include "libchar/fleet/detail/unit_cost.hpp"
 #include "libchar/log/channel_names.hpp"
+#include "libchar/model/noise_limits.hpp"
 
 namespace libchar {
 namespace {
@@ -79,6 +81,13 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
                            count > kNamed ? "; …" : ""),
                "",
                "mend the manifest, or plan the others with `skip_unreadable`"});
+}
+
+/// Before hours of work, not behind them.
+void check_limits(const Manifest& manifest) {
+  std::set<std::string> files;
+  for (const FleetDevice& one : manifest.devices)
+    if (!one.limits.empty() && files.insert(one.limits).second) read_limits_file(one.limits);
 }
 
 /// Nothing is counted twice.
@@ -195,6 +204,7 @@ std::string_view take_line(std::string_view& text) {
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress) {
+  check_limits(manifest);
   const std::vector<LookedAt> logs = look_at_all(manifest, progress);
   if (!options.skip_unreadable) refuse_unreadable(manifest, logs);
   refuse_same_logs(manifest, logs);

@@ -65,6 +65,13 @@ TEST_CASE(
   CHECK_THAT(plan.devices[3].problem, Contains("absent.csv"));
 }
 
+TEST_CASE("limits that cannot be read are told before the work") {
+  const test::TemporaryFolder folder;
+  Manifest manifest = manifest_of_logs(test::write_logs(folder.path(), 2));
+  manifest.devices[1].limits = (folder / "sheet.yaml").string();
+  CHECK_THROWS_WITH(plan_fleet(manifest, {}), Contains("sheet.yaml"));
+}
+
 TEST_CASE("a plan that is cut, or is none, is refused") {
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(read_plan(folder.path()), Contains("no plan"));
