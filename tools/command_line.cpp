@@ -347,6 +347,9 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
   const bool is_verb = std::find(verbs.begin(), verbs.end(), command[at]) != verbs.end();
   if (seconds.empty() || is_verb) return command;
   const std::string second = command.size() > at + 1 ? command[at + 1] : "";
+  // The page of the whole program lists them.
+  if (second == "--help" || second == "-h" || (at == 2 && second.empty()))
+    return {command[0], "--help"};
   if (std::find(seconds.begin(), seconds.end(), second) == seconds.end()) {
     const auto near = libchar::nearest(second, seconds);
     throw Error({ErrorKind::usage,

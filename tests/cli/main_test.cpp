@@ -166,3 +166,18 @@ TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
     CHECK_FALSE(std::filesystem::exists(out));
   }
 }
+
+TEST_CASE("a verb of two words: joined, listed where the second is missing, with help") {
+  CHECK(test::run({"fleet", "plan", "--help"}).out == test::run({"fleet-plan", "--help"}).out);
+  CHECK(test::run({"help", "fleet", "run"}).out == test::run({"fleet-run", "--help"}).out);
+  const test::Ran alone = test::run({"fleet"});
+  CHECK(alone.code == 2);
+  CHECK_THAT(alone.err, Catch::Contains("plan, run, status, merge, export, compare"));
+  CHECK_THAT(test::run({"fleet", "pln"}).err, Catch::Contains("did you mean fleet plan?"));
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"fleet", "--help"}, {"help", "fleet"}}) {
+    const test::Ran page = test::run(words);
+    CHECK(page.code == 0);
+    CHECK_THAT(page.out, Catch::Contains("fleet-merge"));
+  }
+}
