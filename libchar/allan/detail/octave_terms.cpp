@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/allan/detail/missing_samples.hpp"
+
 namespace libchar {
 namespace {
 
