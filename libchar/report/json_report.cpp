@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/verification.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
