@@ -7,6 +7,7 @@
 #include "libchar/allan/cornered_hat.hpp"
 #include "libchar/allan/dynamic_deviation.hpp"
 #include "libchar/core/error.hpp"
+#include "tests/support/code_of.hpp"
 
 using namespace libchar;
 
@@ -38,15 +39,6 @@ double allan_variance_of(const std::vector<double>& a, const std::vector<double>
   std::vector<double> d(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
   return std::pow(allan_deviation(d, 1, at_times({4})).points[0].deviation, 2);
-}
-
-std::string refused(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.problem().code;
-  }
-  return "";
 }
 
 }  // namespace
@@ -204,16 +196,16 @@ TEST_CASE("dynamic deviation: gaps empty a window, and it is said") {
 TEST_CASE("devices: what is not possible is refused in a sentence") {
   const Records r = devices({1, 1, 1}, 100, 11);
   const Records two(r.begin(), r.begin() + 2);
-  CHECK(refused([&] { cornered_hat(two, 1); }) == "E0870");
+  CHECK(test::code_of([&] { cornered_hat(two, 1); }) == "E0870");
   Records uneven = r;
   uneven[1].pop_back();
-  CHECK(refused([&] { cornered_hat(uneven, 1); }) == "E0870");
+  CHECK(test::code_of([&] { cornered_hat(uneven, 1); }) == "E0870");
   AllanOptions options;
   options.type = DeviationType::mtie;
-  CHECK(refused([&] { cornered_hat(r, 1, options); }) == "E0870");
-  CHECK(refused([&] { cornered_hat_of_differences(r, 1, options); }) == "E0870");
-  CHECK(refused([&] { dynamic_deviation(r[0], 1, {7, 1}); }) == "E0871");
-  CHECK(refused([&] { dynamic_deviation(r[0], 1, {101, 1}); }) == "E0871");
+  CHECK(test::code_of([&] { cornered_hat(r, 1, options); }) == "E0870");
+  CHECK(test::code_of([&] { cornered_hat_of_differences(r, 1, options); }) == "E0870");
+  CHECK(test::code_of([&] { dynamic_deviation(r[0], 1, {7, 1}); }) == "E0871");
+  CHECK(test::code_of([&] { dynamic_deviation(r[0], 1, {101, 1}); }) == "E0871");
   const std::vector<double> nothing(100, std::nan(""));
-  CHECK(refused([&] { dynamic_deviation(nothing, 1, {20, 10}); }) == "E0401");
+  CHECK(test::code_of([&] { dynamic_deviation(nothing, 1, {20, 10}); }) == "E0401");
 }

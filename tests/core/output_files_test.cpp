@@ -15,6 +15,7 @@
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -42,15 +43,6 @@ std::vector<OutputFile> set_of(const fs::path& folder, const std::vector<std::st
   name_files(document, outputs);
   outputs[0].text = document.dump();
   return outputs;
-}
-
-std::string code_of_outputs(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.problem().code;
-  }
-  return "";
 }
 
 }  // namespace
@@ -95,7 +87,7 @@ TEST_CASE("an input of the run is not removed as an earlier run's file") {
   const test::TemporaryFolder folder;
   write_outputs(set_of(folder.path(), {"b.yaml"}), folder.path(), {}, false);
   const std::string input = (folder / "b.yaml").string();
-  CHECK(code_of_outputs([&] {
+  CHECK(test::code_of([&] {
           write_outputs(set_of(folder.path(), {}), folder.path(), {input}, true);
         }) == "E0504");
   CHECK(fs::exists(input));
@@ -113,7 +105,7 @@ TEST_CASE(
       {{{"a.yaml.libchar-tmp-1-0", "a.yaml"}, {"report.json.libchar-tmp-1-0", "report.json"}},
        {"b.yaml"}})
       .write();
-  CHECK(code_of_outputs([&] { refuse_interrupted(folder.path()); }) == "E0516");
+  CHECK(test::code_of([&] { refuse_interrupted(folder.path()); }) == "E0516");
   finish_journal(folder.path());
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.yaml", "report.json"});
   CHECK(test::slurp(folder / "a.yaml") == "new a");
@@ -129,14 +121,14 @@ TEST_CASE("a journal that leads out of its folder, or is none, is refused") {
                            "",
                            "{"}) {
     put_text(folder / ".libchar-outputs.json", text);
-    CHECK(code_of_outputs([&] { finish_journal(folder.path()); }) == "E0514");
+    CHECK(test::code_of([&] { finish_journal(folder.path()); }) == "E0514");
   }
 }
 
 TEST_CASE("two runs on one folder: the second waits for the first, and says so where that lasts") {
   const test::TemporaryFolder folder;
   auto other = std::make_unique<FolderLock>(folder.path());
-  CHECK(code_of_outputs([&] { const FolderLock lock(folder.path(), 0.05); }) == "E0515");
+  CHECK(test::code_of([&] { const FolderLock lock(folder.path(), 0.05); }) == "E0515");
   std::thread first([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     CHECK(names_in(folder.path()).empty());  // the second writes nothing before
@@ -151,7 +143,7 @@ TEST_CASE("data and description come together or not at all, whatever stood ther
   const test::TemporaryFolder folder;
   const fs::path data = folder / "x.bin", text = folder / "x.bin.json";
   const auto commit = [&](const std::string& content, bool force) {
-    return code_of_outputs([&] {
+    return test::code_of([&] {
       WholeFile a(data.string(), force), b(text.string(), force);
       a.write(content);
       b.write(content);
@@ -187,8 +179,8 @@ TEST_CASE("files of two folders and devices are committed together as far as the
 TEST_CASE("one of a pair that an interrupted run has left is not read, its neighbours are") {
   const test::TemporaryFolder folder;
   journal_file(folder.path(), {{{"log.bin.libchar-tmp-1-0", "log.bin"}}, {"old.yaml"}}).write();
-  CHECK(code_of_outputs([&] { refuse_interrupted(folder / "log.bin"); }) == "E0516");
-  CHECK(code_of_outputs([&] { refuse_interrupted(folder / "old.yaml"); }) == "E0516");
+  CHECK(test::code_of([&] { refuse_interrupted(folder / "log.bin"); }) == "E0516");
+  CHECK(test::code_of([&] { refuse_interrupted(folder / "old.yaml"); }) == "E0516");
   CHECK_NOTHROW(refuse_interrupted(folder / "other.bin"));
 }
 

@@ -12,6 +12,7 @@
 #include "libchar/fusion/detail/network_training.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -49,15 +50,6 @@ std::unique_ptr<Runner> trained(const TrainingScene& s, const test::Values& valu
 
 double rms_of(const Eigen::VectorXd& v) {
   return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
-}
-
-std::string training_code(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.problem().code;
-  }
-  return "";
 }
 
 }  // namespace
@@ -252,15 +244,15 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
 
 TEST_CASE("perceptron: too few instants and useless numbers are refused") {
   TrainingScene s = scene(3000, 120);
-  CHECK(training_code([&] { trained(s); }) == "E0860");
-  CHECK(training_code([&] { trained(s, {{"neurons", 1}}); }) == "");
+  CHECK(test::code_of([&] { trained(s); }) == "E0860");
+  CHECK(test::code_of([&] { trained(s, {{"neurons", 1}}); }) == "");
   // The engine keeps such samples away; the algorithm itself does not trust it.
   Perceptron perceptron(s.array, Settings(Perceptron::options));
   s.y.row(0).head(10).setConstant(1e308);
   s.y.row(0).segment(10, 10).setConstant(-1e308);
   for (Eigen::Index k = 0; k < 2000; ++k)
     perceptron.learn(Sample(s.y.col(k).data(), 3), Sample(&s.x[k], 1));
-  CHECK(training_code([&] { perceptron.finish_learning(); }) == "E0861");
+  CHECK(test::code_of([&] { perceptron.finish_learning(); }) == "E0861");
 }
 
 TEST_CASE("perceptron: a window longer than the room is no worse, however its length falls") {
@@ -284,5 +276,5 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
 TEST_CASE("perceptron: a reference that stands still is refused") {
   TrainingScene s = scene(2000, 1000);
   s.x.setConstant(4.5);
-  CHECK(training_code([&] { trained(s); }) == "E0864");
+  CHECK(test::code_of([&] { trained(s); }) == "E0864");
 }

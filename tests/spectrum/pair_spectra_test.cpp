@@ -10,6 +10,7 @@
 #include "libchar/spectrum/cross_spectrum.hpp"
 #include "libchar/spectrum/median_spectrum.hpp"
 #include "libchar/spectrum/spectrogram.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -59,15 +60,6 @@ std::vector<double> normals(std::size_t n, unsigned seed) {
   std::vector<double> out(n);
   for (double& v : out) v = normal(random);
   return out;
-}
-
-std::string code_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.problem().code;
-  }
-  return "";
 }
 
 }  // namespace
@@ -214,16 +206,16 @@ TEST_CASE("spectrogram: its mean is Welch's spectrum, in every scaling") {
 TEST_CASE("pair spectra: what is not possible is refused in a sentence") {
   const auto x = normals(300, 9);
   const WelchOptions options = segments_of_128();
-  CHECK(code_of([&] { cross_spectrum(x, normals(299, 1), 1, options); }) == "E0873");
+  CHECK(test::code_of([&] { cross_spectrum(x, normals(299, 1), 1, options); }) == "E0873");
   WelchOptions whole;
   whole.segment = 300;
-  CHECK(code_of([&] { cross_spectrum(x, x, 1, whole); }) == "E0874");
-  CHECK(code_of([&] { cross_spectrum(x, x, 0, options); }) == "E0402");
+  CHECK(test::code_of([&] { cross_spectrum(x, x, 1, whole); }) == "E0874");
+  CHECK(test::code_of([&] { cross_spectrum(x, x, 0, options); }) == "E0402");
   WelchOptions longer;
   longer.segment = 301;
-  CHECK(code_of([&] { spectrogram(x, 1, longer); }) == "E0875");
+  CHECK(test::code_of([&] { spectrogram(x, 1, longer); }) == "E0875");
   WelchOptions crowded;
   crowded.segment = 20000;
   crowded.overlap = 0.9999;
-  CHECK(code_of([&] { median_welch(normals(200000, 1), 1, crowded); }) == "E0872");
+  CHECK(test::code_of([&] { median_welch(normals(200000, 1), 1, crowded); }) == "E0872");
 }
