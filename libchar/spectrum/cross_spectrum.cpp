@@ -145,10 +145,7 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
   double energy = 0;
   for (const double w : window) energy += w * w;
   fill_bins(sums, 1 / (static_cast<double>(out.segments) * rate_hz * energy), out);
-  if (out.dropped > 0)
-    out.notes.push_back(fmt::format("{} of {} segments touch a missing sample and were dropped",
-                                    out.dropped,
-                                    out.dropped + out.segments));
+  note_dropped(out.dropped, out.segments, out.notes);
   return out;
 }
 

@@ -95,11 +95,7 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   const double efficiency = 1 / used / median_spread(powers.size());
   for (double& dof : spectrum.dof) dof *= efficiency;
   spectrum.notes = std::move(notes);
-  if (spectrum.dropped > 0)
-    spectrum.notes.push_back(
-        fmt::format("{} of {} segments touch a missing sample and were dropped",
-                    spectrum.dropped,
-                    spectrum.dropped + spectrum.segments));
+  note_dropped(spectrum.dropped, spectrum.segments, spectrum.notes);
   return spectrum;
 }
 

@@ -123,11 +123,7 @@ Spectrum finished(const Average& average,
                   double rate_hz) {
   Spectrum spectrum = average.spectrum(window, rate_hz);
   spectrum.notes = std::move(cutting.notes);
-  if (spectrum.dropped > 0)
-    spectrum.notes.push_back(
-        fmt::format("{} of {} segments touch a missing sample and were dropped",
-                    spectrum.dropped,
-                    spectrum.dropped + spectrum.segments));
+  note_dropped(spectrum.dropped, spectrum.segments, spectrum.notes);
   return spectrum;
 }
 

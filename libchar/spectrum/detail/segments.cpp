@@ -185,6 +185,12 @@ void check_rate(double rate_hz) {
                  ""});
 }
 
+void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::string>& notes) {
+  if (dropped > 0)
+    notes.push_back(fmt::format(
+        "{} of {} segments touch a missing sample and were dropped", dropped, dropped + used));
+}
+
 Layout layout_of(std::uint64_t segment, double overlap) {
   Layout layout;
   layout.segment = static_cast<std::size_t>(segment);
@@ -416,10 +422,7 @@ Spectrum Average::finish(const std::vector<double>& window,
                  "",
                  "choose a shorter segment"});
   Spectrum out = spectrum(window, rate_hz);
-  if (out.dropped > 0)
-    out.notes.push_back(fmt::format("{} of {} segments touch a missing sample and were dropped",
-                                    out.dropped,
-                                    out.dropped + out.segments));
+  note_dropped(out.dropped, out.segments, out.notes);
   return out;
 }
 

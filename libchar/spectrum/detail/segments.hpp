@@ -32,6 +32,9 @@ Layout layout_of(std::uint64_t segment, double overlap);
 void check_options(const WelchOptions& options);
 void check_rate(double rate_hz);  ///< Error(numeric) unless finite and above 0
 
+/// Says in `notes` that segments were dropped, where some were.
+void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::string>& notes);
+
 /// Detrend, window, transform.
 class Periodogram {
  public:
