@@ -5,6 +5,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {
@@ -215,18 +216,6 @@ void add_reading_options_without_channel(VerbOptions& verb,
   verb.add_flag(
           "--strict", session.strict, "a warning about the input ends the run with exit code 3")
       .group("Reading");
-}
-
-std::string shell_word(std::string_view word) {
-  const bool bare =
-      !word.empty() &&
-      word.find_first_not_of(
-          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,+=@%") ==
-          std::string_view::npos;
-  if (bare) return std::string(word);
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info) {

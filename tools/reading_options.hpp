@@ -18,7 +18,4 @@ void add_reading_options_without_channel(VerbOptions& verb,
 /// t --time-unit us").
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info);
 
-/// A word quoted for a POSIX shell when it has to be.
-std::string shell_word(std::string_view word);
-
 }  // namespace sensorchar

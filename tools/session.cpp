@@ -13,6 +13,7 @@
 #include "flag_names.hpp"
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/unfinished_files.hpp"
 #include "libchar/core/whole_file.hpp"

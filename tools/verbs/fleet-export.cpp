@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/jobs.hpp"
 #include "reading_options.hpp"

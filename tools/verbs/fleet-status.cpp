@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/log_files.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/inspection_text.hpp"
 #include "reading_options.hpp"

@@ -18,9 +18,6 @@ std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
                                        const std::filesystem::path& folder,
                                        const JobOptions& options);
 
-/// A word quoted for a POSIX shell where it has to be.
-std::string quoted_for_shell(const std::string& word);
-
 /// Largest memory of jobs in MB, and the time limit of the longest in minutes, with what a worker may be slower.
 struct JobLimits {
   std::uint64_t memory_mb = 0, minutes = 0;

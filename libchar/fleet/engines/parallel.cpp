@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "libchar/core/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
@@ -12,7 +13,7 @@ std::string call(const std::string& list, const JobOptions& options) {
       options.at_once > 0 ? std::to_string(options.at_once) : "100%",
       options.retries + 1,
       "--memfree 64M",
-      quoted_for_shell(options.program),
+      shell_word(options.program),
       list);
 }
 

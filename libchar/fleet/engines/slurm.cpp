@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
@@ -44,7 +45,7 @@ fi
 exit "$code"
 )",
       options.retries,
-      quoted_for_shell(options.program));
+      shell_word(options.program));
 }
 
 /// "id=$(sbatch …)" of an array, behind those in `after`.

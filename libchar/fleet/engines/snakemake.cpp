@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "libchar/core/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
@@ -58,7 +59,7 @@ rule job:
         "{1} fleet run --quiet --threads 1 $(cat {{input.tasks}}) > {{log}} 2>&1"
 )",
                       options.retries,
-                      quoted_for_shell(options.program));
+                      shell_word(options.program));
   return {{(folder / "Snakefile").string(), text}};
 }
 
