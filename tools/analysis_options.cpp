@@ -6,6 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
+#include "reading_options.hpp"
 
 namespace sensorchar {
 namespace {
@@ -180,6 +181,15 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
                 "channel that is the temperature: a polynomial of it, with a lag, is taken out of "
                 "the others before their noise is fitted");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
+}
+
+void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptions& a) {
+  add_reading_options(verb, session, a.options.reading);
+  add_still_option(verb, a);
+  add_data_options(verb, a);
+  add_allan_options(verb, a);
+  add_spectrum_options(verb, a.options.spectrum, a.options.segment_s);
+  add_fit_options(verb, a);
 }
 
 CharacterizeOptions finish(const AnalysisOptions& a) {

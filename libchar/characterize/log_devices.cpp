@@ -17,14 +17,7 @@ struct Prepared {
 Prepared prepared(const std::string& path, const LogAllanOptions& options, Progress& progress) {
   Prepared out{read_recording(path, options.reading, progress), options.allan, 0};
   LogInfo& log = out.recording.info;
-  if (!(log.time.rate_hz > 0))
-    throw Error({ErrorKind::numeric,
-                 "E0402",
-                 log.file,
-                 "the sampling rate is not known",
-                 "",
-                 "a log without time stamps needs `rate_hz`"});
-  out.dt_s = 1 / log.time.rate_hz;
+  out.dt_s = 1 / known_rate_hz(out.recording.info);
   out.allan.threads = options.reading.threads;
   const double nominal = options.nominal_frequency;
   if (options.data == SampleKind::phase) out.allan.data = DataKind::phase;

@@ -7,16 +7,6 @@
 namespace libchar {
 namespace {
 
-double rate_of(const LogInfo& log) {
-  if (log.time.rate_hz > 0) return log.time.rate_hz;
-  throw Error({ErrorKind::numeric,
-               "E0402",
-               log.file,
-               "the sampling rate is not known",
-               "",
-               "a log without time stamps needs `rate_hz`"});
-}
-
 WelchOptions segments_of(const LogSpectraOptions& options, double rate_hz) {
   WelchOptions welch = options.spectrum;
   welch.threads = options.reading.threads;
@@ -46,7 +36,7 @@ LogCrossSpectrum log_cross_spectrum(const std::string& path,
   const bool turned =
       recording.info.channels[0].name == second || recording.info.channels[1].name == first;
   const std::size_t x = turned ? 1 : 0, y = turned ? 0 : 1;
-  const double rate_hz = rate_of(recording.info);
+  const double rate_hz = known_rate_hz(recording.info);
   LogCrossSpectrum out;
   out.first = recording.info.channels[x];
   out.second = recording.info.channels[y];
@@ -60,7 +50,7 @@ LogSpectrograms log_spectrograms(const std::string& path,
                                  const LogSpectraOptions& options,
                                  Progress& progress) {
   Recording recording = read_recording(path, options.reading, progress);
-  const double rate_hz = rate_of(recording.info);
+  const double rate_hz = known_rate_hz(recording.info);
   const WelchOptions welch = segments_of(options, rate_hz);
   LogSpectrograms out;
   for (std::size_t c = 0; c < recording.samples.size(); ++c)

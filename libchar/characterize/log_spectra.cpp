@@ -24,16 +24,6 @@ bool segment_given(const LogSpectraOptions& options) {
   return options.spectrum.segment != 0 || options.segment_s > 0;
 }
 
-void check_rate_known(const LogInfo& info) {
-  if (info.time.rate_hz > 0) return;
-  throw Error({ErrorKind::numeric,
-               "E0402",
-               info.file,
-               "the sampling rate is not known",
-               "",
-               "a log without time stamps needs `rate_hz`"});
-}
-
 // A channel that gives no spectrum is named and left out; the others are still of use.
 template <typename Make>
 void try_channel(LogSpectra& result, const Channel& channel, const Make& make) {
@@ -75,7 +65,7 @@ LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, P
   SpectraSink sink(options);
   LogSpectra result;
   result.log = read_log(path, options.reading, sink, progress);
-  check_rate_known(result.log);
+  known_rate_hz(result.log);
   for (std::size_t c = 0; c < sink.streams().size(); ++c)
     try_channel(result, result.log.channels[c], [&] {
       return sink.streams()[c].finish(result.log.time.rate_hz);
@@ -102,7 +92,7 @@ LogSpectra spectra_of(const RecordingView& recording,
 // Segments of a quarter of the record: the record has to be there first. Where one channel needs
 // shorter segments than another, all get the shortest, so that they share one frequency axis.
 LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& options) {
-  check_rate_known(recording.info);
+  known_rate_hz(recording.info);
   WelchOptions welch = welch_options(options);
   if (welch.segment == 0 && options.segment_s > 0)
     welch.segment = segment_samples(options.segment_s, recording.info.time.rate_hz);

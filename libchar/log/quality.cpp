@@ -871,6 +871,16 @@ void quality_warnings(const Channel& channel, const ChannelQuality& quality, War
                  fmt::format("{} has {}", channel.name, quality.distinct_values));
 }
 
+double known_rate_hz(const LogInfo& info) {
+  if (info.time.rate_hz > 0) return info.time.rate_hz;
+  throw Error({ErrorKind::numeric,
+               "E0402",
+               info.file,
+               "the sampling rate is not known",
+               "",
+               "a log without time stamps needs `rate_hz`"});
+}
+
 void require_samples(const LogInfo& info, std::uint64_t needed, const std::string& purpose) {
   if (info.samples >= needed) return;
   throw Error({ErrorKind::numeric,

@@ -24,10 +24,9 @@ const std::vector<Word>& format_choices() {
   return words;
 }
 
-}  // namespace
-
-const Fields<ReadOptions>& reading_fields() {
-  static const Fields<ReadOptions> rows = {
+/// Of channels and of the text of a table.
+Fields<ReadOptions> table_fields() {
+  return {
       field<&ReadOptions::channels>(
           "channels", {.meaning = "names or c0, c1… of those to read", .otherwise = "all"}),
       field<&ReadOptions::topic>("topic",
@@ -72,6 +71,12 @@ const Fields<ReadOptions>& reading_fields() {
                                       {.words = kDateOrders,
                                        .meaning = "number of a date that stands first (CSV)",
                                        .otherwise = "auto"}),
+  };
+}
+
+/// Of time, file and window.
+Fields<ReadOptions> time_fields() {
+  return {
       field<&ReadOptions::time_column>(
           "time_column", {.meaning = "auto, none, a name or c0", .otherwise = "auto"}),
       field<&ReadOptions::time_unit>(
@@ -100,6 +105,17 @@ const Fields<ReadOptions>& reading_fields() {
           "skip_repeated_header",
           {.meaning = "header lines inside the data are skipped", .otherwise = "false"}),
   };
+}
+
+}  // namespace
+
+const Fields<ReadOptions>& reading_fields() {
+  static const Fields<ReadOptions> rows = [] {
+    Fields<ReadOptions> all = table_fields();
+    const Fields<ReadOptions> more = time_fields();
+    all.rows.insert(all.rows.end(), more.rows.begin(), more.rows.end());
+    return all;
+  }();
   return rows;
 }
 

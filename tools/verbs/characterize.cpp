@@ -336,12 +336,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 "the LOGs are devices side by side: overlaid curves, mean and spread of each term, "
                 "outliers (lot.html, lot.json)")
       .excludes(pool);
-  add_reading_options(options, session, verb->analysis.options.reading);
-  add_still_option(options, verb->analysis);
-  add_data_options(options, verb->analysis);
-  add_allan_options(options, verb->analysis);
-  add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);
-  add_fit_options(options, verb->analysis);
+  add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }
 

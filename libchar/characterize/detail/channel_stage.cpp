@@ -11,6 +11,7 @@
 
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/ten_a_decade.hpp"
+#include "libchar/characterize/detail/rate_samples.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/free_memory.hpp"
 #include "libchar/core/present.hpp"
@@ -81,27 +82,11 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 void ChannelStage::push(std::span<const double> samples) {
   const bool second = streams_ && streams_->cleaner;
   if (!second) quality_.push(samples);
-  if (const std::size_t beyond = count_beyond(samples); beyond > 0) {
-    usable_.assign(samples.begin(), samples.end());
-    for (double& x : usable_)
-      if (std::abs(x) > kLargestSample) x = std::numeric_limits<double>::quiet_NaN();
-    beyond_ += second ? 0 : beyond;
-    samples = usable_;
-  }
+  std::uint64_t beyond = 0;
+  samples = usable_samples(samples, usable_, beyond);
+  if (!second) beyond_ += beyond;
   if (!second && options_->wanted.quality) trace_.push(samples);
-  if (options_->data == SampleKind::frequency) {
-    as_rate(samples);
-    stream(fractional_);
-  } else {
-    stream(samples);
-  }
-}
-
-// Frequency becomes fractional frequency. Phase is differenced when the record is whole.
-void ChannelStage::as_rate(std::span<const double> samples) {
-  fractional_.clear();
-  const double nominal = options_->nominal_frequency;
-  for (const double f : samples) fractional_.push_back(nominal == 0 ? f : (f - nominal) / nominal);
+  stream(rate_samples(samples, *options_, fractional_));
 }
 
 void ChannelStage::stream(std::span<const double> samples) {
@@ -201,7 +186,7 @@ AllanCurve ChannelStage::wanted_of_kept(const AllanCurve& octaves,
   }
   AllanOptions allan = options_->allan;
   allan.type = type;
-  allan.data = DataKind::rate;  // `as_rate` has differenced phase data
+  allan.data = DataKind::rate;  // `difference_kept` has differenced phase data
   const bool many_times = (allan.grid == TauGrid::dense && is_long) ||
                           (allan.grid == TauGrid::all && kept_.size() > kLongForAll);
   if (many_times && !options_->full_overlap) allan.stride_divisor = kPyramidStride;

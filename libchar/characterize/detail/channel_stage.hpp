@@ -84,7 +84,6 @@ class ChannelStage {
 
  private:
   std::string unit_of_rate(const std::string& unit) const;
-  void as_rate(std::span<const double> samples);
   void stream(std::span<const double> samples);
   void push_cleaned(std::span<const double> samples);
   bool wants_fit() const;
@@ -115,7 +114,7 @@ class ChannelStage {
   bool keeping_ = true;
   std::vector<double> kept_;
   std::unique_ptr<ChannelStreams> streams_;  // at one place: parts point to each other
-  std::vector<double> fractional_;           // scratch of as_rate
+  std::vector<double> fractional_;           // scratch of push
   std::vector<double> usable_;               // scratch of push
   std::uint64_t beyond_ = 0;                 // samples that are no measurement
   std::vector<NoiseType> noise_types_;

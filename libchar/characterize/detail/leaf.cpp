@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "libchar/characterize/detail/rate_samples.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/remedies.hpp"
 
@@ -51,31 +52,12 @@ SpikeCount read_count(StateReader& from) {
 LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
     : options_(&options), spectrum_(options.spectrum, &workspace) {}
 
-/// Without what is no measurement: as ChannelStage::push has them.
-std::span<const double> LeafStage::usable(std::span<const double> samples, std::uint64_t& beyond) {
-  beyond = count_beyond(samples);
-  if (beyond == 0) return samples;
-  usable_.assign(samples.begin(), samples.end());
-  for (double& x : usable_)
-    if (std::abs(x) > kLargestSample) x = std::numeric_limits<double>::quiet_NaN();
-  return usable_;
-}
-
-/// Frequency becomes fractional frequency.
-std::span<const double> LeafStage::rate(std::span<const double> samples) {
-  const double nominal = options_->nominal_frequency;
-  if (options_->data != SampleKind::frequency || nominal == 0) return samples;
-  rate_.assign(samples.begin(), samples.end());
-  for (double& f : rate_) f = (f - nominal) / nominal;
-  return rate_;
-}
-
 ChannelSums LeafStage::take(std::span<const double> samples, bool last) {
   ChannelSums sums;
   sums.quality.push(samples);
-  samples = usable(samples, sums.beyond);
+  samples = usable_samples(samples, usable_, sums.beyond);
   if (options_->wanted.quality) sums.trace.push(samples);
-  samples = rate(samples);
+  samples = rate_samples(samples, *options_, rate_);
   fit_parts(samples, last, sums);
   const ChannelQuality found = sums.quality.finish();
   sums.spikes.samples = found.samples;

@@ -52,8 +52,6 @@ class LeafStage {
 
  private:
   bool wants_fit() const { return options_->wanted.fit || options_->wanted.allan; }
-  std::span<const double> usable(std::span<const double> samples, std::uint64_t& beyond);
-  std::span<const double> rate(std::span<const double> samples);
   void fit_parts(std::span<const double> samples, bool last, ChannelSums& sums) const;
   void clean(std::span<const double> samples, bool last, ChannelSums& sums) const;
 
