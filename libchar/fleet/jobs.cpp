@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/sha256.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {
 namespace {
@@ -82,15 +82,7 @@ void export_jobs(const std::vector<FleetJob>& jobs,
                  const Engine& engine,
                  const fs::path& folder,
                  const JobOptions& options) {
-  std::error_code error;
-  fs::create_directories(folder / "jobs", error);
-  if (error)
-    throw Error({ErrorKind::output,
-                 "E0790",
-                 (folder / "jobs").string(),
-                 "cannot be made: " + error.message(),
-                 "",
-                 ""});
+  make_fleet_folder(folder / "jobs");
   for (const FleetJob& job : jobs) {
     std::string lines;
     for (const std::size_t k : job.units) lines += task_file(k) + "\n";

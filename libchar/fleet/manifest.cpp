@@ -1,6 +1,7 @@
 #include "libchar/fleet/manifest.hpp"
 
 #include <fmt/format.h>
+#include <glob.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/settings.hpp"
+#include "libchar/core/decimal.hpp"
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
@@ -117,13 +119,10 @@ Document cell_document(const std::string& key, const std::string& cell, int line
   value.line = line;
   value.column = column;
   if (key != "temperature_c") return value;
-  try {
-    std::size_t used = 0;
-    value.number = std::stod(cell, &used);
-    if (used == cell.size()) value.kind = Document::Kind::number;
-  } catch (const std::exception&) {
-    return value;  // the reader says that it is no number
-  }
+  if (const auto number = parse_double(cell)) {
+    value.kind = Document::Kind::number;
+    value.number = *number;
+  }  // else the reader says that it is no number
   return value;
 }
 
@@ -160,6 +159,36 @@ bool is_table(const std::string& path) {
   return fs::path(path).extension() == ".csv";
 }
 
+/// A column `log`, and no other than those of a manifest unless there is a `device` beside it: then a slip is refused by its name.
+bool has_manifest_heads(const std::string& text, const std::string& path) {
+  std::vector<std::string> heads;
+  try {
+    heads = parse_table_text(text, path, 0).heads;
+  } catch (const Error&) {
+    return false;
+  }
+  const auto has = [&](const std::string& head) {
+    return std::find(heads.begin(), heads.end(), head) != heads.end();
+  };
+  const auto known = [](const std::string& head) {
+    return std::find(kDeviceKeys.begin(), kDeviceKeys.end(), head) != kDeviceKeys.end();
+  };
+  return has("log") && (has("device") || std::all_of(heads.begin(), heads.end(), known));
+}
+
+/// What a pattern stands for, in order: a shell has no room for a hundred thousand names. A name of a file, and a pattern without any, are
+/// themselves.
+std::vector<std::string> files_of_pattern(const std::string& word) {
+  std::error_code ignored;
+  if (word.find_first_of("*?[") == std::string::npos || fs::exists(word, ignored)) return {word};
+  glob_t found{};
+  std::vector<std::string> out;
+  if (::glob(word.c_str(), 0, nullptr, &found) == 0)
+    out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  ::globfree(&found);
+  return out.empty() ? std::vector<std::string>{word} : out;
+}
+
 void check_devices(const Manifest& manifest, const std::string& path) {
   if (manifest.devices.empty())
     throw Error({ErrorKind::input, "E0780", path, "the fleet has no device", "", ""});
@@ -188,8 +217,13 @@ Manifest read_manifest(const std::string& path, const CharacterizeOptions& optio
   return parse_manifest(file_text(path, kMostManifest), path, options);
 }
 
-Manifest manifest_of_logs(const std::vector<std::string>& logs,
+Manifest manifest_of_logs(const std::vector<std::string>& words,
                           const CharacterizeOptions& options) {
+  std::vector<std::string> logs;
+  for (const std::string& word : words) {
+    const std::vector<std::string> found = files_of_pattern(word);
+    logs.insert(logs.end(), found.begin(), found.end());
+  }
   Manifest manifest;
   manifest.options.push_back(options);
   std::map<std::string, int> names;
@@ -209,11 +243,8 @@ bool is_manifest(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
   const std::string head = file_text(path, 4096);
-  if (is_table(path)) {
-    const std::string first = head.substr(0, head.find_first_of("\r\n"));
-    return first == "log" || first.starts_with("log,") || first.find(",log") != std::string::npos;
-  }
-  return head.find(kManifestFormat) != std::string::npos;
+  return is_table(path) ? has_manifest_heads(head, path)
+                        : head.find(kManifestFormat) != std::string::npos;
 }
 
 }  // namespace libchar

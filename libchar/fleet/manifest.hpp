@@ -35,8 +35,9 @@ Manifest parse_manifest(std::string_view text,
                         const std::string& path,
                         const CharacterizeOptions& options = {});
 
-/// Each log is a device of its own, called as its file is; by their folders too where two are alike.
-Manifest manifest_of_logs(const std::vector<std::string>& logs,
+/// Each log is a device of its own, called as its file is; by their folders too where two are alike. A word with * ? [ that is no file stands
+/// for the files that match.
+Manifest manifest_of_logs(const std::vector<std::string>& words,
                           const CharacterizeOptions& options = {});
 
 /// Does this file say `format: fleet-manifest`, or is it a table with a column `log`?

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "libchar/core/error.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
-#include "libchar/fleet/status.hpp"
 
 namespace libchar {
 namespace {
@@ -13,19 +14,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* kNotThere = "its result is not there yet";
 
-void refuse_missing(const FleetPlan& plan, const FleetStatus& status, const fs::path& folder) {
-  if (status.missing.empty()) return;
-  const FleetUnit& first = plan.units[status.missing[0]];
+/// Units that have no result, and what was wrong with those that are damaged.
+struct Missing {
+  std::vector<std::size_t> units;
+  std::vector<std::string> damaged;
+};
+
+void refuse_missing(const FleetPlan& plan, const Missing& missing, const fs::path& folder) {
+  if (missing.units.empty()) return;
+  const FleetUnit& first = plan.units[missing.units[0]];
   throw Error(
       {ErrorKind::input,
        "E0789",
        folder.string(),
        fmt::format("{} of {} units have no result, the first is {} of {}{}",
-                   status.missing.size(),
-                   status.units,
-                   task_file(status.missing[0]),
+                   missing.units.size(),
+                   plan.units.size(),
+                   task_file(missing.units[0]),
                    plan.devices[first.device].device,
-                   status.damaged.empty() ? "" : "; " + status.damaged[0]),
+                   missing.damaged.empty() ? "" : "; " + missing.damaged[0]),
        "",
        fmt::format("run them with: sensorchar fleet run {}, or merge what there is with `partial`",
                    folder.string())});
@@ -64,12 +71,12 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
                                          const fs::path& folder,
                                          const MergeOptions& options,
                                          Progress& progress) {
-  if (!options.partial) refuse_missing(plan, fleet_status(plan, folder, progress), folder);
   std::vector<DeviceRecord> out(plan.devices.size());
   for (std::size_t d = 0; d < out.size(); ++d) {
     out[d].problem = plan.devices[d].problem;
     name_device(plan.devices[d], out[d]);
   }
+  Missing missing;
   for (std::size_t k = 0; k < plan.units.size(); ++k) {
     const FleetUnit& unit = plan.units[k];
     if (unit.kind == UnitKind::stretch) continue;
@@ -79,10 +86,11 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     std::optional<DeviceRecord> found;
     try {
       found = stored_record(folder, unit.id);
-    } catch (const Error&) {
-      if (!options.partial) throw;
+    } catch (const Error& error) {
+      missing.damaged.push_back(one_line(error.problem()));
     }
     if (!found) {
+      missing.units.push_back(k);
       if (record.problem.empty()) record.problem = kNotThere;
       continue;
     }
@@ -90,6 +98,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
       record.report = report_of(unit, folder, options.relative_to);
     add_result(*found, record);
   }
+  if (!options.partial) refuse_missing(plan, missing, folder);
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/detail/unit_cost.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/model/noise_limits.hpp"
@@ -240,15 +241,7 @@ std::string task_file(std::size_t unit) {
 }
 
 void write_plan(const FleetPlan& plan, const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder / "tasks", error);
-  if (error)
-    throw Error({ErrorKind::output,
-                 "E0790",
-                 (folder / "tasks").string(),
-                 "cannot be made: " + error.message(),
-                 "",
-                 ""});
+  make_fleet_folder(folder / "tasks");
   const Json head = {{"format", kPlanFormat},
                      {"version", 1},
                      {"devices", plan.devices.size()},
@@ -264,6 +257,7 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
   });
   for (const std::string& line : lines) text += line;
   // Tasks of an earlier, longer plan are none of this one.
+  std::error_code error;
   for (std::size_t k = plan.units.size(); fs::remove(folder / task_file(k), error); ++k) {
   }
   write_whole_file((folder / "plan.jsonl").string(), text, true);

@@ -122,6 +122,7 @@ DeviceRecord record_in(const FleetUnit& unit,
   }
   if (result) record = write_results(unit, *result, folder);
   if (!result) record.program = version();
+  record.settings = settings_id(unit.options);
   record.log = unit.log;
   record.sha256 = unit.sha256;
   return record;

@@ -30,6 +30,12 @@ Json content_of(const FleetUnit& unit) {
   return out;
 }
 
+std::string id_of(const std::string& what, const Json& content) {
+  Sha256 hash;
+  hash.update(what + with_valid_text(content).dump());
+  return hash.finish().substr(0, kIdDigits);
+}
+
 UnitKind kind_at(const MapReader& at) {
   return *find_enum<UnitKind>(at.word("kind", words_of<UnitKind>()));
 }
@@ -44,9 +50,14 @@ StretchRange stretch_at(const MapReader& at) {
 }  // namespace
 
 std::string unit_id(const FleetUnit& unit) {
-  Sha256 hash;
-  hash.update("fleet-unit 1\n" + with_valid_text(content_of(unit)).dump());
-  return hash.finish().substr(0, kIdDigits);
+  return id_of("fleet-unit 1\n", content_of(unit));
+}
+
+std::string settings_id(const CharacterizeOptions& options) {
+  // Which channel of a log a unit is of is no way to characterize it.
+  CharacterizeOptions alike = options;
+  alike.reading.channels.clear();
+  return id_of("settings 1\n", json_of(settings_of(alike)));
 }
 
 std::string unit_text(const FleetUnit& unit) {

@@ -45,6 +45,9 @@ struct FleetUnit {
 /// SHA-256 over version, kind, the log's digest, settings, stretch and parts; no paths, no names, no costs.
 std::string unit_id(const FleetUnit& unit);
 
+/// SHA-256 over the settings, as short: whether two recordings were characterized alike.
+std::string settings_id(const CharacterizeOptions& options);
+
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).
 std::string unit_text(const FleetUnit& unit);
 FleetUnit parse_unit(std::string_view text, const std::string& path);

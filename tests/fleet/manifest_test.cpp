@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
+#include "tests/fleet/fleet_folder.hpp"
 
 using namespace libchar;
 using Catch::Contains;
@@ -85,4 +86,29 @@ TEST_CASE("logs alone are devices called as their files are, by folders too wher
   CHECK(m.devices[0].device == "a/x.csv");
   CHECK(m.devices[1].device == "b/x.csv");
   CHECK(m.devices[2].device == "y");
+}
+
+TEST_CASE("a pattern that no shell has taken apart stands for its files, in order") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 3, 2);
+  const std::string pattern = (folder / "d?.csv").string();
+  const Manifest m = manifest_of_logs({pattern});
+  REQUIRE(m.devices.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(m.devices[k].log == logs[k]);
+  CHECK(manifest_of_logs({(folder / "e*.csv").string()}).devices.size() == 1);
+}
+
+TEST_CASE("which tables are manifests, and which are logs") {
+  const test::TemporaryFolder folder;
+  const auto is = [&](const std::string& text) {
+    test::write_file(folder / "t.csv", text);
+    return is_manifest((folder / "t.csv").string());
+  };
+  CHECK(is("log\na.csv\n"));
+  CHECK(is("device;log;batch\nA;a.csv;b\n"));
+  CHECK(is("# line 7\n\"device\",\"log\",temprature\nA,a.csv,3\n"));
+  CHECK_FALSE(is("t,logger\n0,1\n"));
+  CHECK_FALSE(is("t,x,log\n0,1,2\n"));
+  CHECK_FALSE(is("0.1,0.2\n0.3,0.4\n"));
+  CHECK_FALSE(is(""));
 }

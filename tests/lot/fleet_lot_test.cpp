@@ -203,6 +203,17 @@ TEST_CASE("a log that is there twice counts once") {
   CHECK_THAT(lot.notes[0], Contains("1 record of a log that is there already"));
 }
 
+TEST_CASE("versions that differ are told, of recordings that were characterized") {
+  auto records = test::made_lot({}, 13);
+  const auto told = [&] { return fmt::format("{}", fmt::join(fleet_lot(records).notes, " ")); };
+  records[0].problem = "it is cut";
+  records[0].program = records[0].settings = "";
+  records[0].channels.clear();
+  CHECK_THAT(told(), !Contains("versions"));
+  records[1].program = "another";
+  CHECK_THAT(told(), Contains("2 versions of the program"));
+}
+
 TEST_CASE("what is not detected, doubtful or without a fit is counted as that") {
   auto records = test::made_lot({}, 13);
   for (std::size_t i = 0; i < 100; ++i) {

@@ -8,6 +8,7 @@
 #include "analysis_options.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"
@@ -74,7 +75,7 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
                  verb->inputs,
                  "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or "
                  "logs, each a "
-                 "device called as its file is")
+                 "device called as its file is; a quoted pattern stands for its files")
       .required();
   options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results")
       .value_name("DIR")
@@ -94,12 +95,7 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
       "4GiB)");
   options.add_bytes(
       "--stretch", verb->plan.stretch_bytes, "size of a stretch, about (default: 1GiB)");
-  add_reading_options(options, session, verb->analysis.options.reading);
-  add_still_option(options, verb->analysis);
-  add_data_options(options, verb->analysis);
-  add_allan_options(options, verb->analysis);
-  add_spectrum_options(options, verb->analysis.options.spectrum, verb->analysis.options.segment_s);
-  add_fit_options(options, verb->analysis);
+  add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_plan(session, *verb); };
 }
 

@@ -60,7 +60,7 @@ void remove_litter_in(const fs::path& folder) {
   throw Error({ErrorKind::output,
                "E0790",
                path.string(),
-               "the result cannot be written: " + std::generic_category().message(number),
+               "cannot be written: " + std::generic_category().message(number),
                "",
                ""});
 }
@@ -93,19 +93,22 @@ std::string checked_text(const fs::path& file, std::size_t most) {
 
 }  // namespace
 
+void make_fleet_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) cannot_write(folder, error.value());
+}
+
 std::string result_folder(const std::string& id) {
   return id.substr(0, 2) + "/" + id;
 }
 
 ResultFolder::ResultFolder(const fs::path& fleet, const std::string& id) : fleet_(fleet), id_(id) {
   const fs::path parent = (fleet / "results" / result_folder(id)).parent_path();
-  std::error_code error;
-  fs::create_directories(parent, error);
-  if (error) cannot_write(parent, error.value());
+  make_fleet_folder(parent);
   remove_litter_in(parent);
   path_ = parent / working_name(id);
-  fs::create_directory(path_, error);
-  if (error) cannot_write(path_, error.value());
+  make_fleet_folder(path_);
 }
 
 ResultFolder::~ResultFolder() {

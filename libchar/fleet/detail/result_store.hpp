@@ -12,6 +12,9 @@
 
 namespace libchar {
 
+/// With those above it. Throws Error(output).
+void make_fleet_folder(const std::filesystem::path& folder);
+
 /// "ab/abcdef…": the folder of a unit below DIR/results.
 std::string result_folder(const std::string& id);
 

@@ -38,12 +38,12 @@ std::vector<std::string> cells_of(const std::string& line,
 
 }  // namespace
 
-TableText parse_table_text(std::string_view text, const std::string& path) {
+TableText parse_table_text(std::string_view text, const std::string& path, std::size_t most_rows) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   TableText table;
   char separator = ',';
   int number = 0;
-  while (!text.empty()) {
+  while (!text.empty() && (table.heads.empty() || table.rows.size() < most_rows)) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string line(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));

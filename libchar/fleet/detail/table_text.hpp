@@ -1,6 +1,8 @@
 #pragma once
 // A small table of texts: a CSV file that people write by hand or in a spreadsheet.
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +21,9 @@ struct TableText {
 
 /// Separated by commas, or by semicolons where the first line has no comma; cells may be quoted; empty lines and those that begin with #
 /// are left out. Throws Error(input) for a row of another number of cells, a head that stands twice, a quote that is never closed.
-TableText parse_table_text(std::string_view text, const std::string& path);
+/// Nothing behind `most_rows` rows is looked at.
+TableText parse_table_text(std::string_view text,
+                           const std::string& path,
+                           std::size_t most_rows = SIZE_MAX);
 
 }  // namespace libchar

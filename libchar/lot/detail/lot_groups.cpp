@@ -181,6 +181,7 @@ std::vector<std::string> unlike_records(Records records,
                                 fmt::join(found, ", ")));
   std::set<std::string> settings, programs;
   for (const std::size_t r : sorted.order) {
+    if (!records[r].problem.empty()) continue;  // characterized with none
     settings.insert(records[r].settings);
     programs.insert(records[r].program);
   }

@@ -181,7 +181,8 @@ std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lo
 }
 
 std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
-  if (q.histogram.count.empty() && !q.capability) return "";
+  constexpr std::size_t kFewestDrawn = 4;  // fewer stand in the table, and have no distribution
+  if (q.counts.counted < kFewestDrawn) return "";
   const std::string title = title_of(q.quantity) + " of " + group_title(q, *report.lot);
   std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
                     svg_histogram(q.histogram, axis_of(q), "Histogram: " + title);
