@@ -1,0 +1,58 @@
+#include "libchar/lot/detail/fleet_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libchar/core/text.hpp"
+
+namespace libchar {
+namespace {
+
+/// Quantities of channels in which batches differ, each with its share of 5 %.
+std::string batch_sentence(const FleetLot& lot) {
+  const auto tested = [](const QuantityLot& q) { return !q.of_kind && q.batch_difference; };
+  const auto tests = std::count_if(lot.quantities.begin(), lot.quantities.end(), tested);
+  std::vector<const QuantityLot*> found;
+  for (const QuantityLot& q : lot.quantities)
+    if (tested(q) && q.batch_difference->p < 0.05 / static_cast<double>(tests)) found.push_back(&q);
+  if (tests == 0) return "";
+  if (found.empty()) return " No difference between batches is resolved.";
+  std::stable_sort(found.begin(), found.end(), [](const QuantityLot* a, const QuantityLot* b) {
+    return a->batch_difference->p < b->batch_difference->p;
+  });
+  constexpr std::size_t kShown = 3;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(kShown, found.size()); ++i)
+    list += fmt::format(
+        "{}{} of {}", i == 0 ? "" : ", ", title_of(found[i]->quantity), found[i]->group);
+  if (found.size() > kShown) list += fmt::format(" and {} more", found.size() - kShown);
+  return fmt::format(" Batches differ: {}.", list);
+}
+
+}  // namespace
+
+std::string fleet_verdict(const FleetLot& lot) {
+  std::string out = plural(lot.devices, "device");
+  if (lot.types.size() > 1) out += fmt::format(" of {} types", lot.types.size());
+  if (lot.batches.size() > 1) out += fmt::format(" in {} batches", lot.batches.size());
+  if (lot.order.size() != lot.devices)
+    out += fmt::format(", {}", plural(lot.order.size(), "recording"));
+  out += lot.failed.empty() ? "."
+                            : fmt::format(": {} could not be characterized.",
+                                          plural(lot.failed.size(), "recording"));
+  out += lot.outlying == 0   ? " No device stands out from its kind."
+         : lot.outlying == 1 ? " 1 device stands out from its kind."
+                             : fmt::format(" {} devices stand out from their kind.", lot.outlying);
+  const std::size_t held = lot.failing + lot.open + lot.keeping;
+  if (held > 0)
+    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.",
+                       plural(held, "device"),
+                       lot.failing,
+                       lot.failing == 1 ? "fails one" : "fail one or more",
+                       lot.open,
+                       lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
+  return out + batch_sentence(lot);
+}
+
+}  // namespace libchar

@@ -1,0 +1,13 @@
+#pragma once
+// Devices that the others of their group do not let expect.
+
+#include <vector>
+
+#include "libchar/lot/detail/fleet_data.hpp"
+
+namespace libchar {
+
+/// Fills `outliers` of each quantity of a channel. `probability`: of naming any device where none stands out.
+void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics);
+
+}  // namespace libchar
