@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/chi_square.hpp"
 #include "libchar/core/detail/weighted.hpp"
+#include "libchar/core/detail/within_spread.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
 
@@ -42,23 +42,6 @@ GroupMeans means_at(const Groups& in, double square) {
   return out;
 }
 
-/// Spread within the groups; NaN where every group has one value.
-void find_within(const Groups& in, double dof, GroupedEffects& out) {
-  out.within = kNone;
-  out.within_ci95 = {kNone, kNone};
-  if (dof < 1) return;
-  double scale = 0;
-  for (const double v : in.v) scale += v / static_cast<double>(in.v.size());
-  const auto q = [&](double square) { return means_at(in, square).q; };
-  out.within = std::sqrt(falls_to(q, dof, scale));
-  // Not less than at the median of Q, as of random effects: values that lie close by chance do not bound the spread by nothing.
-  const double q0 = q(0), median = chi_square_quantile(0.5, dof);
-  const double lift = q0 < median ? median / q0 : 1;
-  const auto lifted = [&](double square) { return lift * q(square); };
-  out.within_ci95 = {std::sqrt(falls_to(q, chi_square_quantile(0.975, dof), scale)),
-                     std::sqrt(falls_to(lifted, chi_square_quantile(0.025, dof), scale))};
-}
-
 }  // namespace
 
 GroupedEffects grouped_effects(std::span<const double> value,
@@ -71,7 +54,10 @@ GroupedEffects grouped_effects(std::span<const double> value,
   for (const std::size_t g : group) filled[g] = true;
   const auto full = static_cast<double>(std::count(filled.begin(), filled.end(), true));
   const double dof = static_cast<double>(value.size()) - full;
-  find_within(in, dof, out);
+  const auto q_within = [&](double square) { return means_at(in, square).q; };
+  const WithinSpread within = within_spread(q_within, dof, variance);
+  out.within = within.sd;
+  out.within_ci95 = within.ci95;
   const GroupMeans at = means_at(in, dof < 1 ? 0 : out.within * out.within);
   std::vector<double> means, variances;
   out.mean.assign(groups, kNone);

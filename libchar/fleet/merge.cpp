@@ -58,7 +58,9 @@ std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::p
 }
 
 /// Channels of one log that were units of their own stand together again.
-void add_result(const DeviceRecord& found, DeviceRecord& record) {
+void add_result(const PlannedDevice& planned, const DeviceRecord& found, DeviceRecord& record) {
+  // What a thermometer in the log says counts where the plan says nothing.
+  if (!planned.temperature_c && found.temperature_c) record.temperature_c = found.temperature_c;
   record.program = found.program;
   record.settings = found.settings;
   if (record.problem.empty()) record.problem = found.problem;
@@ -96,7 +98,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     }
     if (record.channels.empty() && found->problem.empty())
       record.report = report_of(unit, folder, options.relative_to);
-    add_result(*found, record);
+    add_result(plan.devices[unit.device], *found, record);
   }
   if (!options.partial) refuse_missing(plan, missing, folder);
   return out;

@@ -60,11 +60,43 @@ struct BatchDifference {
   double p = 1;       ///< of as large differences of batches that are alike
 };
 
-/// From recording to recording of one device: for a turn-on bias, its repeatability.
+/// Recordings of a device that lie as far apart, in °C, are at several temperatures: a line through their biases has a slope, and does not
+/// mean what a temperature that is stated to a degree is off by (1 °C of 10 make the slope too small by 2 %).
+inline constexpr double kLeastTemperatureSpan = 10;
+
+/// From recording to recording of one device: for a turn-on bias, its repeatability; what temperature does to it is taken out of devices that
+/// were recorded at several.
 struct RepeatedDevices {
-  std::size_t devices = 0, recordings = 0;  ///< with more than one recording that counts; and those
-  double within = 0;                        ///< as `spread` of LotFigures
+  /// With more recordings that count than it takes for their mean, or their line over temperature; and those.
+  std::size_t devices = 0, recordings = 0;
+  double within = 0;  ///< as `spread` of LotFigures
   Interval within_ci95;
+};
+
+/// A device's bias over the temperatures of its recordings.
+struct DeviceSlope {
+  std::size_t recording = 0,
+              channel = 0;  ///< indices into the records: the device's first recording
+  std::size_t recordings = 0;
+  Interval temperature_c;
+  double value = 0;  ///< per K
+  Interval ci95;
+};
+
+/// Devices that were recorded at several temperatures. Of a turn-on bias: it is theirs at `reference_c`, by their lines. Of a temperature
+/// coefficient: it is the slope of these lines.
+struct TemperatureRuns {
+  std::size_t devices = 0, recordings = 0;
+  Interval range_c;
+  double reference_c = 0;  ///< the median of the recordings
+  std::size_t elsewhere =
+      0;  ///< devices whose recordings are all as far from it as that, at one temperature
+  double repeatability =
+      kNone;  ///< of the bias about the lines: the error of the slopes; NaN: no temperature was there twice
+  double dof = 0;  ///< by which it is known
+  std::size_t in_one_recording =
+      0;  ///< devices whose coefficient was found in a recording as well: not mixed in
+  std::vector<DeviceSlope> slopes;  ///< of a temperature coefficient, in the order of the devices
 };
 
 struct FleetOutlier {
@@ -91,6 +123,7 @@ struct QuantityLot {
   std::vector<BatchLot> batches;  ///< in natural order; empty where there is one
   std::optional<BatchDifference> batch_difference;
   std::optional<RepeatedDevices> repeats;
+  std::optional<TemperatureRuns> temperatures;
   // Of a channel only, not of a kind:
   std::optional<ControlChart> chart;  ///< by batch and device; its indices are those of `charted`
   std::vector<std::size_t> charted;   ///< recording of each value of the chart

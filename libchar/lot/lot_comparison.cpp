@@ -79,8 +79,7 @@ void compare_means(const RandomEffects& a,
 std::optional<LotDifference> difference_of(
     const Side& a, std::size_t ga, const Side& b, std::size_t gb, DeviceQuantity quantity) {
   const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
-  const auto ea = lot_effects(va.y, va.v, va.counts.members),
-             eb = lot_effects(vb.y, vb.v, vb.counts.members);
+  const auto ea = effects_of(va), eb = effects_of(vb);
   if (!ea || !eb) return std::nullopt;
   const bool logarithm = in_logarithm(quantity);
   const LotGroup& group = a.groups[ga];

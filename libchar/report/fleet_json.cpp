@@ -11,7 +11,7 @@ namespace libchar {
 namespace {
 
 /// Lists that grow with the fleet end there: coefficients.csv has all.
-constexpr std::size_t kMostFailed = 1000, kOutliersInJson = 100;
+constexpr std::size_t kMostFailed = 1000, kOutliersInJson = 100, kMostSlopes = 1000;
 
 Json counts_json(const LotCounts& c) {
   return {{"members", c.members},
@@ -63,6 +63,28 @@ Json chart_json(const FleetReport& report, const QuantityLot& q) {
   for (std::size_t i = 0; i < std::min(kOutliersInJson, c.beyond.size()); ++i)
     out["beyond"].push_back(json_text(report.records[q.charted[c.beyond[i].index]].device));
   return out;
+}
+
+Json temperatures_json(const FleetReport& report, const std::optional<TemperatureRuns>& t) {
+  if (!t) return nullptr;
+  Json slopes = Json::array();
+  for (std::size_t i = 0; i < std::min(kMostSlopes, t->slopes.size()); ++i) {
+    const DeviceSlope& one = t->slopes[i];
+    slopes.push_back({{"device", json_text(report.records[one.recording].device)},
+                      {"recordings", one.recordings},
+                      {"temperature_c", interval_json(one.temperature_c)},
+                      {"value", json_number(one.value)},
+                      {"ci95", interval_json(one.ci95)}});
+  }
+  return {{"devices", t->devices},
+          {"recordings", t->recordings},
+          {"range_c", interval_json(t->range_c)},
+          {"reference_c", json_number(t->reference_c)},
+          {"elsewhere", t->elsewhere},
+          {"repeatability", json_number(t->repeatability)},
+          {"degrees_of_freedom", t->dof},
+          {"in_one_recording", t->in_one_recording},
+          {"slopes", std::move(slopes)}};
 }
 
 Json capability_json(const std::optional<Capability>& c) {
@@ -126,6 +148,7 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
                                     {"within", json_number(q.repeats->within)},
                                     {"within_ci95", interval_json(q.repeats->within_ci95)}}
                              : Json(nullptr);
+  out["temperatures"] = temperatures_json(report, q.temperatures);
   out["chart"] = chart_json(report, q);
   out["capability"] = capability_json(q.capability);
   out["outlier_count"] = q.outliers.size();

@@ -1,5 +1,6 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdt: coverage, batches, differences of two lots,
+// temperatures]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -117,6 +118,42 @@ void batches(int lots) {
   print_rate("batches alike, p below .05", alarms, tests, "5 %");
 }
 
+/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias repeats beside them.
+void temperatures(const std::string& title,
+                  std::size_t devices,
+                  const test::MadeTemperatures& how,
+                  int lots) {
+  test::MadeLot made;
+  made.devices = devices;
+  made.channels = {"gyro_x"};
+  int device = 0, of_devices = 0, mean = 0, spread = 0, repeat = 0, bias = 0, bias_spread = 0;
+  for (int i = 0; i < lots; ++i) {
+    const auto drawn =
+        test::made_temperature_lot(made, how, 11000000 + static_cast<std::uint64_t>(i));
+    for (const QuantityLot& q : fleet_lot(drawn.records).quantities) {
+      if (q.quantity == DeviceQuantity::turn_on_bias) {
+        repeat += holds(q.repeats->within_ci95, how.scatter);
+        bias += holds(q.figures->mean_ci95, made.bias);
+        bias_spread += holds(q.figures->spread_ci95, made.bias_spread);
+      }
+      if (q.quantity != DeviceQuantity::temperature_coefficient) continue;
+      mean += holds(q.figures->mean_ci95, how.slope);
+      spread += holds(q.figures->spread_ci95, how.slope_spread);
+      for (std::size_t d = 0; d < devices; ++d)
+        device += holds(q.temperatures->slopes[d].ci95, drawn.slope[d]);
+      of_devices += static_cast<int>(devices);
+    }
+  }
+  fmt::print(
+      "temperature coefficients by recordings {}: {} lots of {} devices\n", title, lots, devices);
+  print_rate("a device's coefficient in its interval", device, of_devices, "95 %");
+  print_rate("their mean in its interval", mean, lots, "95 %");
+  print_rate("their spread in its interval", spread, lots, "95 %");
+  print_rate("repeatability of the bias in its interval", repeat, lots, "95 %");
+  print_rate("mean of the bias in its interval", bias, lots, "95 %");
+  print_rate("spread of the bias in its interval", bias_spread, lots, "95 %");
+}
+
 void size_of_a_fleet(std::size_t devices) {
   auto from = std::chrono::steady_clock::now();
   const auto lap = [&](const std::string& what) {
@@ -147,16 +184,30 @@ void size_of_a_fleet(std::size_t devices) {
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
+  const std::string parts = argc > 3 ? argv[3] : "cbdt";
+  const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
   for (double& s : equal.spread) s = 0;
   equal.bias_spread = 0;
-  if (lots > 0) {
+  if (asked('c')) {
     coverage("a lot", {}, lots);
     coverage("a small lot", few, lots);
     coverage("devices without a spread", equal, lots);
-    batches(lots / 4);
+  }
+  if (asked('b')) batches(lots / 4);
+  if (asked('d'))
     for (const std::size_t n : {5, 30, 200}) comparisons(n, lots);
+  if (asked('t')) {
+    for (const std::size_t n : {8, 20, 200}) temperatures("at -20, 25, 60 and 25 °C", n, {}, lots);
+    temperatures("at three temperatures, slopes hardly differ",
+                 20,
+                 {.at_c = {-20, 25, 60}, .slope_spread = 1e-4},
+                 lots);
+    temperatures("at three temperatures, slopes differ much",
+                 20,
+                 {.at_c = {-20, 25, 60}, .slope_spread = 2e-3},
+                 lots);
   }
   if (devices > 0) size_of_a_fleet(devices);
   return 0;

@@ -72,6 +72,46 @@ inline std::vector<libchar::DeviceRecord> made_lot(const MadeLot& lot, std::uint
   return out;
 }
 
+/// Recordings of each device at temperatures: its turn-on bias moves with them, and scatters whenever it is switched on.
+struct MadeTemperatures {
+  std::vector<double> at_c = {-20, 25, 60, 25};
+  double reference_c = 25;
+  double slope = 2e-3, slope_spread = 5e-4;  ///< per K
+  double scatter = 0.02;
+};
+
+struct TemperatureLot {
+  std::vector<libchar::DeviceRecord> records;
+  std::vector<double> slope;  ///< of each device and channel, in the order of the devices
+};
+
+inline TemperatureLot made_temperature_lot(const MadeLot& lot,
+                                           const MadeTemperatures& made,
+                                           std::uint64_t seed) {
+  Gaussian gauss(seed);
+  TemperatureLot out;
+  for (std::size_t i = 0; i < lot.devices; ++i) {
+    const libchar::DeviceRecord device = made_device(lot, i + 1, gauss);
+    std::vector<double> slopes;
+    for (std::size_t c = 0; c < device.channels.size(); ++c)
+      slopes.push_back(made.slope + made.slope_spread * gauss());
+    for (std::size_t k = 0; k < made.at_c.size(); ++k) {
+      libchar::DeviceRecord again = device;
+      again.log += std::to_string(k);
+      again.sha256 += std::to_string(k);
+      again.temperature_c = made.at_c[k];
+      for (std::size_t c = 0; c < again.channels.size(); ++c) {
+        libchar::RecordedValue& bias = again.channels[c].values[3];
+        bias.value += slopes[c] * (made.at_c[k] - made.reference_c) + made.scatter * gauss() +
+                      bias.sd * gauss();
+      }
+      out.records.push_back(std::move(again));
+    }
+    out.slope.insert(out.slope.end(), slopes.begin(), slopes.end());
+  }
+  return out;
+}
+
 inline void append(std::vector<libchar::DeviceRecord>& to,
                    const std::vector<libchar::DeviceRecord>& more) {
   to.insert(to.end(), more.begin(), more.end());

@@ -114,6 +114,33 @@ TEST_CASE("lot.json keeps its schema and names its files with their digests") {
   CHECK(test::schema_fault(dump_json(fleet_json({one, &small, "", {}, {}}))) == "");
 }
 
+TEST_CASE("the report of a lot at several temperatures says where its coefficients come from") {
+  test::MadeLot made;
+  made.devices = 12;
+  const auto records = test::made_temperature_lot(made, {}, 4).records;
+  const FleetLot lot = fleet_lot(records);
+  const FleetReport report{records, &lot, "fleet", {}, {}};
+  const std::string text = dump_json(fleet_json(report));
+  CHECK(test::schema_fault(text) == "");
+  const auto document = nlohmann::json::parse(text);
+  std::size_t found = 0;
+  for (const auto& q : document["quantities"])
+    if (q["what"] == "temperature_coefficient") {
+      ++found;
+      CHECK(q["temperatures"]["slopes"].size() == 12);
+      CHECK(q["temperatures"]["slopes"][0]["device"] == "imu1");
+      CHECK(q["temperatures"]["range_c"] == nlohmann::json({-20, 60}));
+    }
+  CHECK(found == 2);
+  const std::string page = fleet_html(report);
+  CHECK_THAT(
+      page,
+      Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at "
+               "-20 to 60 °C") &&
+          Contains("Coefficients of 12 devices"));
+  CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature of each"));
+}
+
 TEST_CASE("numbers of any size make a lot, a page and a document") {
   test::Gaussian gauss(6);
   const std::vector<double> wild = {0,
@@ -139,6 +166,8 @@ TEST_CASE("numbers of any size make a lot, a page and a document") {
     auto records = test::made_lot(made, static_cast<std::uint64_t>(round));
     for (DeviceRecord& r : records) {
       r.batch = gauss.uniform() < 0.5 ? "1" : "2";
+      if (gauss.uniform() < 0.5) r.temperature_c = gauss.uniform() < 0.2 ? any() : 60 * gauss();
+      if (gauss.uniform() < 0.5) r.device = "imu1";  // several recordings of it
       for (RecordedChannel& c : r.channels)
         for (RecordedValue& v : c.values) {
           if (gauss.uniform() < 0.2) v.value = any();

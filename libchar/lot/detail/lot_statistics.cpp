@@ -71,9 +71,10 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   const bool usual = quantity < DeviceQuantity::quantization;
   const bool something = lot.counts.counted > 0 || (usual && lot.counts.not_detected > 0);
   if (!something && !s.limited) return std::nullopt;
-  lot.effects = lot_effects(s.values.y, s.values.v, lot.counts.members);
+  lot.effects = effects_of(s.values);
   if (lot.effects) lot.figures = lot_figures(*lot.effects, logarithm);
   lot.repeats = s.values.repeats;
+  lot.temperatures = std::move(s.values.temperatures);
   add_quantiles(s.values.y, logarithm, lot);
   lot.histogram = histogram_of(s.values.y);
   if (fleet.batches.size() > 1) add_batches(fleet, s);

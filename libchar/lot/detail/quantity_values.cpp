@@ -1,67 +1,48 @@
 // A member with several recordings has the value sum w_i y_i / sum w_i, w_i = 1 / (v_i + s²), and the variance 1 / sum w_i, where s is the
 // spread from recording to recording of one member, found over all members that have several (core/grouped_effects.hpp): a sensor that
-// is switched on again has another bias, and a member that was recorded once is not known better than that.
+// is switched on again has another bias, and a member that was recorded once is not known better than that. Where members were recorded at
+// several temperatures their biases are those of their lines (temperature_lines.cpp).
+// A temperature coefficient is found inside a recording that has a thermometer, or as the slope of the biases of several recordings. One lot
+// has one of both, never a mixture: the one that counts for more members; as many: that inside recordings, which knows the bias of one
+// switching on only. The slopes' error is estimated, s² with f degrees of freedom, and a spread over it has to know that. The two errors of
+// spread² = total - error are independent and each has its interval, so that they join by the method of variance estimates recovery (Zou &
+// Donner, Stat. Med. 27 (2008) 1693), with P the square that Paule and Mandel's equation gives:
+//   low² = P - hypot(P - low²(s known), P - P(s at its upper end)),   high² = P + hypot(high²(s known) - P, P(s at its lower end) - P)
 #include "libchar/lot/detail/quantity_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/member_recordings.hpp"
+#include "libchar/lot/detail/temperature_lines.hpp"
+
 namespace libchar {
 namespace {
 
-/// Of values and variances: their sums, squared, have to be numbers.
-constexpr double kLargest = 1e60;
-
-/// Ordered: of several recordings of a member the best says what is known of it.
-enum class Known { no_result, doubtful, not_detected, counted };
-
-struct Measured {
-  Known known = Known::no_result;
-  double y = 0, v = 0;
-};
-
-Measured measured(const RecordedChannel& channel, DeviceQuantity quantity) {
-  const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-  if (value == nullptr) return {};
-  if (value->status == Status::not_detected) return {Known::not_detected};
-  if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
-  const bool logarithm = in_logarithm(quantity);
-  const double y = logarithm ? std::log(value->value) : value->value, v = value->sd * value->sd;
-  // A square that a double does not hold is no uncertainty either.
-  const bool usable =
-      std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
-  return usable ? Measured{Known::counted, y, v} : Measured{Known::doubtful};
-}
-
-void count(Known known, LotCounts& out) {
-  ++out.members;
-  out.counted += known == Known::counted;
-  out.not_detected += known == Known::not_detected;
-  out.doubtful += known == Known::doubtful;
-  out.no_result += known == Known::no_result;
-}
-
-/// All recordings that count, by member.
-struct Recordings {
-  std::vector<double> y, v;
-  std::vector<std::size_t> member;  ///< index into the members that count
-};
-
-RepeatedDevices repeated(const Recordings& in, std::size_t members, const GroupedEffects& effects) {
-  RepeatedDevices out;
-  std::vector<std::size_t> times(members);
-  for (const std::size_t m : in.member) ++times[m];
-  for (const std::size_t n : times) {
-    out.devices += n > 1;
-    out.recordings += n > 1 ? n : 0;
+/// Those with more recordings than their means and lines take.
+RepeatedDevices repeated(const std::vector<std::size_t>& recordings,
+                         const std::vector<std::size_t>& taken,
+                         double within,
+                         const Interval& within_ci95) {
+  RepeatedDevices out{0, 0, within, within_ci95};
+  for (std::size_t m = 0; m < recordings.size(); ++m) {
+    const bool repeats = recordings[m] > taken[m];
+    out.devices += repeats;
+    out.recordings += repeats ? recordings[m] : 0;
   }
-  out.within = effects.within;
-  out.within_ci95 = effects.within_ci95;
   return out;
 }
 
-void take_together(Recordings in, QuantityValues& out) {
-  const std::size_t members = out.member.size();
+std::vector<std::size_t> recordings_of(const MemberRecordings& in) {
+  std::vector<std::size_t> out(in.members.size());
+  for (const std::size_t m : in.member) ++out[m];
+  return out;
+}
+
+void take_together(const MemberRecordings& in, QuantityValues& out) {
+  const std::size_t members = in.members.size();
   if (in.y.size() == members || members < 2) {  // one recording each, or nobody to compare with
     for (std::size_t i = 0; i < in.y.size(); ++i)
       if (i == 0 || in.member[i] != in.member[i - 1]) {
@@ -71,9 +52,46 @@ void take_together(Recordings in, QuantityValues& out) {
     return;
   }
   GroupedEffects effects = grouped_effects(in.y, in.v, in.member, members);
-  out.repeats = repeated(in, members, effects);
+  out.repeats = repeated(
+      recordings_of(in), std::vector<std::size_t>(members, 1), effects.within, effects.within_ci95);
   out.y = std::move(effects.mean);
   out.v = std::move(effects.variance);
+}
+
+void take_lines(TemperatureLines at, QuantityValues& out) {
+  std::vector<std::size_t> taken;
+  for (const bool line : at.sloped) taken.push_back(line ? 2 : 1);
+  if (at.lines.dof >= 1)
+    out.repeats =
+        repeated(recordings_of(at.recordings), taken, at.lines.within, at.lines.within_ci95);
+  out.y = std::move(at.lines.at_zero);
+  out.v = std::move(at.lines.at_zero_variance);
+  out.temperatures = std::move(at.runs);
+}
+
+/// A lot of slopes is one of the members that have one: the others were not recorded so.
+QuantityValues slope_values(const TemperatureLines& at,
+                            const LotGroup& group,
+                            const std::vector<std::size_t>& batch_of,
+                            std::size_t batches) {
+  QuantityValues out;
+  out.batch_counts.resize(batches);
+  for (std::size_t m = 0; m < at.sloped.size(); ++m) {
+    if (!at.sloped[m]) continue;
+    const std::uint32_t member = at.recordings.members[m];
+    out.member.push_back(member);
+    out.y.push_back(at.lines.slope[m]);
+    out.v.push_back(at.lines.slope_variance[m]);
+    out.v_low.push_back(at.lines.slope_variance_low[m]);
+    out.v_high.push_back(at.lines.slope_variance_high[m]);
+    for (LotCounts* counts : {&out.counts, &out.batch_counts[batch_of[group.devices[member]]]}) {
+      ++counts->members;
+      ++counts->counted;
+    }
+  }
+  out.temperatures = at.runs;
+  out.temperatures->slopes = device_slopes(at);
+  return out;
 }
 
 }  // namespace
@@ -83,26 +101,40 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
                                DeviceQuantity quantity,
                                const std::vector<std::size_t>& batch_of,
                                std::size_t batches) {
-  QuantityValues out;
-  out.batch_counts.resize(batches);
-  Recordings recordings;
-  for (std::size_t i = 0; i < group.places.size();) {
-    const std::uint32_t member = group.member[i];
-    Known best = Known::no_result;
-    for (; i < group.places.size() && group.member[i] == member; ++i) {
-      const LotPlace& place = group.places[i];
-      const Measured one = measured(records[place.recording].channels[place.channel], quantity);
-      best = std::max(best, one.known);
-      if (one.known != Known::counted) continue;
-      recordings.y.push_back(one.y);
-      recordings.v.push_back(one.v);
-      recordings.member.push_back(out.member.size());
+  const auto recordings = [&](DeviceQuantity of) {
+    return member_recordings(records, group, of, batch_of, batches);
+  };
+  const MemberRecordings found = recordings(quantity);
+  if (quantity == DeviceQuantity::temperature_coefficient) {
+    const auto at = temperature_lines(recordings(DeviceQuantity::turn_on_bias));
+    if (at && at->lines.dof >= 1 && at->runs.devices > found.counts.counted) {
+      QuantityValues out = slope_values(*at, group, batch_of, batches);
+      out.temperatures->in_one_recording = found.counts.counted;
+      return out;
     }
-    if (best == Known::counted) out.member.push_back(member);
-    count(best, out.counts);
-    count(best, out.batch_counts[batch_of[group.devices[member]]]);
   }
-  take_together(std::move(recordings), out);
+  QuantityValues out;
+  out.counts = found.counts;
+  out.batch_counts = found.batch_counts;
+  out.member = found.members;
+  auto at = quantity == DeviceQuantity::turn_on_bias ? temperature_lines(found) : std::nullopt;
+  if (at)
+    take_lines(*std::move(at), out);
+  else
+    take_together(found, out);
+  return out;
+}
+
+std::optional<RandomEffects> effects_of(const QuantityValues& values) {
+  auto out = lot_effects(values.y, values.v, values.counts.members);
+  if (!out || values.v_low.empty()) return out;
+  const auto square = [](double x) { return x * x; };
+  const double p = square(out->spread);
+  const double below = p - square(random_effects(values.y, values.v_high).spread),
+               above = square(random_effects(values.y, values.v_low).spread) - p;
+  Interval& ci95 = out->spread_ci95;
+  ci95 = {std::sqrt(std::max(0.0, p - std::hypot(p - square(ci95.low), below))),
+          std::sqrt(p + std::hypot(square(ci95.high) - p, above))};
   return out;
 }
 

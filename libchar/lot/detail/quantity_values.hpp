@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/core/random_effects.hpp"
 #include "libchar/lot/detail/lot_groups.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
@@ -15,7 +15,10 @@ struct QuantityValues {
   LotCounts counts;
   std::vector<std::uint32_t> member;  ///< of the group, those that count
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
+  /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
+  std::vector<double> v_low, v_high;
   std::optional<RepeatedDevices> repeats;
+  std::optional<TemperatureRuns> temperatures;
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
 };
 
@@ -25,5 +28,8 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
                                DeviceQuantity quantity,
                                const std::vector<std::size_t>& batch_of,
                                std::size_t batches);
+
+/// Mean and spread of those that count, where they are enough (characterize/lot_figures.hpp).
+std::optional<RandomEffects> effects_of(const QuantityValues& values);
 
 }  // namespace libchar

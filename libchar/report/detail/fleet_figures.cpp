@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/readable.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/svg_lot.hpp"
@@ -40,6 +41,10 @@ std::string not_counted(const LotCounts& c) {
 
 std::string mean_text(const std::optional<LotFigures>& f, const std::string& unit) {
   return f ? number_text(f->mean) + " " + brackets(f->mean_ci95, 1, 4) + " " + unit : "–";
+}
+
+std::string channel_unit_text(const QuantityLot& q) {
+  return q.channel_unit.empty() ? "U" : q.channel_unit;
 }
 
 std::string batches_text(const QuantityLot& q) {
@@ -115,9 +120,83 @@ std::string batch_table(const QuantityLot& q) {
   return folded(fmt::format("{} batches", q.batches.size()), rows);
 }
 
+/// To a tenth of a degree, without zeros behind it.
+std::string celsius(double t) {
+  return fmt::format("{:g}", std::round(10 * t) / 10);
+}
+
+std::string range_text(const Interval& range_c) {
+  return fmt::format("{} to {} °C", celsius(range_c.low), celsius(range_c.high));
+}
+
+/// How a temperature coefficient was found.
+std::string coefficient_sentence(const QuantityLot& q) {
+  if (!q.temperatures)
+    return "Found inside single recordings that have a thermometer, at the mean temperature of "
+           "each.";
+  const TemperatureRuns& t = *q.temperatures;
+  std::string out = fmt::format(
+      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias "
+      "differs by each time a device is switched on, {} (sd, {} degrees of freedom), not the "
+      "noise of one recording.",
+      plural(t.devices, "device"),
+      plural(t.recordings, "recording"),
+      range_text(t.range_c),
+      number_text(t.repeatability, 3) + " " + channel_unit_text(q),
+      t.dof);
+  if (t.in_one_recording > 0)
+    out += fmt::format(
+        " Of {} it was found inside a recording as well: fewer than have a slope, and not mixed "
+        "in.",
+        plural(t.in_one_recording, "device"));
+  return out;
+}
+
+/// At which temperature a turn-on bias is given.
+std::string reference_sentence(const QuantityLot& q) {
+  const TemperatureRuns& t = *q.temperatures;
+  std::string out = fmt::format(
+      "{} recorded at {}: their bias is given at {} °C by a line over temperature of "
+      "each, which is taken out of how it repeats.",
+      t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were",
+      range_text(t.range_c),
+      celsius(t.reference_c));
+  if (t.elsewhere > 0)
+    out +=
+        fmt::format(" {} recorded at one temperature far from that only: theirs is the bias there.",
+                    t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
+  if (t.dof < 1)
+    out +=
+        " No device shows how its bias repeats (three recordings, or two at one temperature), "
+        "so that no temperature coefficient can be given with an error.";
+  return out;
+}
+
+std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> records) {
+  if (!q.temperatures || q.temperatures->slopes.empty()) return "";
+  constexpr std::size_t kMost = 200;
+  const std::vector<DeviceSlope>& slopes = q.temperatures->slopes;
+  std::string rows = "<div class=\"wide\"><table class=\"many\">\n" +
+                     table_head({"Device", "Coefficient", "Recordings", "At"});
+  for (std::size_t i = 0; i < std::min(kMost, slopes.size()); ++i)
+    rows += table_row({records[slopes[i].recording].device,
+                       number_text(slopes[i].value) + " " + brackets(slopes[i].ci95) + " " + q.unit,
+                       count_text(slopes[i].recordings),
+                       range_text(slopes[i].temperature_c)});
+  rows += "</tbody></table></div>\n";
+  if (slopes.size() > kMost)
+    rows += fmt::format("<p class=\"note\">{} more devices stand in lot.json.</p>\n",
+                        count_text(slopes.size() - kMost));
+  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")), rows);
+}
+
 std::string sentences(const QuantityLot& q) {
   const bool logarithm = in_logarithm(q.quantity);
   std::vector<std::string> out;
+  if (q.quantity == DeviceQuantity::temperature_coefficient)
+    out.push_back(coefficient_sentence(q));
+  else if (q.temperatures)
+    out.push_back(reference_sentence(q));
   if (q.batch_difference) {
     const BatchDifference& d = *q.batch_difference;
     out.push_back(fmt::format(
@@ -187,7 +266,7 @@ std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
   std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
                     svg_histogram(q.histogram, axis_of(q), "Histogram: " + title);
   if (q.chart) out += chart_of(report, q, "Control chart: " + title);
-  return out + "</div>\n" + sentences(q) + batch_table(q);
+  return out + "</div>\n" + sentences(q) + slope_table(q, report.records) + batch_table(q);
 }
 
 }  // namespace libchar

@@ -1,0 +1,30 @@
+#pragma once
+// What the recordings of a group's members say of a quantity, one after the other.
+
+#include <span>
+#include <vector>
+
+#include "libchar/lot/detail/lot_groups.hpp"
+#include "libchar/lot/fleet_lot.hpp"
+
+namespace libchar {
+
+/// The recordings that count, by member.
+struct MemberRecordings {
+  std::vector<double> y, v;           ///< ln(value), or the value, and its variance
+  std::vector<double> temperature_c;  ///< NaN: not known
+  std::vector<LotPlace> place;
+  std::vector<std::size_t> member;     ///< index into `members`
+  std::vector<std::uint32_t> members;  ///< of the group, those that count
+  LotCounts counts;
+  std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
+};
+
+/// `batch_of`: of each device an index below `batches`.
+MemberRecordings member_recordings(std::span<const DeviceRecord> records,
+                                   const LotGroup& group,
+                                   DeviceQuantity quantity,
+                                   const std::vector<std::size_t>& batch_of,
+                                   std::size_t batches);
+
+}  // namespace libchar
