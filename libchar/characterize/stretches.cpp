@@ -36,9 +36,11 @@ CharacterizeOptions in_samples(const LogInfo& log, CharacterizeOptions options) 
 
 std::vector<LeafStage> stages_for(std::size_t channels,
                                   const CharacterizeOptions& options,
-                                  CharacterizeWorkspace& workspace) {
+                                  CharacterizeWorkspace& workspace,
+                                  std::uint64_t samples) {
   std::vector<LeafStage> stages;
-  for (std::size_t c = 0; c < channels; ++c) stages.emplace_back(options, workspace.welch);
+  for (std::size_t c = 0; c < channels; ++c)
+    stages.emplace_back(options, workspace.welch, samples);
   return stages;
 }
 
@@ -182,7 +184,7 @@ std::string characterize_stretch(const std::string& path,
   state.head = {identity, settings_digest(options), range, samples};
   const CharacterizeOptions chosen = in_samples(state.log, options);
   CharacterizeWorkspace workspace;
-  std::vector<LeafStage> stages = stages_for(state.log.channels.size(), chosen, workspace);
+  std::vector<LeafStage> stages = stages_for(state.log.channels.size(), chosen, workspace, samples);
   LeafTree tree(stages);
   LeafSamples read;
   tbb::task_arena arena(options.reading.threads > 0 ? options.reading.threads
@@ -241,7 +243,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
     StretchState state = read_stretch(from);
     if (stages.empty()) {
       chosen = in_samples(state.log, options);
-      stages = stages_for(state.log.channels.size(), chosen, workspace);
+      stages = stages_for(state.log.channels.size(), chosen, workspace, state.head.samples);
     }
     if (state.log.channels.size() != stages.size()) from.refuse("the number of its channels");
     add_nodes(from, state.head, stages, tree);

@@ -2,11 +2,11 @@
 // (exact). A longer one:
 //   above f_split = 15.5/(2 block dt):  DCT of each block, pooled over blocks, k >= 16, and of the tail;
 //   below f_split:                      DCT of the series of means of block/64 samples over the whole
-//                                       segment.
-// Both levels use their exact expectations (dct_means). Sixteen coefficients of every block are
+//                                       segment; of more than 2^20 of them, the same once more (mean_series.hpp).
+// All levels use their exact expectations (dct_means). Sixteen coefficients of every block are
 // left to the second level, so that neighbouring blocks stay uncorrelated under flicker and walk
 // and the slow noise is seen with the full resolution of the segment; white noise is exactly
-// uncorrelated within each level. Memory: two blocks and 64 means per block.
+// uncorrelated within each level. Memory: two blocks, up to 2^20 means, and one value for 2^18 samples of a longer record.
 #include "libchar/fit/power_bins.hpp"
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/detail/line_clip.hpp"
+#include "libchar/fit/detail/mean_series.hpp"
 #include "libchar/fit/detail/pooled_power.hpp"
 #include "libchar/fit/detail/record_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
@@ -51,15 +52,16 @@ struct PowerBinner::State {
   std::vector<double> taken_power;   ///< the same over those transformed elsewhere
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
-  /// sqrt(per_mean) * mean of per_mean samples, less the segment's first sample
-  std::vector<double> means;
+  MeanSeries means;                  ///< of per_mean samples, less the segment's first sample
   double shift = 0;                 ///< first sample of the segment
   std::array<double, 8> partial{};  ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<PooledPower> done;  ///< of finished segments (their tails and series of means)
 
   explicit State(std::uint64_t size)
-      : block(size), per_mean(std::max<std::uint64_t>(1, size / kMeansPerBlock)) {
+      : block(size),
+        per_mean(std::max<std::uint64_t>(1, size / kMeansPerBlock)),
+        means(per_mean, block) {
     pending.reserve(std::min<std::uint64_t>(block, 1U << 16U));
   }
 
@@ -122,7 +124,7 @@ struct PowerBinner::State {
     if (partial_count == per_mean) {
       const double sum = ((partial[0] + partial[4]) + (partial[2] + partial[6])) +
                          ((partial[1] + partial[5]) + (partial[3] + partial[7]));
-      means.push_back(sum / std::sqrt(static_cast<double>(per_mean)));
+      means.push(sum / std::sqrt(static_cast<double>(per_mean)));
       partial.fill(0);
       partial_count = 0;
     }
@@ -148,15 +150,10 @@ struct PowerBinner::State {
       if (tail >= kSmallestTransform) powers.push_back(record_power(pending, 1, 1, tail));
       return powers;
     }
-    const double split = (static_cast<double>(kLeftToMeans) - 0.5) / static_cast<double>(block);
-    const auto first = static_cast<std::uint64_t>(std::ceil(split * static_cast<double>(tail)));
-    if (tail >= kSmallestTransform && first < tail) {
-      powers.push_back(record_power(pending, 1, std::max<std::uint64_t>(1, first), tail));
-    }
-    const auto low =
-        static_cast<std::uint64_t>(split * static_cast<double>(means.size() * per_mean));
-    powers.push_back(
-        record_power(means, per_mean, 1, std::min<std::uint64_t>(low + 1, means.size())));
+    const std::uint64_t first = first_kept(tail, block);
+    if (tail >= kSmallestTransform && first < tail)
+      powers.push_back(record_power(pending, 1, first, tail));
+    means.append_to(powers);
     return powers;
   }
 

@@ -8,6 +8,10 @@
 // a part) and of a mean are left out. So is the rest in front of a gap of more than 4096 samples. Whether such a gap ends a segment
 // is decided at the end, when it is known how many samples are in front of it: a record begins anew where it is longer than one in
 // hundred of them, as in power_bins.cpp. Memory: 64 means a block, and a block of each length.
+//
+// Of a record of more than 2^29 samples, parts of 2^24 samples are settled: their means become powers of a block of 2^15 means, as those
+// of mean_series.hpp, and one value for 2^18 samples. Where samples are missing the rest is cut into pieces of 2^14 … 2^6 means, and a gap
+// is measured against all that is in front of the part, present or missing.
 #include "libchar/fit/power_sums.hpp"
 
 #include <algorithm>
@@ -16,9 +20,8 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/free_memory.hpp"
 #include "libchar/core/present.hpp"
-#include "libchar/fit/detail/pooled_power.hpp"
+#include "libchar/fit/detail/mean_series.hpp"
 #include "libchar/fit/detail/record_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
 
@@ -32,55 +35,38 @@ std::uint64_t piece_length(std::size_t piece) {
   return PowerPart::kBlock >> (piece + 1);
 }
 
-/// The first coefficient that is not left to the series of means.
-std::uint64_t first_kept(std::uint64_t length) {
-  const double split = (static_cast<double>(kLeftToMeans) - 0.5) / PowerPart::kBlock;
-  return std::max<std::uint64_t>(
-      1, static_cast<std::uint64_t>(std::ceil(split * static_cast<double>(length))));
-}
-
-void add_squares(std::span<const double> c, PooledSums& sums) {
-  sums.power.resize(c.size());
-  for (std::size_t k = 1; k < c.size(); ++k) sums.power[k] += c[k] * c[k];
-  ++sums.transforms;
-}
-
-void add(const PooledSums& later, PooledSums& sums) {
-  if (sums.power.empty()) sums.power.resize(later.power.size());
-  for (std::size_t k = 0; k < later.power.size(); ++k) sums.power[k] += later.power[k];
-  sums.transforms += later.transforms;
-}
-
-void add_powers(const PooledSums& sums, std::uint64_t length, std::vector<PooledPower>& out) {
-  if (sums.transforms == 0) return;
-  PooledPower pooled{length, 1, first_kept(length), sums.transforms, {}};
-  for (std::uint64_t k = pooled.first; k < length; ++k)
-    pooled.mean.push_back(sums.power[k] / static_cast<double>(sums.transforms));
-  out.push_back(std::move(pooled));
-}
-
 /// A segment: runs between which gaps are closed up.
 struct Segment {
   std::uint64_t samples = 0;
   double shift = 0;
-  std::vector<double> means;
+  std::vector<double> means, slow;
 
   void add(const PowerRun& run) {
     if (samples == 0) shift = run.shift;
     samples += run.samples;
     const double moved = std::sqrt(static_cast<double>(kSamplesAMean)) * (run.shift - shift);
     for (const double mean : run.means) means.push_back(mean + moved);
+    const double slow_moved = std::sqrt(static_cast<double>(kMeansPerSlow)) * moved;
+    for (const double mean : run.slow) slow.push_back(mean + slow_moved);
   }
 };
 
 /// The series of means; `alone`: the tail is all of the segment, and has all there is.
-void add_means(const Segment& segment, bool alone, std::vector<PooledPower>& out) {
-  if (alone || segment.means.size() < kSmallestTransform) return;
-  const double split = (static_cast<double>(kLeftToMeans) - 0.5) / PowerPart::kBlock;
-  const auto low =
-      static_cast<std::uint64_t>(split * static_cast<double>(segment.means.size() * kSamplesAMean));
-  const std::uint64_t end = std::min<std::uint64_t>(low + 1, segment.means.size());
-  out.push_back(record_power(segment.means, kSamplesAMean, 1, end));
+void append_means(Segment segment, bool alone, std::vector<PooledPower>& out) {
+  const std::vector<double>& means = segment.means;
+  if (alone) return;
+  if (!segment.slow.empty())
+    return append_slow(means, std::move(segment.slow), kSamplesAMean, PowerPart::kBlock, out);
+  if (means.size() < kSmallestTransform) return;
+  out.push_back(record_power(
+      means, kSamplesAMean, 1, end_of_left(means.size(), kSamplesAMean, PowerPart::kBlock)));
+}
+
+/// Runs of one segment into one.
+PowerRun settled(const Segment& segment, std::uint64_t gap, MeanCutter& cutter, MeanPowers& to) {
+  const std::span<const double> means = segment.means;
+  cutter.take_pieces(means.subspan(cutter.take_blocks(means, to)), to);
+  return {gap, segment.samples, segment.shift, {}, slow_means(means)};
 }
 
 }  // namespace
@@ -184,7 +170,7 @@ bool PowerPart::take_block(std::span<const double> samples) {
 }
 
 void PowerPart::take_power(std::vector<double> power) {
-  add({0, std::move(power)}, state_->sums.blocks);
+  libchar::join(state_->sums.blocks, {0, std::move(power)});
 }
 
 PowerSums PowerPart::finish(bool last) {
@@ -194,14 +180,15 @@ PowerSums PowerPart::finish(bool last) {
     s.sums.tail = std::exchange(s.pending, {});
   }
   if (s.run.samples > 0) s.end_run();
-  if (s.gap > 0) s.sums.runs.push_back({s.gap, 0, 0, {}});
+  if (s.gap > 0) s.sums.runs.push_back({s.gap, 0, 0, {}, {}});
   return std::move(s.sums);
 }
 
 void join(PowerSums& sums, PowerSums later) {
-  add(later.blocks, sums.blocks);
+  join(sums.blocks, later.blocks);
   for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
-    add(later.pieces[piece], sums.pieces[piece]);
+    join(sums.pieces[piece], later.pieces[piece]);
+  join(sums.means, later.means);
   if (!sums.runs.empty() && sums.runs.back().samples == 0 && !later.runs.empty()) {
     later.runs.front().gap += sums.runs.back().gap;
     sums.runs.pop_back();
@@ -212,74 +199,88 @@ void join(PowerSums& sums, PowerSums later) {
   if (!later.tail.empty()) sums.tail = std::move(later.tail);
 }
 
+bool is_long_record(std::uint64_t samples) {
+  return samples / kSamplesAMean > kMostMeans;
+}
+
+void settle_means(PowerSums& sums, std::uint64_t samples_before) {
+  MeanCutter cutter(kSamplesAMean, PowerPart::kBlock);
+  std::vector<PowerRun> runs;
+  Segment segment;
+  std::uint64_t gap = 0;
+  const auto end_segment = [&] {
+    if (segment.samples > 0) runs.push_back(settled(segment, gap, cutter, sums.means));
+    segment = {};
+  };
+  for (PowerRun& run : sums.runs) {
+    if (run.samples == 0 || run.gap > std::max(kLongGap, samples_before / 100)) end_segment();
+    if (run.samples == 0) {
+      runs.push_back(std::move(run));
+      continue;
+    }
+    if (segment.samples == 0) gap = run.gap;
+    segment.add(std::exchange(run, {}));
+  }
+  end_segment();
+  sums.runs = std::move(runs);
+}
+
 PowerBinner binner_of(PowerSums sums) {
   std::vector<PooledPower> powers;
   std::uint64_t samples = 0;
   Segment segment;
-  std::size_t left = 0;
-  for (const PowerRun& run : sums.runs) left += run.means.size();
   for (PowerRun& run : sums.runs) {
     if (run.samples == 0) continue;
-    if (segment.samples > 0 && run.gap > std::max(kLongGap, samples / 100)) {
-      add_means(segment, false, powers);
-      segment = {};
-    }
-    if (segment.samples == 0) segment.means.reserve(left);
-    left -= run.means.size();
+    if (segment.samples > 0 && run.gap > std::max(kLongGap, samples / 100))
+      append_means(std::exchange(segment, {}), false, powers);
     samples += run.samples;
     segment.add(std::exchange(run, {}));
   }
   const std::uint64_t tail = sums.tail.size();
   const bool alone = tail == segment.samples;
   if (tail >= kSmallestTransform)
-    powers.push_back(record_power(sums.tail, 1, alone ? 1 : first_kept(tail), tail));
-  add_means(segment, alone, powers);
+    powers.push_back(record_power(sums.tail, 1, alone ? 1 : first_kept(tail, PowerPart::kBlock), tail));
+  append_means(std::move(segment), alone, powers);
+  append_powers(sums.means, kSamplesAMean, powers);
+  const auto append = [&](const PooledSums& pooled, std::uint64_t length) {
+    append_pooled(pooled, length, 1, first_kept(length, PowerPart::kBlock), powers);
+  };
   for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
-    add_powers(sums.pieces[piece], piece_length(piece), powers);
-  add_powers(sums.blocks, PowerPart::kBlock, powers);
+    append(sums.pieces[piece], piece_length(piece));
+  append(sums.blocks, PowerPart::kBlock);
   return PowerBinner(std::move(powers));
 }
 
-void write_state(PowerSums sums, StateWriter& to) {
-  const auto write = [&](const PooledSums& pooled) {
-    to.number(pooled.transforms);
-    to.reals(pooled.power);
-  };
-  write(sums.blocks);
-  for (const PooledSums& piece : sums.pieces) write(piece);
+void write_state(const PowerSums& sums, StateWriter& to) {
+  write_state(sums.blocks, to);
+  for (const PooledSums& piece : sums.pieces) write_state(piece, to);
+  write_state(sums.means, to);
   to.number(sums.runs.size());
-  constexpr std::size_t kGiveBackEvery = 256;  // runs of 16 KB, mostly
-  for (std::size_t i = 0; i < sums.runs.size(); ++i) {
-    const PowerRun run = std::exchange(sums.runs[i], {});
+  for (const PowerRun& run : sums.runs) {
     to.number(run.gap);
     to.number(run.samples);
     to.real(run.shift);
     to.reals(run.means);
-    if ((i + 1) % kGiveBackEvery == 0) give_back_free_memory();
+    to.reals(run.slow);
   }
   to.reals(sums.tail);
 }
 
 PowerSums read_power_sums(StateReader& from) {
-  const auto read = [&](std::uint64_t length) {
-    PooledSums pooled;
-    pooled.transforms = from.number();
-    pooled.power = from.reals();
-    if (pooled.power.size() != length && (!pooled.power.empty() || pooled.transforms > 0))
-      from.refuse("the powers of its transforms");
-    return pooled;
-  };
   PowerSums sums;
-  sums.blocks = read(PowerPart::kBlock);
+  sums.blocks = read_pooled_sums(PowerPart::kBlock, from);
   for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
-    sums.pieces[piece] = read(piece_length(piece));
-  sums.runs.resize(from.count(32));
+    sums.pieces[piece] = read_pooled_sums(piece_length(piece), from);
+  sums.means = read_mean_powers(kSamplesAMean, PowerPart::kBlock, from);
+  sums.runs.resize(from.count(40));
   for (PowerRun& run : sums.runs) {
     run.gap = from.number();
     run.samples = from.number();
     run.shift = from.real();
     run.means = from.reals();
-    if (run.means.size() > run.samples / kSamplesAMean) from.refuse("the means of a run");
+    run.slow = from.reals();
+    if (run.means.size() + run.slow.size() * kMeansPerSlow > run.samples / kSamplesAMean)
+      from.refuse("the means of a run");
   }
   sums.tail = from.reals();
   if (sums.tail.size() >= PowerPart::kBlock) from.refuse("its tail");

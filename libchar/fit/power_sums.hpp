@@ -9,6 +9,8 @@
 
 #include "libchar/core/shared_blocks.hpp"
 #include "libchar/core/state_archive.hpp"
+#include "libchar/fit/mean_powers.hpp"
+#include "libchar/fit/pooled_sums.hpp"
 #include "libchar/fit/power_bins.hpp"
 
 namespace libchar {
@@ -20,17 +22,14 @@ struct PowerRun {
   double shift = 0;           ///< the first of them
   /// sqrt(512) * (mean of 512 samples less `shift`); what is left behind them is in none
   std::vector<double> means;
-};
-
-/// Sums of c_k² of transforms of one length.
-struct PooledSums {
-  std::uint64_t transforms = 0;
-  std::vector<double> power;  ///< [k]; none: no transform
+  /// in place of `means` where these are settled: 512 * (mean of 2^18 samples less `shift`)
+  std::vector<double> slow;
 };
 
 struct PowerSums {
   PooledSums blocks;
   std::array<PooledSums, 4> pieces;  ///< of 16384, 8192, 4096 and 2048 samples
+  MeanPowers means;                 ///< of what is settled
   std::vector<PowerRun> runs;
   std::vector<double> tail;  ///< samples behind the last block of the record's last part
 };
@@ -57,11 +56,16 @@ class PowerPart final : public BlockTaker {
 /// Adds the part that follows directly.
 void join(PowerSums& sums, PowerSums later);
 
-/// A binner that has seen the record. The sums are used up: the series of means of a long record does not stand in memory twice.
+/// Of a record of so many samples: is its series of means taken in blocks?
+bool is_long_record(std::uint64_t samples);
+/// The series of means of a part of a long record becomes powers of its blocks and a slow series. `samples_before`: in front of the
+/// part, present or missing; a gap inside it that is longer than a hundredth of those ends a segment.
+void settle_means(PowerSums& sums, std::uint64_t samples_before);
+
+/// A binner that has seen the record.
 PowerBinner binner_of(PowerSums sums);
 
-/// The means are let go of as they are written.
-void write_state(PowerSums sums, StateWriter& to);
+void write_state(const PowerSums& sums, StateWriter& to);
 PowerSums read_power_sums(StateReader& from);
 
 }  // namespace libchar

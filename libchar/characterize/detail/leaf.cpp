@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libchar/characterize/detail/rate_samples.hpp"
+#include "libchar/characterize/stretches.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/remedies.hpp"
 
@@ -49,8 +50,10 @@ SpikeCount read_count(StateReader& from) {
 
 }  // namespace
 
-LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
-    : options_(&options), spectrum_(options.spectrum, &workspace) {}
+LeafStage::LeafStage(const CharacterizeOptions& options,
+                     WelchWorkspace& workspace,
+                     std::uint64_t samples)
+    : options_(&options), samples_(samples), spectrum_(options.spectrum, &workspace) {}
 
 ChannelSums LeafStage::take(std::span<const double> samples, bool last) {
   ChannelSums sums;
@@ -110,17 +113,25 @@ void LeafStage::join(ChannelSums& sums, ChannelSums later) {
   add_count(later.spikes, sums.spikes);
 }
 
-void LeafStage::write_state(ChannelSums sums, StateWriter& to) {
+void LeafStage::settle(ChannelSums& sums, std::uint64_t first_leaf) const {
+  const std::uint64_t before = first_leaf * kLeafSamples;
+  // A log's end that is no whole run stays as it is: its rest is one transform.
+  if (!is_long_record(samples_) || samples_ - before < kSettledLeaves * kLeafSamples) return;
+  settle_means(sums.bins, before);
+  if (sums.cleaned) settle_means(sums.cleaned->bins, before);
+}
+
+void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
   to.number(sums.beyond);
   sums.quality.write_state(to);
   sums.trace.write_state(to);
   libchar::write_state(sums.allan, to);
   WelchParts::write_state(sums.spectrum, to);
-  libchar::write_state(std::move(sums.bins), to);
+  libchar::write_state(sums.bins, to);
   to.flag(sums.cleaned.has_value());
   if (sums.cleaned) {
     libchar::write_state(sums.cleaned->allan, to);
-    libchar::write_state(std::move(sums.cleaned->bins), to);
+    libchar::write_state(sums.cleaned->bins, to);
   }
   write_count(sums.spikes, to);
 }

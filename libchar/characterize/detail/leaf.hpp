@@ -16,6 +16,9 @@
 
 namespace libchar {
 
+inline constexpr std::uint64_t kSettledHeight = 4;  ///< of the tree's nodes that are settled
+inline constexpr std::uint64_t kSettledLeaves = std::uint64_t{1} << kSettledHeight;
+
 /// What is fitted.
 struct FittedSums {
   AllanSums allan;
@@ -38,16 +41,17 @@ struct ChannelSums {
 /// Takes and joins the leaves of a channel.
 class LeafStage {
  public:
-  /// All must live as long. `options.spectrum.segment` > 0.
-  LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace);
+  /// All must live as long. `options.spectrum.segment` > 0. `samples`: of the whole log.
+  LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace, std::uint64_t samples);
 
   /// Samples as the log has them; `last`: no leaf follows.
   ChannelSums take(std::span<const double> samples, bool last);
   /// Adds the leaves that follow directly.
   void join(ChannelSums& sums, ChannelSums later);
+  /// Of a run of 16 leaves that begins at a multiple of them: of a long log, what grows with its length is made less.
+  void settle(ChannelSums& sums, std::uint64_t first_leaf) const;
 
-  /// What is written is let go of.
-  static void write_state(ChannelSums sums, StateWriter& to);
+  static void write_state(const ChannelSums& sums, StateWriter& to);
   ChannelSums read_state(StateReader& from) const;
 
  private:
@@ -56,6 +60,7 @@ class LeafStage {
   void clean(std::span<const double> samples, bool last, ChannelSums& sums) const;
 
   const CharacterizeOptions* options_;
+  std::uint64_t samples_;
   WelchParts spectrum_;
   std::vector<double> usable_, rate_;  // scratch
 };

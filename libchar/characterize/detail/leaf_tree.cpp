@@ -17,6 +17,7 @@ void LeafTree::add(LeafNode node) {
     join_last();
     ++nodes_.back().height;
     nodes_.back().place /= 2;
+    if (nodes_.back().height == kSettledHeight) settle_last();
   }
 }
 
@@ -27,6 +28,13 @@ void LeafTree::join_last() {
   tbb::parallel_for(std::size_t{0}, left.size(), [&](std::size_t c) {
     (*stages_)[c].join(left[c], std::move(right.channels[c]));
     right.channels[c] = {};
+  });
+}
+
+void LeafTree::settle_last() {
+  LeafNode& node = nodes_.back();
+  tbb::parallel_for(std::size_t{0}, node.channels.size(), [&](std::size_t c) {
+    (*stages_)[c].settle(node.channels[c], node.first_leaf());
   });
 }
 

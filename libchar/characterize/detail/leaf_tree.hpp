@@ -32,6 +32,7 @@ class LeafTree {
 
  private:
   void join_last();
+  void settle_last();
 
   std::vector<LeafStage>* stages_;
   std::vector<LeafNode> nodes_;

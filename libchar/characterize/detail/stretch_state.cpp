@@ -9,7 +9,7 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;  // 2: slow means, powers of means
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);
@@ -90,7 +90,9 @@ std::size_t size_of(const ChannelSums& sums) {
   const auto add = [&](const PowerSums& bins) {
     reals += bins.blocks.power.size() + bins.tail.size();
     for (const PooledSums& piece : bins.pieces) reals += piece.power.size();
-    for (const PowerRun& run : bins.runs) reals += 4 + run.means.size();
+    reals += bins.means.blocks.power.size();
+    for (const PooledSums& piece : bins.means.pieces) reals += piece.power.size();
+    for (const PowerRun& run : bins.runs) reals += 5 + run.means.size() + run.slow.size();
   };
   add(sums.bins);
   if (sums.cleaned) add(sums.cleaned->bins);
@@ -115,7 +117,8 @@ std::string write_stretch(const StretchState& state, std::vector<LeafNode>& node
   for (LeafNode& node : nodes) {
     to.number(node.height);
     to.number(node.place);
-    for (ChannelSums& sums : node.channels) LeafStage::write_state(std::exchange(sums, {}), to);
+    for (const ChannelSums& sums : node.channels) LeafStage::write_state(sums, to);
+    node.channels.clear();
     give_back_free_memory();
   }
   return to.finish();
