@@ -29,7 +29,7 @@ struct PowerRun {
 struct PowerSums {
   PooledSums blocks;
   std::array<PooledSums, 4> pieces;  ///< of 16384, 8192, 4096 and 2048 samples
-  MeanPowers means;                 ///< of what is settled
+  MeanPowers means;                  ///< of what is settled
   std::vector<PowerRun> runs;
   std::vector<double> tail;  ///< samples behind the last block of the record's last part
 };

@@ -97,7 +97,9 @@ TEST_CASE("mean series: up to 2^20 means are one transform, and one more makes i
   REQUIRE(longest == kMeansBlock);
 }
 
-TEST_CASE("mean series: every coefficient of a long one is there once, slow ones with the whole resolution") {
+TEST_CASE(
+    "mean series: every coefficient of a long one is there once, slow ones with the whole "
+    "resolution") {
   const std::size_t n = kMostMeans + 5 * kMeansBlock + 20000;
   const std::vector<PowerBin> bins = series_bins(white_walk_means(n, 0, 2));
   double count = 0, slowest = 1e9;
@@ -137,7 +139,9 @@ TEST_CASE("mean series: parts of a long record, each less its own first sample, 
   }
 }
 
-TEST_CASE("mean series: a part with missing samples is cut into pieces that have the noise's expectations") {
+TEST_CASE(
+    "mean series: a part with missing samples is cut into pieces that have the noise's "
+    "expectations") {
   std::vector<double> means = white_walk_means(40 * kMeansBlock, 2e-5, 7);
   PowerSums all;
   for (std::size_t part = 0; part < 40; ++part) {
@@ -147,18 +151,21 @@ TEST_CASE("mean series: a part with missing samples is cut into pieces that have
     PowerSums one;
     const std::size_t cut = part == 9 ? count / 3 : count;
     one.runs.push_back({0, cut * kPerMean, 0, {from, from + cut}, {}});
-    if (cut < count) one.runs.push_back({5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}});
+    if (cut < count)
+      one.runs.push_back({5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}});
     settle_means(one, part << 24U);
     REQUIRE(one.runs.size() == 1);
     part == 0 ? void(all = std::move(one)) : join(all, std::move(one));
   }
-  const Distance right = distance(binner_of(std::move(all)).finish(kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
+  const Distance right =
+      distance(binner_of(std::move(all)).finish(kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
   CAPTURE(right.chi2, right.bins);
   REQUIRE(right.bins > 100);
   REQUIRE(right.chi2 < right.bins + 5 * std::sqrt(2 * right.bins));
 }
 
-TEST_CASE("mean series: a gap longer than a hundredth of what is in front begins a segment of its own") {
+TEST_CASE(
+    "mean series: a gap longer than a hundredth of what is in front begins a segment of its own") {
   const std::vector<double> means = white_walk_means(kMeansBlock, 0, 8);
   PowerSums sums;
   const std::size_t half = kMeansBlock / 2;
