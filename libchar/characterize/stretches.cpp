@@ -25,6 +25,10 @@
 namespace libchar {
 namespace {
 
+/// Channels that are taken in one pass over the rows of a stretch: more of them take 15 to 30 MB each, fewer take
+/// more passes.
+constexpr std::size_t kAtOnce = 3;
+
 /// As a streamed log has them: the segment in samples.
 CharacterizeOptions in_samples(const LogInfo& log, CharacterizeOptions options) {
   const double rate_hz = options.reading.rate_hz.value_or(log.time.rate_hz);
@@ -34,27 +38,19 @@ CharacterizeOptions in_samples(const LogInfo& log, CharacterizeOptions options) 
   return options;
 }
 
-std::vector<LeafStage> stages_for(std::size_t channels,
-                                  const CharacterizeOptions& options,
-                                  CharacterizeWorkspace& workspace,
-                                  std::uint64_t samples) {
-  std::vector<LeafStage> stages;
-  for (std::size_t c = 0; c < channels; ++c)
-    stages.emplace_back(options, workspace.welch, samples);
-  return stages;
-}
-
-/// The samples of one leaf.
+/// Of one leaf, the samples of a few channels.
 struct LeafSamples final : BlockSink {
-  std::vector<std::vector<double>> channels;
-  void begin(const LogInfo& log) override {
-    channels.resize(log.channels.size());
+  ChannelRange range;
+  std::vector<std::vector<double>> channels;  ///< of the range
+  explicit LeafSamples(ChannelRange wanted) : range(wanted), channels(wanted.end - wanted.first) {}
+  void begin(const LogInfo&) override {
     for (std::vector<double>& channel : channels) channel.clear();
   }
   void block(const SampleBlock& samples) override {
-    for (std::size_t c = 0; c < channels.size(); ++c)
-      channels[c].insert(
-          channels[c].end(), samples.channels[c], samples.channels[c] + samples.rows);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const double* from = samples.channels[range.first + c];
+      channels[c].insert(channels[c].end(), from, from + samples.rows);
+    }
   }
 };
 
@@ -79,62 +75,85 @@ void keep_head(LogInfo read, LogInfo& log) {
 }
 
 /// The nodes of a state into the tree; they are of its range, and follow each other.
-void add_nodes(StateReader& from,
-               const StretchHead& head,
-               const std::vector<LeafStage>& stages,
-               LeafTree& tree) {
+void add_nodes(StateReader& from, const StretchHead& head, const LeafStage& stage, LeafTree& tree) {
   std::uint64_t next = head.range.first_leaf;
   for (std::size_t left = read_node_count(from); left > 0; --left) {
-    LeafNode node = read_node(from, stages);
+    LeafNode node = read_node(from, stage);
     if (node.first_leaf() != next) from.refuse("its nodes do not follow each other");
     next = std::min(node.end_leaf(), leaves_of(head.samples));
     const std::uint64_t samples =
         std::min(next * kLeafSamples, head.samples) - node.first_leaf() * kLeafSamples;
-    for (const ChannelSums& sums : node.channels)
-      for (const std::uint64_t seen : {sums.allan.samples,
-                                       sums.spectrum.samples,
-                                       sums.trace.samples(),
-                                       sums.cleaned ? sums.cleaned->allan.samples : 0})
-        if (seen != samples && seen != 0)  // 0: of what was not asked for
-          from.refuse("a node has another number of samples than its leaves");
+    for (const std::uint64_t seen : {node.sums.allan.samples,
+                                     node.sums.spectrum.samples,
+                                     node.sums.trace.samples(),
+                                     node.sums.cleaned ? node.sums.cleaned->allan.samples : 0})
+      if (seen != samples && seen != 0)  // 0: of what was not asked for
+        from.refuse("a node has another number of samples than its leaves");
     tree.add(std::move(node));
   }
   if (next != head.range.end_leaf) from.refuse("its nodes are not those of its range");
   from.finish();
 }
 
-/// Counts are those of the whole log, and channels without a value are named as read_log names them.
-void finish_log(std::uint64_t samples, const std::vector<ChannelSums>& sums, LogInfo& log) {
-  log.rows = log.rows_used = log.samples = samples;
-  std::size_t with_values = 0;
-  for (std::size_t c = 0; c < sums.size(); ++c) {
-    if (sums[c].quality.finish().samples > 0)
-      ++with_values;
-    else
-      log.warnings.add("no_finite_value",
-                       "channels without any finite value",
-                       "channel " + log.channels[c].name);
+/// One channel of a log, from its states.
+ChannelSums joined(const std::vector<OrderedState>& states,
+                   LeafStage& stage,
+                   LogInfo& log,
+                   Progress& progress) {
+  LeafTree tree(stage);
+  for (const OrderedState& one : states) {
+    progress.update(-1, "reading " + one.state->name);
+    const std::string bytes = one.state->bytes();
+    StateReader from = stretch_reader(bytes, one.state->name);
+    const StretchState state = read_stretch(from);
+    add_nodes(from, state.head, stage, tree);
+    log.warnings.merge(state.log.warnings);
   }
-  if (with_values == 0)
-    throw Error({ErrorKind::input, "E0318", log.file, "no channel has a finite value", "", ""});
+  return tree.whole();
 }
 
-std::vector<ChannelResult> finish_channels(std::vector<ChannelSums> sums,
-                                           const LogInfo& log,
-                                           const CharacterizeOptions& options,
-                                           CharacterizeWorkspace& workspace,
-                                           Progress& progress) {
-  constexpr std::size_t kAtOnce = 2;
-  std::vector<ChannelResult> results(sums.size());
-  for (std::size_t first = 0; first < sums.size(); first += kAtOnce) {
-    progress.update(static_cast<double>(first) / static_cast<double>(sums.size()), "fitting");
-    tbb::parallel_for(first, std::min(sums.size(), first + kAtOnce), [&](std::size_t c) {
-      ChannelStage stage(options, workspace);
-      stage.take_leaves(std::exchange(sums[c], {}));
-      results[c] = stage.finish(log.channels[c], log.time.rate_hz);
+/// The head of a log without what was found in it.
+LogInfo head_in(const OrderedState& one) {
+  const std::string bytes = one.state->bytes();
+  StateReader from = stretch_reader(bytes, one.state->name);
+  StretchState state = read_stretch(from);
+  LogInfo log = std::move(state.log);
+  log.warnings = {};
+  log.rows = log.rows_used = log.samples = state.head.samples;
+  return log;
+}
+
+/// A pass over a stretch: the states of a few channels.
+void take_channels(const std::string& path,
+                   const CharacterizeOptions& options,
+                   ChannelRange channels,
+                   StretchState state,
+                   CharacterizeWorkspace& workspace,
+                   const StateSink& sink,
+                   const std::function<void(std::uint64_t leaf)>& at) {
+  const std::uint64_t samples = state.head.samples, leaves = leaves_of(samples);
+  std::vector<LeafStage> stages;
+  for (std::size_t c = channels.first; c < channels.end; ++c)
+    stages.emplace_back(options, workspace.welch, samples);
+  std::vector<LeafTree> trees(stages.begin(), stages.end());
+  LeafSamples read(channels);
+  for (std::uint64_t leaf = state.head.range.first_leaf; leaf < state.head.range.end_leaf; ++leaf) {
+    at(leaf);
+    const std::uint64_t first = leaf * kLeafSamples;
+    keep_head(
+        read_rows(
+            path, options.reading, first, std::min(first + kLeafSamples, samples), read, channels),
+        state.log);
+    tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t c) {
+      trees[c].add({0, leaf, stages[c].take(read.channels[c], leaf + 1 == leaves)});
     });
   }
-  return results;
+  read.channels.clear();
+  for (std::size_t c = 0; c < stages.size(); ++c) {
+    state.head.channel = channels.first + c;
+    sink(write_stretch(state, trees[c].nodes()));
+    state.log.warnings = {};  // said once: with the first of them
+  }
 }
 
 }  // namespace
@@ -170,45 +189,36 @@ std::string settings_digest(const CharacterizeOptions& options) {
   return digest.finish();
 }
 
-std::string characterize_stretch(const std::string& path,
-                                 const CharacterizeOptions& options,
-                                 StretchRange range,
-                                 const std::string& identity,
-                                 Progress& progress) {
+void characterize_stretch(const std::string& path,
+                          const CharacterizeOptions& options,
+                          StretchRange range,
+                          const std::string& identity,
+                          const StateSink& sink,
+                          Progress& progress) {
   StretchState state;
   state.log = read_log_head(path, options.reading);
   if (std::string why = why_not_divided(state.log, options); !why.empty())
     throw Error({ErrorKind::usage, "E0726", path, std::move(why), "", ""});
-  const std::uint64_t samples = state.log.rows, leaves = leaves_of(samples);
-  check_range(path, range, leaves);
-  state.head = {identity, settings_digest(options), range, samples};
+  const std::uint64_t samples = state.log.rows;
+  check_range(path, range, leaves_of(samples));
+  const std::size_t channels = state.log.channels.size();
+  state.log.warnings = {};
+  state.head = {identity, settings_digest(options), range, samples, 0, channels};
   const CharacterizeOptions chosen = in_samples(state.log, options);
   CharacterizeWorkspace workspace;
-  std::vector<LeafStage> stages = stages_for(state.log.channels.size(), chosen, workspace, samples);
-  LeafTree tree(stages);
-  LeafSamples read;
   tbb::task_arena arena(options.reading.threads > 0 ? options.reading.threads
                                                     : tbb::task_arena::automatic);
-  for (std::uint64_t leaf = range.first_leaf; leaf < range.end_leaf; ++leaf) {
-    progress.update(static_cast<double>(leaf - range.first_leaf) /
-                        static_cast<double>(range.end_leaf - range.first_leaf),
-                    "reading " + path);
-    keep_head(read_rows(path,
-                        options.reading,
-                        leaf * kLeafSamples,
-                        std::min((leaf + 1) * kLeafSamples, samples),
-                        read),
-              state.log);
-    arena.execute([&] {
-      LeafNode node{0, leaf, std::vector<ChannelSums>(stages.size())};
-      tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t c) {
-        node.channels[c] = stages[c].take(read.channels[c], leaf + 1 == leaves);
-      });
-      tree.add(std::move(node));
-    });
+  const std::uint64_t leaves = range.end_leaf - range.first_leaf;
+  for (std::size_t first = 0; first < channels; first += kAtOnce) {
+    const ChannelRange few = {first, std::min(channels, first + kAtOnce)};
+    const auto at = [&](std::uint64_t leaf) {
+      const std::uint64_t done = first * leaves + (few.end - first) * (leaf - range.first_leaf);
+      progress.update(static_cast<double>(done) / static_cast<double>(channels * leaves),
+                      "reading " + path);
+    };
+    arena.execute([&] { take_channels(path, chosen, few, state, workspace, sink, at); });
+    give_back_free_memory();
   }
-  read = {};
-  return write_stretch(state, tree.nodes());
 }
 
 NamedState state_in_memory(std::string name, std::string bytes) {
@@ -230,34 +240,32 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
                                              Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
-  const std::vector<OrderedState> ordered = states_in_order(states, settings_digest(options));
-  CharacterizeWorkspace workspace;
-  CharacterizeOptions chosen = options;
-  std::vector<LeafStage> stages;
-  LeafTree tree(stages);
+  const auto ordered = states_in_order(states, settings_digest(options));
   Characterization result;
-  for (const OrderedState& one : ordered) {
-    progress.update(-1, "reading " + one.state->name);
-    const std::string bytes = one.state->bytes();
-    StateReader from = stretch_reader(bytes, one.state->name);
-    StretchState state = read_stretch(from);
-    if (stages.empty()) {
-      chosen = in_samples(state.log, options);
-      stages = stages_for(state.log.channels.size(), chosen, workspace, state.head.samples);
-    }
-    if (state.log.channels.size() != stages.size()) from.refuse("the number of its channels");
-    add_nodes(from, state.head, stages, tree);
-    if (one.state == ordered.front().state)
-      result.log = std::move(state.log);
-    else
-      result.log.warnings.merge(state.log.warnings);
-  }
-  std::vector<ChannelSums> whole = tree.whole();
-  finish_log(ordered.front().head.samples, whole, result.log);
-  give_back_free_memory();  // the transform of a long series of means takes much of its own
+  result.log = head_in(ordered.front().front());
+  const CharacterizeOptions chosen = in_samples(result.log, options);
+  CharacterizeOptions said = chosen;
   // The result says where nothing was asked for.
-  if (options.spectrum.segment == 0 && !(options.segment_s > 0)) chosen.spectrum.segment = 0;
-  result.channels = finish_channels(std::move(whole), result.log, chosen, workspace, progress);
+  if (options.spectrum.segment == 0 && !(options.segment_s > 0)) said.spectrum.segment = 0;
+  CharacterizeWorkspace workspace;
+  std::size_t with_values = 0;
+  for (std::size_t c = 0; c < ordered.size(); ++c) {
+    const Channel& channel = result.log.channels[c];
+    LeafStage leaves(chosen, workspace.welch, result.log.samples);
+    ChannelSums sums = joined(ordered[c], leaves, result.log, progress);
+    if (sums.quality.finish().samples > 0)
+      ++with_values;
+    else
+      result.log.warnings.add(
+          "no_finite_value", "channels without any finite value", "channel " + channel.name);
+    ChannelStage stage(said, workspace);
+    stage.take_leaves(std::move(sums));
+    result.channels.push_back(stage.finish(channel, result.log.time.rate_hz));
+    give_back_free_memory();
+  }
+  if (with_values == 0)
+    throw Error(
+        {ErrorKind::input, "E0318", result.log.file, "no channel has a finite value", "", ""});
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

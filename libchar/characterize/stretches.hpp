@@ -8,8 +8,8 @@
 //   const LogInfo head = read_log_head(path, options.reading);              // channel_names.hpp; head.rows: samples
 //   if (const auto why = why_not_divided(head, options); !why.empty()) …    // a sentence
 //   const std::uint64_t leaves = leaves_of(head.rows);
-//   bytes = characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log);   // on one machine: to be written to a file
-//   …                                                                                 // {leaves / 2, leaves} on another
+//   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);   // on one machine: a file for each channel
+//   …                                                                               // {leaves / 2, leaves} on another
 //   result = characterize_from_stretches({{state_in_file("a.state"), state_in_file("b.state")}}, options);
 
 #include <cstdint>
@@ -36,18 +36,22 @@ std::uint64_t leaves_of(std::uint64_t samples);
 /// its rows have no fixed places (csv)". `log`: its head (read_log_head).
 std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& options);
 
-/// The partial state of all channels over some leaves, as bytes for a file. Nothing in front of them is read, and nothing of the whole
-/// log is: `identity` (its digest, or whatever tells it from others) goes into the state as it is. Memory: 8 MB a channel, some 1 MB a
-/// channel for each of up to 2 log2(leaves) nodes of the tree, 16 KB a leaf. Throws Error(usage) where the log or the options cannot be
-/// divided (E0726) or the range is none of the log's (E0727), Error(input) as read_log.
-std::string characterize_stretch(const std::string& path,
-                                 const CharacterizeOptions& options,
-                                 StretchRange range,
-                                 const std::string& identity,
-                                 Progress& progress = no_progress());
+/// Takes the partial states of a stretch, a channel each in their order, as bytes for a file.
+using StateSink = std::function<void(const std::string& bytes)>;
 
-/// A state under the name that messages have for it. It is read twice, one state at a time: states of a long log need not be in memory
-/// together.
+/// The partial states of all channels over some leaves. Nothing in front of them is read, and nothing of the whole
+/// log is: `identity` (its digest, or whatever tells it from others) goes into the states as it is. Three channels are taken in one pass
+/// over the rows. Memory: that of three, each 8 MB and some 1 MB for each of up to 2 log2(leaves) nodes of the tree. Throws
+/// Error(usage) where the log or the options cannot be divided (E0726) or the range is none of the log's (E0727), Error(input) as
+/// read_log.
+void characterize_stretch(const std::string& path,
+                          const CharacterizeOptions& options,
+                          StretchRange range,
+                          const std::string& identity,
+                          const StateSink& sink,
+                          Progress& progress = no_progress());
+
+/// A state under the name that messages have for it. It is read twice, one state at a time: they need not be in memory together.
 struct NamedState {
   std::string name;
   std::function<std::string()> bytes;
@@ -60,7 +64,8 @@ struct StretchHead {
   std::string identity;  ///< as it was given
   std::string settings;  ///< digest of the options that a state depends on (settings_digest)
   StretchRange range;
-  std::uint64_t samples = 0;  ///< of the whole log
+  std::uint64_t samples = 0;                ///< of the whole log
+  std::uint64_t channel = 0, channels = 0;  ///< which one it is of, from 0; and of how many
 };
 
 /// Reads and checks a whole state. Throws Error(input) by name: not a state, damaged, cut, of another version (E0723).
@@ -69,7 +74,7 @@ StretchHead stretch_head(const NamedState& state);
 /// Digest of the options that a state depends on, and of the program's version. Threads, memory and the like are not among them.
 std::string settings_digest(const CharacterizeOptions& options);
 
-/// Joins the states, in any order, to what one machine would have found. Throws Error(input) by name for a state that is damaged or no
+/// Joins the states of all channels, in any order, to what one machine would have found, one channel at a time. Throws Error(input) by name for a state that is damaged or no
 /// state (E0723), of another log or of other settings (E0724), for one that covers what another does, and for leaves that none has
 /// (E0725); Error(numeric) where no channel has a finite value. `log.sha256` of the result is empty: the caller knows the log.
 Characterization characterize_from_stretches(std::span<const NamedState> states,

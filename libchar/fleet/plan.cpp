@@ -116,17 +116,21 @@ class UnitMaker {
       : options_(options), cost_(cost), plan_(plan) {}
 
   void add(const LookedAt& log, FleetUnit unit) {
-    const bool large = unit.bytes > options_.split_bytes;
-    if (large && why_not_divided(log.head, unit.options).empty()) return add_stretches(log, unit);
-    if (!options_.by_channel || log.head.channels.size() < 2) return add_unit(log, unit);
+    if (!options_.by_channel || log.head.channels.size() < 2) return add_log(log, unit);
     for (const Channel& channel : log.head.channels) {
       FleetUnit one = unit;
       one.options.reading.channels = {channel.name};
-      add_unit(log, one);
+      add_log(log, one);
     }
   }
 
  private:
+  void add_log(const LookedAt& log, const FleetUnit& unit) {
+    const bool large = unit.bytes > options_.split_bytes;
+    large&& why_not_divided(log.head, unit.options).empty() ? add_stretches(log, unit)
+                                                            : add_unit(log, unit);
+  }
+
   void add_unit(const LookedAt& log, FleetUnit unit) {
     unit.id = unit_id(unit);
     unit.cost = cost_.of(unit, log.head);

@@ -58,12 +58,23 @@ Characterization of_log(const FleetUnit& unit, Progress& progress) {
   return result;
 }
 
+/// None where one is damaged: that stretch is computed again.
+std::vector<std::string> whole_states(const fs::path& fleet, const std::string& part) {
+  try {
+    return stored_states(fleet, part);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) {
   std::vector<NamedState> states;
   std::vector<std::string> missing;
-  for (const std::string& part : unit.parts)
-    has_result(fleet, part, true) ? states.push_back(state_in_file(state_path(fleet, part)))
-                                  : missing.push_back(part);  // or damaged: computed again
+  for (const std::string& part : unit.parts) {
+    const std::vector<std::string> files = whole_states(fleet, part);
+    if (files.empty()) missing.push_back(part);
+    for (const std::string& file : files) states.push_back(state_in_file(file));
+  }
   if (!missing.empty())
     throw Error({ErrorKind::again,
                  "E0787",
@@ -132,9 +143,11 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
   ResultFolder folder(fleet, unit.id);
   UnitRun out;
   if (unit.kind == UnitKind::stretch) {
-    write_whole_file(
-        (folder.path() / kStateFile).string(),
-        characterize_stretch(unit.log, unit.options, unit.stretch, unit.sha256, progress));
+    std::size_t channel = 0;
+    const auto write = [&](const std::string& bytes) {
+      write_whole_file((folder.path() / state_file(channel++)).string(), bytes);
+    };
+    characterize_stretch(unit.log, unit.options, unit.stretch, unit.sha256, write, progress);
   } else {
     const DeviceRecord record = record_in(unit, fleet, folder.path(), progress);
     write_record(folder.path(), record);

@@ -10,7 +10,7 @@ enum class Found { nothing, result, no_result };
 
 Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
   if (unit.kind == UnitKind::stretch)
-    return stored_state(folder, unit.id) ? Found::result : Found::nothing;
+    return stored_states(folder, unit.id).empty() ? Found::nothing : Found::result;
   const auto record = stored_record(folder, unit.id);
   if (!record) return Found::nothing;
   return record->problem.empty() ? Found::result : Found::no_result;

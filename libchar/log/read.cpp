@@ -390,14 +390,15 @@ LogInfo read_rows(const std::string& path,
                   const ReadOptions& options,
                   std::uint64_t first,
                   std::uint64_t end,
-                  BlockSink& sink) {
+                  BlockSink& sink,
+                  ChannelRange channels) {
   check_rate_option(options);
   ReadOptions whole = options;
   whole.from_s = whole.to_s = std::nullopt;
   whole.hash = false;
   const auto source = open_rows(format_of(path, whole), path, whole);
   std::string why_not = why_no_rows(source->info());
-  if (why_not.empty() && !source->restrict_rows(first, end))
+  if (why_not.empty() && !source->restrict_rows(first, end, channels))
     why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
   if (!why_not.empty())
     throw Error({ErrorKind::usage,
@@ -416,7 +417,7 @@ LogInfo read_rows(const std::string& path,
   source->finish(warnings);
   LogInfo info = named_info(*source, whole);
   take_grid(known, info);
-  if (first == 0) {  // what is said of the whole log is said once
+  if (first == 0 && channels.first == 0) {  // what is said of the whole log is said once
     warn_of_unused(info.channels, whole, warnings);
     warn_of_units(whole, warnings);
   }

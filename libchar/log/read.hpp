@@ -79,14 +79,22 @@ LogInfo read_log(const std::string& path,
                  BlockSink& sink,
                  Progress& progress = no_progress());
 
+/// Channels first … end - 1 of those that were chosen.
+struct ChannelRange {
+  std::size_t first = 0, end = SIZE_MAX;
+  bool has(std::size_t channel) const { return first <= channel && channel < end; }
+};
+
 /// Rows first … end-1 of a log without stamps whose rows stand at fixed places (.npy, raw binary), a sample each; nothing in front of
-/// them is read. `from_s` and `to_s` do not count, no digest is taken, and whether a channel has any value is not asked. Throws
-/// Error(usage) where rows have no fixed places or stamps.
+/// them is read. Of channels out of the range the sink gets no samples of the log but any numbers; what has to be said of the log, and
+/// not of a channel, is said with the first. `from_s` and `to_s` do not count, no digest is taken, and whether a channel has any value
+/// is not asked. Throws Error(usage) where rows have no fixed places or stamps.
 LogInfo read_rows(const std::string& path,
                   const ReadOptions& options,
                   std::uint64_t first,
                   std::uint64_t end,
-                  BlockSink& sink);
+                  BlockSink& sink,
+                  ChannelRange channels = {});
 
 /// "" or why rows of a log cannot be read from anywhere: "its rows have no fixed places (csv)". `log`: its head.
 std::string why_no_rows(const LogInfo& log);

@@ -1,6 +1,6 @@
 // One long log in stretches: a log to try it with, one stretch by one machine, and the merge. Memory and time: /usr/bin/time -v.
 // Usage: stretches_bench make SAMPLES LOG.f32 [HOLES]        white noise and a walk at 1000 Hz; one sample of HOLES is missing
-//        stretches_bench take LOG STATE FIRST_LEAF END_LEAF
+//        stretches_bench take LOG STATE FIRST_LEAF END_LEAF   STATE.0, STATE.1 …: a file for each channel
 //        stretches_bench divide LOG FOLDER STRETCHES         all of them, one after the other
 //        stretches_bench merge STATE…                        what was found, and a digest of its bits
 //        stretches_bench plain LOG [STATE…]                  streamed; and how far what was merged is from that
@@ -45,7 +45,10 @@ void make(std::uint64_t samples, const std::string& path, std::uint64_t holes) {
 }
 
 void take(const std::string& path, const std::string& state, StretchRange range) {
-  write_whole_file(state, characterize_stretch(path, {}, range, path), true);
+  std::size_t channel = 0;
+  characterize_stretch(path, {}, range, path, [&](const std::string& bytes) {
+    write_whole_file(fmt::format("{}.{}", state, channel++), bytes, true);
+  });
 }
 
 Characterization merged(const std::vector<std::string>& files) {

@@ -22,20 +22,27 @@ using namespace libchar;
 
 namespace {
 
-/// A raw log of doubles that goes with the object.
+/// A raw log of doubles that goes with the object; `sample`: of value i, row by row.
 class RawLog {
  public:
-  RawLog(const char* name, std::uint64_t rows, const std::function<double(std::uint64_t)>& sample)
+  RawLog(const char* name,
+         std::uint64_t rows,
+         const std::function<double(std::uint64_t)>& sample,
+         std::size_t channels = 1)
       : path_((std::filesystem::temp_directory_path() /
                (std::string("libchar_stretches_") + std::to_string(::getpid()) + name + ".f64"))
                   .string()) {
-    std::vector<double> samples(rows);
-    for (std::uint64_t i = 0; i < rows; ++i) samples[i] = sample(i);
+    std::vector<double> samples(rows * channels);
+    for (std::uint64_t i = 0; i < samples.size(); ++i) samples[i] = sample(i);
     std::ofstream(path_, std::ios::binary)
         .write(reinterpret_cast<const char*>(samples.data()),
-               static_cast<std::streamsize>(rows * sizeof(double)));
-    std::ofstream(path_ + ".json")
-        << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "gyro", "unit": "deg/s"}], "rate_hz": 200})";
+               static_cast<std::streamsize>(samples.size() * sizeof(double)));
+    std::string names;
+    for (std::size_t c = 0; c < channels; ++c)
+      names += (c > 0 ? ", " : "") +
+               (R"({"name": "gyro)" + (c > 0 ? std::to_string(c) : "") + R"(", "unit": "deg/s"})");
+    std::ofstream(path_ + ".json") << R"({"dtype": "f64", "endian": "little", "channels": [)" +
+                                          names + R"(], "rate_hz": 200})";
   }
   ~RawLog() {
     std::filesystem::remove(path_);
@@ -49,6 +56,20 @@ class RawLog {
   std::string path_;
 };
 
+/// Of a stretch, a state for each channel: "NAME" of the first, "NAME.2" of the second.
+std::vector<NamedState> states_in(const std::string& path,
+                                  const CharacterizeOptions& options,
+                                  StretchRange range,
+                                  const std::string& identity,
+                                  const std::string& name) {
+  std::vector<NamedState> states;
+  characterize_stretch(path, options, range, identity, [&](const std::string& bytes) {
+    const std::string number = states.empty() ? "" : "." + std::to_string(states.size() + 1);
+    states.push_back(state_in_memory(name + number, bytes));
+  });
+  return states;
+}
+
 /// The states of a log in so many stretches of about one length.
 std::vector<NamedState> states_of(const std::string& path,
                                   std::uint64_t stretches,
@@ -58,8 +79,8 @@ std::vector<NamedState> states_of(const std::string& path,
   for (std::uint64_t s = 0; s < stretches; ++s) {
     const StretchRange range{s * leaves / stretches, (s + 1) * leaves / stretches};
     if (range.first_leaf == range.end_leaf) continue;
-    states.push_back(state_in_memory("state" + std::to_string(s),
-                                     characterize_stretch(path, options, range, "log 1")));
+    for (NamedState& one : states_in(path, options, range, "log 1", "state" + std::to_string(s)))
+      states.push_back(std::move(one));
   }
   return states;
 }
@@ -108,6 +129,16 @@ void agree(const Characterization& a, const Characterization& b, const Digits& d
 
 void equal_bits(const Characterization& a, const Characterization& b) {
   agree(a, b, {0, 0, 0, 0});
+}
+
+std::string refusal_of_states(std::span<const NamedState> states,
+                              const CharacterizeOptions& options = {}) {
+  try {
+    characterize_from_stretches(states, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 /// White noise, a walk and an offset.
@@ -190,6 +221,62 @@ TEST_CASE("the bits of a log in stretches depend neither on the division nor on 
   }
 }
 
+TEST_CASE(
+    "channels of a log in stretches are taken a few at a time, and are those of logs of their "
+    "own") {
+  constexpr std::size_t kChannels = 5;
+  const std::uint64_t rows = 2 * kLeafSamples + 30000;
+  auto noise = sensor(0.3);
+  const auto hole = [](std::uint64_t row, std::size_t channel) {
+    return row % 200001 == 17 * channel && channel % 2 == 1;
+  };
+  std::vector<double> values(rows * kChannels);
+  for (std::uint64_t i = 0; i < values.size(); ++i)
+    values[i] = hole(i / kChannels, i % kChannels) ? std::nan("") : noise(i);
+  const RawLog log(
+      "five", rows, [&](std::uint64_t i) { return values[i]; }, kChannels);
+  std::vector<NamedState> states = states_of(log.path(), 2);
+  REQUIRE(states.size() == 2 * kChannels);
+  const Characterization joined = characterize_from_stretches(states, {});
+  std::mt19937_64 generator(3);
+  std::shuffle(states.begin(), states.end(), generator);
+  equal_bits(characterize_from_stretches(states, {}), joined);
+  const Characterization whole = characterize_from_stretches(states_of(log.path(), 1), {});
+  equal_bits(whole, joined);
+  REQUIRE(joined.log.warnings.find("missing_cell")->count == 22);
+  REQUIRE(one_line(*whole.log.warnings.find("missing_cell"), "") ==
+          one_line(*joined.log.warnings.find("missing_cell"), ""));
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const RawLog alone("one", rows, [&](std::uint64_t i) { return values[i * kChannels + c]; });
+    Characterization one = characterize_from_stretches(states_of(alone.path(), 1), {});
+    Characterization same = joined;
+    same.channels = {joined.channels[c]};
+    equal_bits(same, one);
+  }
+}
+
+TEST_CASE("states of a channel that are missing or double are refused by name") {
+  const RawLog log("three", kLeafSamples + 100, sensor(0.3), 3);
+  const std::vector<NamedState> all = states_of(log.path(), 2);
+  const auto without = [&](std::size_t i) {
+    std::vector<NamedState> some = all;
+    some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
+    return refusal_of_states(some);
+  };
+  REQUIRE_THAT(
+      without(1),
+      Catch::Contains(
+          "state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 in front of it"));
+  REQUIRE_THAT(without(5),
+               Catch::Contains(
+                   "state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 behind it"));
+  const std::vector<NamedState> no_third = {all[0], all[1], all[3], all[4]};
+  REQUIRE_THAT(refusal_of_states(no_third), Catch::Contains("no state is of channel 3 of 3"));
+  std::vector<NamedState> twice = all;
+  twice.push_back({"copy", all[2].bytes});
+  REQUIRE_THAT(refusal_of_states(twice), Catch::Contains("covers leaf 0 of channel 3, which"));
+}
+
 TEST_CASE("logs in stretches as short as a sample, and what was not asked for") {
   for (const std::uint64_t rows : {1, 5, 3000, 40000, 70000}) {
     CAPTURE(rows);
@@ -232,21 +319,11 @@ struct TwoStates {
   std::vector<NamedState> states = states_of(log.path(), 2);
 };
 
-std::string refusal_of_states(std::span<const NamedState> states,
-                              const CharacterizeOptions& options = {}) {
-  try {
-    characterize_from_stretches(states, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string refusal_of_stretch(const std::string& path,
                                const CharacterizeOptions& options,
                                StretchRange range = {0, 1}) {
   try {
-    characterize_stretch(path, options, range, "x");
+    characterize_stretch(path, options, range, "x", [](const std::string&) {});
   } catch (const Error& error) {
     return error.what();
   }
@@ -267,8 +344,7 @@ TEST_CASE("states that are missing, double, foreign, or of other settings are re
   REQUIRE_THAT(refusal_of_states(twice),
                Catch::Contains("copy: error E0725: covers leaf 0, which state0 does too"));
   const std::vector<NamedState> foreign = {
-      states[0],
-      state_in_memory("other", characterize_stretch(two.log.path(), {}, {1, 2}, "log 2"))};
+      states[0], states_in(two.log.path(), {}, {1, 2}, "log 2", "other")[0]};
   REQUIRE_THAT(refusal_of_states(foreign),
                Catch::Contains("other: error E0724: is of another log"));
   CharacterizeOptions options;

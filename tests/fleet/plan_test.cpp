@@ -34,6 +34,27 @@ TEST_CASE("a unit a log, or one a channel, the plan reads back") {
   CHECK(again.devices[2].sha256 == plan.devices[2].sha256);
 }
 
+TEST_CASE("a long log's channels can be units too: stretches of each, and a join") {
+  const test::TemporaryFolder folder;
+  std::string bytes(2 * kLeafSamples * 2, 'x');  // one leaf and a bit of two channels, a byte each
+  bytes.resize(2 * (kLeafSamples + 1000));
+  test::write_file(folder / "long.i8", bytes);
+  test::write_file(
+      folder / "long.i8.json",
+      R"({"dtype": "i8", "rate_hz": 100, "channels": [{"name": "a"}, {"name": "b"}]})");
+  FleetPlanOptions options;
+  options.split_bytes = 1 << 20U;
+  options.stretch_bytes = 1 << 20U;
+  const std::vector<std::string> logs = {(folder / "long.i8").string()};
+  CHECK(test::planned(logs, options).units.size() == 3);
+  options.by_channel = true;
+  const FleetPlan plan = test::planned(logs, options);
+  REQUIRE(plan.units.size() == 6);
+  CHECK(plan.units[2].kind == UnitKind::join);
+  CHECK(plan.units[3].kind == UnitKind::stretch);
+  CHECK(plan.units[3].options.reading.channels == std::vector<std::string>{"b"});
+}
+
 TEST_CASE("a shorter plan in the same folder leaves no task of the longer one") {
   const test::TemporaryFolder folder;
   auto logs = test::write_logs(folder.path(), 3);

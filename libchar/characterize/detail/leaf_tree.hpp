@@ -10,9 +10,10 @@
 
 namespace libchar {
 
+/// Of one channel.
 struct LeafNode {
   std::uint64_t height = 0, place = 0;
-  std::vector<ChannelSums> channels;
+  ChannelSums sums;
 
   std::uint64_t first_leaf() const { return place << height; }
   std::uint64_t end_leaf() const { return (place + 1) << height; }
@@ -20,21 +21,20 @@ struct LeafNode {
 
 class LeafTree {
  public:
-  /// One stage a channel; they must live as long.
-  explicit LeafTree(std::vector<LeafStage>& stages) : stages_(&stages) {}
+  /// The stage must live as long.
+  explicit LeafTree(LeafStage& stage) : stage_(&stage) {}
 
   /// The node whose leaves follow those of the last one.
   void add(LeafNode node);
   /// Those that have no sibling here, left to right.
   std::vector<LeafNode>& nodes() { return nodes_; }
   /// All of a log: the nodes that are left, of falling height, joined left to right. The tree is empty then.
-  std::vector<ChannelSums> whole();
+  ChannelSums whole();
 
  private:
   void join_last();
-  void settle_last();
 
-  std::vector<LeafStage>* stages_;
+  LeafStage* stage_;
   std::vector<LeafNode> nodes_;
 };
 

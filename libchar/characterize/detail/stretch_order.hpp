@@ -14,9 +14,9 @@ struct OrderedState {
   StretchHead head;
 };
 
-/// In the order of their leaves. Throws Error(input) by name unless they are of one log and of these settings (E0724) and cover it, no
-/// leaf twice (E0725).
-std::vector<OrderedState> states_in_order(std::span<const NamedState> states,
-                                          const std::string& settings);
+/// Of each channel, in the order of their leaves. Throws Error(input) by name unless they are of one log and of these settings (E0724)
+/// and cover it, no leaf of a channel twice (E0725).
+std::vector<std::vector<OrderedState>> states_in_order(std::span<const NamedState> states,
+                                                       const std::string& settings);
 
 }  // namespace libchar

@@ -9,7 +9,7 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion = 2;  // 2: slow means, powers of means
+constexpr std::uint32_t kVersion = 2;  // 2: a channel; slow means, powers of means
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);
@@ -104,21 +104,20 @@ std::size_t size_of(const ChannelSums& sums) {
 std::string write_stretch(const StretchState& state, std::vector<LeafNode>& nodes) {
   StateWriter to(kKind, kVersion);
   std::size_t bytes = 0;
-  for (const LeafNode& node : nodes)
-    for (const ChannelSums& sums : node.channels) bytes += size_of(sums);
+  for (const LeafNode& node : nodes) bytes += size_of(node.sums);
   to.reserve(bytes);
   to.text(state.head.identity);
   to.text(state.head.settings);
   to.number(state.head.range.first_leaf);
   to.number(state.head.range.end_leaf);
   to.number(state.head.samples);
+  to.number(state.head.channel);
   write_log(state.log, to);
   to.number(nodes.size());
   for (LeafNode& node : nodes) {
     to.number(node.height);
     to.number(node.place);
-    for (const ChannelSums& sums : node.channels) LeafStage::write_state(sums, to);
-    node.channels.clear();
+    LeafStage::write_state(std::exchange(node.sums, {}), to);
     give_back_free_memory();
   }
   return to.finish();
@@ -135,10 +134,13 @@ StretchState read_stretch(StateReader& from) {
   state.head.range.first_leaf = from.number();
   state.head.range.end_leaf = from.number();
   state.head.samples = from.number();
+  state.head.channel = from.number();
   if (state.head.range.first_leaf >= state.head.range.end_leaf ||
       state.head.range.end_leaf > leaves_of(state.head.samples))
     from.refuse("the range of its leaves");
   state.log = read_log_state(from);
+  state.head.channels = state.log.channels.size();
+  if (state.head.channel >= state.head.channels) from.refuse("the number of its channel");
   return state;
 }
 
@@ -146,13 +148,13 @@ std::size_t read_node_count(StateReader& from) {
   return from.count(16);
 }
 
-LeafNode read_node(StateReader& from, const std::vector<LeafStage>& stages) {
+LeafNode read_node(StateReader& from, const LeafStage& stage) {
   LeafNode node;
   node.height = from.number();
   node.place = from.number();
   if (node.height > 40 || node.place > (std::uint64_t{1} << (44 - node.height)))
     from.refuse("the place of a node");
-  for (const LeafStage& stage : stages) node.channels.push_back(stage.read_state(from));
+  node.sums = stage.read_state(from);
   return node;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of a stretch: what it is of, what the log says of itself, and the nodes of its leaves.
+// The bytes of a channel over a stretch: what they are of, what the log says of itself, and the nodes of the leaves.
 
 #include <string>
 #include <string_view>
@@ -25,6 +25,6 @@ StateReader stretch_reader(std::string_view bytes, const std::string& name);
 StretchState read_stretch(StateReader& from);
 /// How many nodes follow; and each of them.
 std::size_t read_node_count(StateReader& from);
-LeafNode read_node(StateReader& from, const std::vector<LeafStage>& stages);
+LeafNode read_node(StateReader& from, const LeafStage& stage);
 
 }  // namespace libchar

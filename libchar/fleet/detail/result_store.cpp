@@ -126,7 +126,7 @@ bool ResultFolder::publish() {
       return true;
     }
     if (errno != EEXIST && errno != ENOTEMPTY) cannot_write(final_name, errno);
-    if (has_result(fleet_, id_, fs::exists(path_ / kStateFile))) return false;
+    if (has_result(fleet_, id_, fs::exists(path_ / state_file(0)))) return false;
     const fs::path aside =
         final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
     if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT)
@@ -147,21 +147,25 @@ std::optional<DeviceRecord> stored_record(const fs::path& fleet, const std::stri
   return parse_device_record(checked_text(file, kMostRecord), file.string());
 }
 
-std::string state_path(const fs::path& fleet, const std::string& id) {
-  return (fleet / "results" / result_folder(id) / kStateFile).string();
+std::string state_file(std::size_t channel) {
+  return fmt::format("state-{}.bin", channel + 1);
 }
 
-bool stored_state(const fs::path& fleet, const std::string& id) {
-  const std::string path = state_path(fleet, id);
+std::vector<std::string> stored_states(const fs::path& fleet, const std::string& id) {
+  const fs::path folder = fleet / "results" / result_folder(id);
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return false;
-  stretch_head(state_in_file(path));
-  return true;
+  std::vector<std::string> files;
+  if (!fs::exists(folder / state_file(0), ignored)) return files;
+  for (std::uint64_t channels = 1; files.size() < channels;) {
+    files.push_back((folder / state_file(files.size())).string());
+    channels = stretch_head(state_in_file(files.back())).channels;
+  }
+  return files;
 }
 
 bool has_result(const fs::path& fleet, const std::string& id, bool of_stretch) {
   try {
-    return of_stretch ? stored_state(fleet, id) : stored_record(fleet, id).has_value();
+    return of_stretch ? !stored_states(fleet, id).empty() : stored_record(fleet, id).has_value();
   } catch (const Error&) {
     return false;
   }

@@ -43,10 +43,10 @@ void write_record(const std::filesystem::path& folder, const DeviceRecord& recor
 std::optional<DeviceRecord> stored_record(const std::filesystem::path& fleet,
                                           const std::string& id);
 
-/// The file with the partial state of a stretch.
-std::string state_path(const std::filesystem::path& fleet, const std::string& id);
-/// Whether it is there. Throws Error(input) for one that is damaged, by name.
-bool stored_state(const std::filesystem::path& fleet, const std::string& id);
+/// The file with the partial state of a channel (from 0) of a stretch, in the folder of its result.
+std::string state_file(std::size_t channel);
+/// The files of all channels of a stretch; none where there is no result. Throws Error(input) for one that is damaged, by name.
+std::vector<std::string> stored_states(const std::filesystem::path& fleet, const std::string& id);
 
 /// Whether there is a whole result; a damaged one is none.
 bool has_result(const std::filesystem::path& fleet, const std::string& id, bool of_stretch);
@@ -55,6 +55,5 @@ bool has_result(const std::filesystem::path& fleet, const std::string& id, bool 
 std::vector<std::string> unpublished(const std::filesystem::path& fleet);
 
 inline constexpr const char* kRecordFile = "device.record";
-inline constexpr const char* kStateFile = "state.bin";
 
 }  // namespace libchar

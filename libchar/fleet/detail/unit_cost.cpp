@@ -117,9 +117,9 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
   constexpr double kReports = 0.004;    // s a channel: page, tables, model, and the disk
   constexpr double kProgram = 64e6;     // bytes: program and libraries
   constexpr double kStageBytes = 24e6;  // of a channel that streams
-  constexpr double kTimesKept = 4;      // the record, its transform, what is written of it
-  constexpr double kJoinBytes =
-      0.14;  // a sample: the series of means of 512, its transform and the bins of it
+  constexpr double kStretchBytes =
+      70e6;  // of the channels of a pass, or of a state and the tree that it comes to
+  constexpr double kTimesKept = 4;  // the record, its transform, what is written of it
   const double chosen = unit.options.reading.channels.empty()
                             ? static_cast<double>(head.channels.size())
                             : static_cast<double>(unit.options.reading.channels.size());
@@ -136,9 +136,7 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
                 (unit.reports && unit.kind != UnitKind::stretch ? kReports * chosen : 0);
   const double kept = 8 * rows * (chosen + kTimesKept);
   const double limit = static_cast<double>(unit.options.memory_bytes) * 1.5 + kStageBytes * chosen;
-  const double needed = unit.kind == UnitKind::log       ? std::min(kept, limit)
-                        : unit.kind == UnitKind::stretch ? kStageBytes * chosen
-                                                         : kJoinBytes * rows * chosen;
+  const double needed = unit.kind == UnitKind::log ? std::min(kept, limit) : kStretchBytes;
   out.memory_bytes = static_cast<std::uint64_t>(kProgram + needed);
   return out;
 }

@@ -77,8 +77,9 @@ class BinaryRows final : public RowSource {
     return layout_.column_major ? layout_.data_byte + column_bytes() * layout_.rows : file_->size();
   }
 
-  bool restrict_rows(std::uint64_t first, std::uint64_t end) override {
+  bool restrict_rows(std::uint64_t first, std::uint64_t end, ChannelRange channels) override {
     restricted_ = true;
+    channels_ = channels;
     next_row_ = std::min(first, layout_.rows);
     end_row_ = std::min(end, layout_.rows);
     return true;
@@ -86,7 +87,7 @@ class BinaryRows final : public RowSource {
 
   bool next(RowBlock& block, Warnings& warnings) override {
     if (next_row_ == 0) {
-      warnings.merge(layout_.warnings);
+      if (channels_.first == 0) warnings.merge(layout_.warnings);
       hash_.start();
     }
     block.rows = static_cast<std::size_t>(
@@ -97,8 +98,11 @@ class BinaryRows final : public RowSource {
     block.line_offset.clear();
     if (block.rows == 0) return false;
     if (!layout_.column_major) read_interleaved(block.rows);
-    for (std::size_t c = 0; c < values_.size(); ++c)
-      read_values(values_[c], block.columns[c], block.rows, warnings);
+    rows_in_file_block_ = block.rows;
+    for (std::size_t c = 0; c < values_.size(); ++c) {
+      block.columns[c].resize(block.rows);
+      if (channels_.has(c)) read_values(values_[c], block.columns[c], block.rows, warnings);
+    }
     if (time_) read_times(block);
     next_row_ += rows_in_file_block_;
     bytes_read_ = layout_.column_major ? layout_.data_byte + column_bytes() * next_row_
@@ -155,8 +159,6 @@ class BinaryRows final : public RowSource {
 
   void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Warnings& warnings) {
     const BinaryColumn& column = wanted.column;
-    out.resize(rows);
-    rows_in_file_block_ = rows;
     const std::uint64_t rounded = read_numbers(
         locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
     if (rounded > 0)
@@ -278,6 +280,7 @@ class BinaryRows final : public RowSource {
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::string> missing_places_;
   bool overflow_as_missing_ = false, restricted_ = false;
+  ChannelRange channels_;  ///< to be read
   FileHash hash_;
 };
 
