@@ -53,8 +53,8 @@ struct PowerBinner::State {
   std::uint64_t blocks = 0;          ///< whole blocks of all segments
   std::uint64_t segment_blocks = 0;  ///< whole blocks of the current segment
   MeanSeries means;                  ///< of per_mean samples, less the segment's first sample
-  double shift = 0;                 ///< first sample of the segment
-  std::array<double, 8> partial{};  ///< sums of the mean being filled
+  double shift = 0;                  ///< first sample of the segment
+  std::array<double, 8> partial{};   ///< sums of the mean being filled
   std::uint64_t partial_count = 0, segment_samples = 0, samples = 0, gap = 0;
   std::vector<PooledPower> done;  ///< of finished segments (their tails and series of means)
 

@@ -239,7 +239,8 @@ PowerBinner binner_of(PowerSums sums) {
   const std::uint64_t tail = sums.tail.size();
   const bool alone = tail == segment.samples;
   if (tail >= kSmallestTransform)
-    powers.push_back(record_power(sums.tail, 1, alone ? 1 : first_kept(tail, PowerPart::kBlock), tail));
+    powers.push_back(
+        record_power(sums.tail, 1, alone ? 1 : first_kept(tail, PowerPart::kBlock), tail));
   append_means(std::move(segment), alone, powers);
   append_powers(sums.means, kSamplesAMean, powers);
   const auto append = [&](const PooledSums& pooled, std::uint64_t length) {

@@ -22,7 +22,8 @@ std::uint64_t first_kept(std::uint64_t length, std::uint64_t block) {
 }
 
 std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uint64_t block) {
-  const auto last = static_cast<std::uint64_t>(split(block) * static_cast<double>(points * per_mean));
+  const auto last =
+      static_cast<std::uint64_t>(split(block) * static_cast<double>(points * per_mean));
   return std::min(last + 1, points);
 }
 
