@@ -80,7 +80,8 @@ void MeanSeries::cut() {
 
 void MeanSeries::append_to(std::vector<PooledPower>& out) const {
   if (slow_.empty()) {
-    out.push_back(record_power(means_, per_mean_, 1, end_of_left(means_.size(), per_mean_, block_)));
+    out.push_back(
+        record_power(means_, per_mean_, 1, end_of_left(means_.size(), per_mean_, block_)));
     return;
   }
   append_slow(means_, slow_, per_mean_, block_, out);

@@ -14,8 +14,8 @@
 
 namespace libchar {
 
-inline constexpr std::uint64_t kMostMeans =
-    std::uint64_t{1} << 20U;  ///< of a series that is transformed as a whole
+inline constexpr std::uint64_t kMostMeans = std::uint64_t{1}
+                                            << 20U;  ///< of a series that is transformed as a whole
 inline constexpr std::uint64_t kMeansPerSlow = kMeansBlock / kMeansPerBlock;
 
 /// Means of 512 means, times sqrt(512): on the same scale. What is left behind them is in none.
@@ -36,9 +36,7 @@ class MeanCutter {
 };
 
 /// Blocks and pieces.
-void append_powers(const MeanPowers& powers,
-                   std::uint64_t per_mean,
-                   std::vector<PooledPower>& out);
+void append_powers(const MeanPowers& powers, std::uint64_t per_mean, std::vector<PooledPower>& out);
 /// The end of a long series: `rest` fills no block and is one transform of its own, `slow` is of all of it but for `rest`.
 void append_slow(std::span<const double> rest,
                  std::vector<double> slow,
