@@ -58,6 +58,7 @@ ControlChart control_chart(std::span<const double> values) {
   out.runs = count_runs(values, out.centre);
   // The first value begins a stretch whatever stood before it: 2 times as probable.
   out.runs_by_chance = n < kRun ? 0 : (n - kRun + 2) * std::exp2(-static_cast<double>(kRun));
+  if (out.sigma > 0) out.zones = zone_findings(values, out.centre, out.sigma);
   return out;
 }
 

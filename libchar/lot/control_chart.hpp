@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/core/interval.hpp"
+#include "libchar/lot/zone_rules.hpp"
 
 namespace libchar {
 
@@ -30,6 +31,7 @@ struct ControlChart {
   std::size_t runs =
       0;  ///< stretches of eight or more on one side of the centre (Western Electric's fourth rule)
   double runs_by_chance = 0;
+  ZoneFindings zones;  ///< nothing where sigma is zero
 };
 
 inline constexpr std::size_t kChartPoints = 300;

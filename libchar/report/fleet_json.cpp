@@ -48,6 +48,21 @@ Json batches_json(const QuantityLot& q) {
   return out;
 }
 
+Json zones_json(const ZoneFindings& zones) {
+  Json out = {{"alarm", zones.alarm},
+              {"any_by_chance", json_number(zones.any_by_chance)},
+              {"rules", Json::object()}};
+  for (std::size_t r = 0; r < kZoneRules; ++r) {
+    const ZoneFinding& found = zones.rule[r];
+    out["rules"][std::string(name_of(static_cast<ZoneRule>(r)))] = {
+        {"signals", found.signals},
+        {"by_chance", json_number(found.by_chance)},
+        {"p", json_number(found.p)},
+        {"alarm", found.alarm}};
+  }
+  return out;
+}
+
 Json chart_json(const FleetReport& report, const QuantityLot& q) {
   if (!q.chart) return nullptr;
   const ControlChart& c = *q.chart;
@@ -59,7 +74,8 @@ Json chart_json(const FleetReport& report, const QuantityLot& q) {
               {"beyond_count", c.beyond.size()},
               {"beyond_by_chance", c.beyond_by_chance},
               {"runs", c.runs},
-              {"runs_by_chance", c.runs_by_chance}};
+              {"runs_by_chance", c.runs_by_chance},
+              {"zones", zones_json(c.zones)}};
   for (std::size_t i = 0; i < std::min(kOutliersInJson, c.beyond.size()); ++i)
     out["beyond"].push_back(json_text(report.records[q.charted[c.beyond[i].index]].device));
   return out;

@@ -1,8 +1,9 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdt: coverage, batches, differences of two lots,
-// temperatures]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtz: coverage, batches, differences of two lots,
+// temperatures, zone rules of charts]
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -154,6 +155,47 @@ void temperatures(const std::string& title,
   print_rate("spread of the bias in its interval", bias_spread, lots, "95 %");
 }
 
+/// Charts of a process that stays, and of four that do not.
+void charts(std::size_t values, int count) {
+  const char* const kinds[] = {
+      "stays", "shifts by 1.5 sigma half-way", "drifts by 3 sigma", "one value 6 sigma off"};
+  fmt::print("control charts of {} values\n", values);
+  for (int kind = 0; kind < 4; ++kind) {
+    test::Gaussian gauss(31 + static_cast<std::uint64_t>(kind));
+    int alarm = 0, any = 0;
+    std::array<int, kZoneRules> signal{}, rule_alarm{};
+    double chance = 0;
+    for (int i = 0; i < count; ++i) {
+      std::vector<double> x(values);
+      for (std::size_t k = 0; k < values; ++k) {
+        const double at = static_cast<double>(k) / static_cast<double>(values);
+        x[k] = gauss() + (kind == 1 && at >= 0.5 ? 1.5 : kind == 2 ? 3 * at : 0.0);
+      }
+      if (kind == 3) x[values / 3] = 6;
+      const ZoneFindings zones = control_chart(x).zones;
+      alarm += zones.alarm;
+      bool some = false;
+      for (std::size_t r = 0; r < kZoneRules; ++r) {
+        signal[r] += zones.rule[r].signals > 0;
+        rule_alarm[r] += zones.rule[r].alarm;
+        some = some || zones.rule[r].signals > 0;
+      }
+      any += some;
+      chance = zones.any_by_chance;
+    }
+    print_rate(std::string("process ") + kinds[kind] + ": alarm",
+               alarm,
+               count,
+               kind == 0 ? "at most 1 %" : "");
+    print_rate("  any signal", any, count, kind == 0 ? fmt::format("{:.0f} %", 100 * chance) : "");
+    for (std::size_t r = 0; r < kZoneRules; ++r)
+      fmt::print("    {:<20} signal {:5.1f} %, alarm {:5.2f} %\n",
+                 name_of(static_cast<ZoneRule>(r)),
+                 100.0 * signal[r] / count,
+                 100.0 * rule_alarm[r] / count);
+  }
+}
+
 void size_of_a_fleet(std::size_t devices) {
   auto from = std::chrono::steady_clock::now();
   const auto lap = [&](const std::string& what) {
@@ -184,7 +226,7 @@ void size_of_a_fleet(std::size_t devices) {
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
-  const std::string parts = argc > 3 ? argv[3] : "cbdt";
+  const std::string parts = argc > 3 ? argv[3] : "cbdtz";
   const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
@@ -209,6 +251,9 @@ int main(int argc, char** argv) {
                  {.at_c = {-20, 25, 60}, .slope_spread = 2e-3},
                  lots);
   }
+  if (asked('z'))
+    for (const std::size_t n : {8, 20, 50, 200, 1000, 10000})
+      charts(n, n > 1000 ? lots : 10 * lots);
   if (devices > 0) size_of_a_fleet(devices);
   return 0;
 }

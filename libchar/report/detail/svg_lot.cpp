@@ -216,6 +216,36 @@ std::string marks_beyond(const ControlChart& chart,
   return out;
 }
 
+/// What the zone rules found, and whether that is more than chance brings.
+std::string zones_text(const ControlChart& chart, std::size_t values) {
+  if (!(chart.sigma > 0)) return "All values are alike.";
+  const char* const names[kZoneRules] = {"beyond 3 σ (dashed)",
+                                         "two of three beyond 2 σ",
+                                         "four of five beyond 1 σ",
+                                         "eight in a row on one side"};
+  std::string list, alarms;
+  for (std::size_t r = 0; r < kZoneRules; ++r) {
+    const ZoneFinding& found = chart.zones.rule[r];
+    list += fmt::format("{}{} {} times ({} expected by chance)",
+                        r == 0 ? "" : ", ",
+                        names[r],
+                        count_text(found.signals),
+                        number_text(found.by_chance, 2));
+    if (found.alarm)
+      alarms +=
+          fmt::format("{}{} ({})", alarms.empty() ? "" : ", ", names[r], probability_text(found.p));
+  }
+  const std::string end =
+      alarms.empty()
+          ? fmt::format(
+                "No alarm: {} % of charts of as many values show some signal though nothing "
+                "changed.",
+                number_text(100 * chart.zones.any_by_chance, 2))
+          : "Alarm, more than chance brings: " + alarms + ".";
+  return fmt::format(
+      "{} values, mean and σ of the moving range; {}. {}", count_text(values), list, end);
+}
+
 }  // namespace
 
 std::string svg_histogram(const Histogram& h, const LotAxis& axis, const std::string& title) {
@@ -270,15 +300,7 @@ std::string svg_control_chart(const ControlChart& chart,
       kLotHeight - 8);
   out += label(kLotLeft, kLotHeight - kLotBottom + 16, "start", "1") +
          label(kLotWidth - kLotRight, kLotHeight - kLotBottom + 16, "end", count_text(values));
-  return out +
-         closing(fmt::format(
-             "{} of {} outside of mean ± 3 σ of the moving range ({} expected by chance), {} of "
-             "eight or more on one side ({} expected).",
-             chart.beyond.size(),
-             count_text(values),
-             number_text(chart.beyond_by_chance, 2),
-             chart.runs == 1 ? "1 run" : fmt::format("{} runs", chart.runs),
-             number_text(chart.runs_by_chance, 2)));
+  return out + closing(zones_text(chart, values));
 }
 
 }  // namespace libchar
