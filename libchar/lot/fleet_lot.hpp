@@ -20,6 +20,7 @@
 #include "libchar/lot/control_chart.hpp"
 #include "libchar/lot/device_record.hpp"
 #include "libchar/lot/histogram.hpp"
+#include "libchar/lot/left_out.hpp"
 #include "libchar/model/noise_limits.hpp"
 
 namespace libchar {
@@ -117,7 +118,8 @@ struct QuantityLot {
   std::string channel_unit, unit;  ///< of the values
   LotCounts counts;
   std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as lot_effects says
-  std::optional<LotFigures> figures;
+  std::optional<LotFigures> figures;     ///< of those counted
+  std::optional<LeftOut> left_out;       ///< what they say of all
   std::array<double, kLotQuantiles.size()> quantiles{};  ///< of those counted
   Histogram histogram;                                   ///< of ln(value) or of the value
   std::vector<BatchLot> batches;  ///< in natural order; empty where there is one

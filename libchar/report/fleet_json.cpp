@@ -147,6 +147,12 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
               {"unit", json_text(q.unit)}};
   out.update(counts_json(q.counts));
   add_figures(out, q.figures);
+  const auto& left = q.left_out;
+  out["left_out"] = left ? Json{{"share", json_number(left->share)},
+                                {"mean_ci95", interval_json(left->mean_ci95)},
+                                {"factor", json_number(left->factor)},
+                                {"spread_high", json_number(left->spread_high)}}
+                         : Json(nullptr);
   out["spread_is"] = in_logarithm(q.quantity) ? "relative" : "absolute";
   out["quantiles"] = Json::array();
   for (std::size_t k = 0; k < kLotQuantiles.size(); ++k)

@@ -1,8 +1,9 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtz: coverage, batches, differences of two lots,
-// temperatures, zone rules of charts]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtzn: coverage, batches, differences of two lots,
+// temperatures, zone rules of charts, what is not detected]
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -10,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/power_bins.hpp"
 #include "libchar/lot/lot_comparison.hpp"
 #include "libchar/report/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
@@ -196,6 +199,102 @@ void charts(std::size_t values, int count) {
   }
 }
 
+/// A fit of a record of which the truth is known.
+struct KnownFit {
+  double truth = 0;
+  Coefficient found;
+};
+
+/// Fits of records of 8192 samples of white noise with a second term, from far below what is detected to far above.
+std::vector<KnownFit> known_fits(Term term, std::size_t count) {
+  constexpr std::size_t kSamples = 8192;
+  const bool walk = term == Term::walk;
+  test::NoiseSource source(kSamples, 1, 4711 + static_cast<std::uint64_t>(term));
+  test::Gaussian where(99);
+  FitOptions options;
+  options.second_opinion = options.remedies = false;
+  std::vector<KnownFit> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double truth = (walk ? 3e-3 : 0.08) * std::exp(3 * (2 * where.uniform() - 1));
+    const auto y = source.record(1, walk ? 0 : truth, walk ? truth : 0);
+    PowerBinner binner(kSamples);
+    binner.push(y);
+    const NoiseFit fit = fit_power_bins(binner.finish(1), 1, kSamples, nullptr, options);
+    out.push_back({truth, fit[term]});
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.truth < b.truth; });
+  return out;
+}
+
+/// A lot's records, each with the fit of a record whose truth is that of the device, nearly.
+std::vector<DeviceRecord> lot_of_fits(const std::vector<KnownFit>& fits,
+                                      Term term,
+                                      std::size_t devices,
+                                      double mean,
+                                      double spread,
+                                      test::Gaussian& gauss) {
+  test::MadeLot made;
+  made.devices = devices;
+  made.channels = {"gyro_x"};
+  std::vector<DeviceRecord> records = test::made_lot(made, 1);
+  for (DeviceRecord& r : records) {
+    const double truth = std::exp(std::log(mean) + spread * gauss());
+    const auto at = std::lower_bound(
+        fits.begin(), fits.end(), truth, [](const KnownFit& f, double t) { return f.truth < t; });
+    const auto place = std::clamp<std::ptrdiff_t>(
+        at - fits.begin() + static_cast<std::ptrdiff_t>(31 * gauss.uniform()) - 15,
+        0,
+        static_cast<std::ptrdiff_t>(fits.size()) - 1);
+    const KnownFit& fit = fits[static_cast<std::size_t>(place)];
+    RecordedValue value;
+    value.quantity = quantity_of(term);
+    value.status = fit.found.status;
+    // The fit's error, about this device's truth.
+    if (fit.found.value) value.value = *fit.found.value * truth / fit.truth;
+    value.sd = fit.found.relative_sd;
+    r.channels[0].values = {value};
+  }
+  return records;
+}
+
+/// Lots of which some devices are not detected or doubtful: what their mean says of all.
+void left_out_lots(Term term, int lots) {
+  const std::vector<KnownFit> fits = known_fits(term, 12000);
+  for (const std::size_t devices : {20, 200})
+    for (const double spread : {0.1, 0.3})
+      for (const double times : {4.0, 2.0, 1.5}) {
+        // In units of what half of the records detect.
+        const double mean = times * (term == Term::walk ? 3.3e-3 : 0.063);
+        test::Gaussian gauss(61);
+        int with_mean = 0, plain = 0, all = 0, width = 0;
+        double missing = 0;
+        for (int i = 0; i < lots; ++i) {
+          const auto records = lot_of_fits(fits, term, devices, mean, spread, gauss);
+          for (const QuantityLot& q : fleet_lot(records).quantities) {
+            if (!q.figures) continue;
+            ++with_mean;
+            missing += q.left_out ? q.left_out->share : 0;
+            plain += holds(q.figures->mean_ci95, mean);
+            all += holds(q.left_out ? q.left_out->mean_ci95 : q.figures->mean_ci95, mean);
+            Interval of_spread = q.figures->spread_ci95;
+            if (q.left_out) of_spread.high = q.left_out->spread_high;
+            width += holds(of_spread, spread);
+          }
+        }
+        if (with_mean == 0) continue;
+        fmt::print("{} of {} devices, spread {}: {:.0f} % left out, {} of {} lots have a mean\n",
+                   title_of(quantity_of(term)),
+                   devices,
+                   spread,
+                   100 * missing / with_mean,
+                   with_mean,
+                   lots);
+        print_rate("mean in the interval of those counted", plain, with_mean, "");
+        print_rate("mean in the interval for all", all, with_mean, "at least 95 %");
+        print_rate("spread in its interval for all", width, with_mean, "at least 95 %");
+      }
+}
+
 void size_of_a_fleet(std::size_t devices) {
   auto from = std::chrono::steady_clock::now();
   const auto lap = [&](const std::string& what) {
@@ -226,7 +325,7 @@ void size_of_a_fleet(std::size_t devices) {
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
-  const std::string parts = argc > 3 ? argv[3] : "cbdtz";
+  const std::string parts = argc > 3 ? argv[3] : "cbdtzn";
   const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
@@ -254,6 +353,8 @@ int main(int argc, char** argv) {
   if (asked('z'))
     for (const std::size_t n : {8, 20, 50, 200, 1000, 10000})
       charts(n, n > 1000 ? lots : 10 * lots);
+  if (asked('n'))
+    for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
   if (devices > 0) size_of_a_fleet(devices);
   return 0;
 }

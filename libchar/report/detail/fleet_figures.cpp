@@ -43,6 +43,14 @@ std::string mean_text(const std::optional<LotFigures>& f, const std::string& uni
   return f ? number_text(f->mean) + " " + brackets(f->mean_ci95, 1, 4) + " " + unit : "–";
 }
 
+/// Behind a mean that is not of all.
+std::string off_text(const std::optional<LeftOut>& left) {
+  if (!left) return "";
+  const double most = 100 * (left->factor - 1);
+  return most < 100 ? fmt::format(", off by up to {} %", number_text(most, 2))
+                    : fmt::format(", off by up to a factor of {}", number_text(left->factor, 2));
+}
+
 std::string channel_unit_text(const QuantityLot& q) {
   return q.channel_unit.empty() ? "U" : q.channel_unit;
 }
@@ -190,9 +198,36 @@ std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> reco
   return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")), rows);
 }
 
+/// What the mean is worth where devices are missing in it.
+std::string left_out_sentence(const QuantityLot& q) {
+  const LeftOut& left = *q.left_out;
+  const std::size_t missing = q.counts.not_detected + q.counts.doubtful;
+  const std::string what =
+      fmt::format("Mean and spread are of the {} devices that count; {} are not in it ({}). ",
+                  count_text(q.counts.counted),
+                  count_text(missing),
+                  not_counted(q.counts));
+  const std::string of_all = fmt::format(
+      "[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
+  if (!in_logarithm(q.quantity))
+    return what + fmt::format(
+                      "They are about zero: the mean of all may be up to {} % nearer to "
+                      "zero, in {}.",
+                      number_text(100 * left.share, 2),
+                      of_all);
+  return what + fmt::format(
+                    "If those are the smallest, the mean is too large by up to {} %: that of "
+                    "all is in {}, and their spread is at most {} %. Ppk is of those that "
+                    "count.",
+                    number_text(100 * (left.factor - 1), 2),
+                    of_all,
+                    number_text(100 * left.spread_high, 3));
+}
+
 std::string sentences(const QuantityLot& q) {
   const bool logarithm = in_logarithm(q.quantity);
   std::vector<std::string> out;
+  if (q.left_out) out.push_back(left_out_sentence(q));
   if (q.quantity == DeviceQuantity::temperature_coefficient)
     out.push_back(coefficient_sentence(q));
   else if (q.temperatures)
@@ -244,7 +279,7 @@ std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lo
   std::vector<std::string> out = {
       group_title(q, lot),
       title_of(q.quantity),
-      mean_text(q.figures, q.unit),
+      mean_text(q.figures, q.unit) + off_text(q.left_out),
       q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
       some ? fmt::format("{} … {} {}",
                          number_text(q.quantiles[1], 3),
