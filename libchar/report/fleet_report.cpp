@@ -114,8 +114,8 @@ std::string quantities_part(const FleetLot& lot) {
          "intervals. 95 % of devices: "
          "their values as they were measured. Only what was detected counts, and no mean is given "
          "where that is under two "
-         "thirds; off by up to: how much the mean is too large at most, if those that are not "
-         "detected or doubtful are the smallest.</p>\n";
+         "thirds; too large by up to: at most that, if those that are not detected or doubtful are "
+         "the smallest.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {

@@ -141,6 +141,35 @@ TEST_CASE("the report of a lot at several temperatures says where its coefficien
   CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature of each"));
 }
 
+TEST_CASE(
+    "a mean that leaves devices out says by how much it can be off, a chart what chance brings") {
+  auto records = test::made_lot({}, 21);
+  for (std::size_t i = 0; i < 40; ++i) {
+    RecordedValue& k = records[i].channels[0].values[2];
+    k.status = Status::not_detected;
+    k.upper95 = 1e-4;
+    k.value = kNone;
+  }
+  const FleetLot lot = fleet_lot(records);
+  const FleetReport report{records, &lot, "fleet", {}, {}};
+  const std::string text = dump_json(fleet_json(report));
+  CHECK(test::schema_fault(text) == "");
+  std::size_t left_out = 0;
+  const auto document = nlohmann::json::parse(text);
+  for (const auto& q : document["quantities"]) {
+    left_out += !q["left_out"].is_null();
+    if (q["chart"].is_null()) continue;
+    CHECK(q["chart"]["zones"]["rules"]["two_of_three"].contains("by_chance"));
+    CHECK(q["chart"]["zones"]["rules"]["beyond_3_sigma"]["signals"].get<std::size_t>() <=
+          q["chart"]["beyond_count"].get<std::size_t>());
+  }
+  CHECK(left_out == 2);  // of the channel and of its kind
+  const std::string page = fleet_html(report);
+  CHECK_THAT(page,
+             Contains(", too large by up to ") && Contains("40 are not in it (40 not detected)"));
+  CHECK_THAT(page, Contains("four of five beyond 1 σ") && Contains("expected by chance"));
+}
+
 TEST_CASE("numbers of any size make a lot, a page and a document") {
   test::Gaussian gauss(6);
   const std::vector<double> wild = {0,

@@ -73,7 +73,8 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   if (!something && !s.limited) return std::nullopt;
   lot.effects = effects_of(s.values);
   if (lot.effects) lot.figures = lot_figures(*lot.effects, logarithm);
-  if (lot.effects) lot.left_out = left_out(quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
+  if (lot.effects)
+    lot.left_out = left_out(quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
   lot.repeats = s.values.repeats;
   lot.temperatures = std::move(s.values.temperatures);
   add_quantiles(s.values.y, logarithm, lot);

@@ -44,11 +44,13 @@ std::string mean_text(const std::optional<LotFigures>& f, const std::string& uni
 }
 
 /// Behind a mean that is not of all.
-std::string off_text(const std::optional<LeftOut>& left) {
-  if (!left) return "";
-  const double most = 100 * (left->factor - 1);
-  return most < 100 ? fmt::format(", off by up to {} %", number_text(most, 2))
-                    : fmt::format(", off by up to a factor of {}", number_text(left->factor, 2));
+std::string off_text(const QuantityLot& q) {
+  if (!q.left_out) return "";
+  const double most = 100 * (q.left_out->factor - 1);
+  return fmt::format(", too {} by up to {}",
+                     in_logarithm(q.quantity) ? "large" : "far from zero",
+                     most < 100 ? number_text(most, 2) + " %"
+                                : "a factor of " + number_text(q.left_out->factor, 2));
 }
 
 std::string channel_unit_text(const QuantityLot& q) {
@@ -279,7 +281,7 @@ std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lo
   std::vector<std::string> out = {
       group_title(q, lot),
       title_of(q.quantity),
-      mean_text(q.figures, q.unit) + off_text(q.left_out),
+      mean_text(q.figures, q.unit) + off_text(q),
       q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
       some ? fmt::format("{} … {} {}",
                          number_text(q.quantiles[1], 3),
