@@ -15,7 +15,9 @@
 #include "libchar/core/file_text.hpp"
 #include "libchar/core/schema.hpp"
 #include "libchar/core/utf8.hpp"
+#include "libchar/fleet/detail/manifest_path.hpp"
 #include "libchar/fleet/detail/table_text.hpp"
+#include "libchar/fleet/sums.hpp"
 
 namespace libchar {
 namespace {
@@ -24,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kManifestFormat = "fleet-manifest";
 const std::vector<std::string> kDeviceKeys = {
-    "device", "log", "type", "batch", "temperature_c", "limits"};
+    "device", "log", "type", "batch", "temperature_c", "limits", "sha256"};
 constexpr std::size_t kMostManifest = std::size_t{256} << 20U;
 
 std::vector<std::string> keys_with(std::vector<std::string> more) {
@@ -49,21 +51,16 @@ class OptionsTable {
   std::map<std::string, std::size_t> known_;
 };
 
-std::string absolute_path(const std::string& named, const fs::path& folder) {
-  if (named.empty()) return "";
-  return (fs::path(named).is_absolute() ? fs::path(named) : folder / named)
-      .lexically_normal()
-      .string();
-}
-
-fs::path folder_of(const std::string& path) {
-  return fs::absolute(path).parent_path();
-}
-
 CharacterizeOptions options_at(const MapReader& at, CharacterizeOptions options) {
   if (!at.has("options")) return options;
   read_fields(characterize_fields(), at.map("options", keys_of(characterize_fields())), options);
   return options;
+}
+
+std::string digest_at(const MapReader& at) {
+  const auto digest = sha256_digits(at.text("sha256"));
+  if (!digest) at.refuse("sha256", "expected the 64 hexadecimal digits of a SHA-256 digest");
+  return *digest;
 }
 
 void read_device(const MapReader& at, const fs::path& folder, FleetDevice& device) {
@@ -73,6 +70,7 @@ void read_device(const MapReader& at, const fs::path& folder, FleetDevice& devic
   if (const auto t = at.maybe_number("temperature_c", {-273.15, 1e4})) device.temperature_c = t;
   if (at.has("limits")) device.limits = absolute_path(at.text("limits"), folder);
   if (at.has("log")) device.log = absolute_path(at.text("log"), folder);
+  if (at.has("sha256")) device.sha256 = digest_at(at);
 }
 
 std::string name_of_log(const std::string& log) {
@@ -85,7 +83,7 @@ Manifest parse_tree(std::string_view text,
   const Document document = parse_document(text, path);
   check_format(document, path, kManifestFormat, 1);
   const MapReader top(document, path, "", {"format", "version", "defaults", "devices"});
-  const fs::path folder = folder_of(path);
+  const fs::path folder = folder_of_file(path);
   Manifest manifest;
   OptionsTable table(manifest);
   FleetDevice defaults;
@@ -130,7 +128,7 @@ Manifest parse_table(std::string_view text,
                      const std::string& path,
                      const CharacterizeOptions& options) {
   const TableText table = parse_table_text(text, path);
-  const fs::path folder = folder_of(path);
+  const fs::path folder = folder_of_file(path);
   Manifest manifest;
   manifest.options.push_back(options);
   for (const TableRow& row : table.rows) {

@@ -17,8 +17,9 @@ struct FleetDevice {
   std::string batch;
   std::string limits;                   ///< what the data sheet allows, absolute path; "": nothing
   std::optional<double> temperature_c;  ///< of the surroundings while it was recorded
-  std::size_t options = 0;              ///< index in `Manifest::options`
-  std::string where;                    ///< "FILE:LINE:COL" of the entry, for refusals
+  std::string sha256;       ///< of the log, as somebody states it, in lower case; "": not stated
+  std::size_t options = 0;  ///< index in `Manifest::options`
+  std::string where;        ///< "FILE:LINE:COL" of the entry, for refusals
 };
 
 struct Manifest {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {
@@ -88,6 +89,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     std::optional<DeviceRecord> found;
     try {
       found = stored_record(folder, unit.id);
+      if (found && !result_counts(folder, unit)) found.reset();
     } catch (const Error& error) {
       missing.damaged.push_back(one_line(error.problem()));
     }

@@ -38,7 +38,7 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options) 
   LookedAt out;
   try {
     out.head = read_log_head(device.log, options.reading);
-    out.sha256 = digest_of_log(device.log);
+    out.sha256 = device.sha256.empty() ? digest_of_log(device.log) : device.sha256;
   } catch (const Error& error) {
     Problem problem = error.problem();
     problem.hint = "";  // the sentence that holds these has its own
@@ -98,15 +98,19 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
     if (!logs[d].problem.empty()) continue;
     const std::size_t options = manifest.devices[d].options;
     const auto [at, fresh] = first.emplace(std::pair{logs[d].sha256, options}, d);
-    if (!fresh)
-      throw Error({ErrorKind::input,
-                   "E0783",
-                   manifest.devices[d].where,
-                   fmt::format("the logs of {} and {} are the same, byte by byte",
-                               printable(manifest.devices[at->second].device),
-                               printable(manifest.devices[d].device)),
-                   manifest.devices[d].log,
-                   "leave one of them out: it would count twice"});
+    if (fresh) continue;
+    const FleetDevice &one = manifest.devices[at->second], &other = manifest.devices[d];
+    const bool taken = one.sha256.empty() && other.sha256.empty();
+    throw Error(
+        {ErrorKind::input,
+         "E0783",
+         manifest.devices[d].where,
+         fmt::format("the logs of {} and {} {}",
+                     printable(one.device),
+                     printable(other.device),
+                     taken ? "are the same, byte by byte" : "have one digest, as it is stated"),
+         manifest.devices[d].log,
+         "leave one of them out: it would count twice"});
   }
 }
 
@@ -232,6 +236,7 @@ FleetPlan plan_fleet(const Manifest& manifest,
     unit.device = d;
     unit.log = one.log;
     unit.sha256 = logs[d].sha256;
+    unit.stated = !one.sha256.empty();
     unit.bytes = logs[d].head.bytes;
     unit.options = manifest.options[one.options];
     unit.reports = options.reports;

@@ -38,7 +38,7 @@ struct FleetPlan {
   std::vector<FleetUnit> units;  ///< of the devices in their order; a join behind its stretches
 };
 
-/// Looks into every log and takes its digest, and reads the limits. Throws Error(input) for limits that cannot be read, and for logs that cannot be read (all of them named, the first few with
+/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, and for logs that cannot be read (all of them named, the first few with
 /// the reason) or that are one log twice.
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,

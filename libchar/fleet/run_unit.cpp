@@ -13,6 +13,7 @@
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/report/report_files.hpp"
 
@@ -28,6 +29,16 @@ namespace fs = std::filesystem;
                "the log was changed after the fleet was planned",
                "",
                "plan the fleet again: units of logs that did not change keep their results"});
+}
+
+[[noreturn]] void refuse_other_digest(const FleetUnit& unit, const std::string& found) {
+  if (!unit.stated) refuse_changed(unit);
+  throw Error({ErrorKind::input,
+               "E0785",
+               unit.log,
+               "the log is not the one that was planned: its digest is not the one that is stated",
+               found,
+               "state the digest of this log, or none, and plan the fleet again"});
 }
 
 void check_log_is_there(const FleetUnit& unit) {
@@ -54,7 +65,7 @@ Characterization of_log(const FleetUnit& unit, Progress& progress) {
   CharacterizeOptions options = unit.options;
   options.reading.hash = true;
   Characterization result = characterize(unit.log, options, progress);
-  if (result.log.sha256 != unit.sha256) refuse_changed(unit);
+  if (result.log.sha256 != unit.sha256) refuse_other_digest(unit, result.log.sha256);
   return result;
 }
 
@@ -72,7 +83,11 @@ std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) 
   std::vector<std::string> missing;
   for (const std::string& part : unit.parts) {
     const std::vector<std::string> files = whole_states(fleet, part);
-    if (files.empty()) missing.push_back(part);
+    // Damaged, or of another file: computed again.
+    if (files.empty() || !is_log_seen(fleet, part, unit.log)) {
+      missing.push_back(part);
+      continue;
+    }
     for (const std::string& file : files) states.push_back(state_in_file(file));
   }
   if (!missing.empty())
@@ -89,14 +104,14 @@ std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) 
   return states;
 }
 
-/// Stretches look at the file's size only.
 void check_digest(const FleetUnit& unit) {
-  if (digest_of_log(unit.log) != unit.sha256) refuse_changed(unit);
+  const std::string found = digest_of_log(unit.log);
+  if (found != unit.sha256) refuse_other_digest(unit, found);
 }
 
 Characterization of_parts(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   const std::vector<NamedState> states = states_of(unit, fleet);
-  check_digest(unit);
+  check_digest(unit);  // of the file that the stretches were read from
   Characterization result = characterize_from_stretches(states, unit.options, progress);
   result.log.sha256 = unit.sha256;
   return result;
@@ -129,6 +144,7 @@ DeviceRecord record_in(const FleetUnit& unit,
     const Problem& problem = error.problem();
     if (!is_of_content(problem) || problem.code == "E0785") throw;
     check_log_is_there(unit);  // else it is the place, not the content
+    check_digest(unit);        // nor is what another log does not allow a result of this one
     record.problem = one_line(problem);
   }
   if (result) record = write_results(unit, *result, folder);
@@ -141,6 +157,7 @@ DeviceRecord record_in(const FleetUnit& unit,
 
 UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   ResultFolder folder(fleet, unit.id);
+  const std::string seen = log_as_seen(unit.log);
   UnitRun out;
   if (unit.kind == UnitKind::stretch) {
     std::size_t channel = 0;
@@ -154,17 +171,27 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
     out.problem = record.problem;
     if (!record.problem.empty()) out.outcome = UnitOutcome::no_result;
   }
+  if (needs_log_seen(unit)) write_log_seen(folder.path(), seen);
   if (!folder.publish()) out.outcome = UnitOutcome::already_there;
   return out;
+}
+
+/// A result is there, the digest that was stated for it is not that of this log yet: a manifest may take one log for another.
+UnitRun confirm(const FleetUnit& unit, const fs::path& fleet) {
+  const std::string seen = log_as_seen(unit.log);
+  check_digest(unit);
+  write_log_seen(fleet / "results" / result_folder(unit.id), seen);
+  return {UnitOutcome::already_there, ""};
 }
 
 }  // namespace
 
 UnitRun run_unit(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
-  if (has_result(fleet, unit.id, unit.kind == UnitKind::stretch))
-    return {UnitOutcome::already_there, ""};
+  const bool there = has_result(fleet, unit.id, unit.kind == UnitKind::stretch);
+  if (there && result_counts(fleet, unit)) return {UnitOutcome::already_there, ""};
   check_log_is_there(unit);
   try {
+    if (there && unit.kind != UnitKind::stretch) return confirm(unit, fleet);
     return compute(unit, fleet, progress);
   } catch (const Error& error) {
     Problem problem = error.problem();

@@ -1,6 +1,7 @@
 #include "libchar/fleet/status.hpp"
 
 #include "libchar/core/error.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {
@@ -10,9 +11,10 @@ enum class Found { nothing, result, no_result };
 
 Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
   if (unit.kind == UnitKind::stretch)
-    return stored_states(folder, unit.id).empty() ? Found::nothing : Found::result;
+    return !stored_states(folder, unit.id).empty() && result_counts(folder, unit) ? Found::result
+                                                                                  : Found::nothing;
   const auto record = stored_record(folder, unit.id);
-  if (!record) return Found::nothing;
+  if (!record || !result_counts(folder, unit)) return Found::nothing;
   return record->problem.empty() ? Found::result : Found::no_result;
 }
 

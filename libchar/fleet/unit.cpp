@@ -63,6 +63,7 @@ std::string settings_id(const CharacterizeOptions& options) {
 std::string unit_text(const FleetUnit& unit) {
   Json out = {{"format", kTaskFormat}, {"version", 1}, {"id", unit.id}, {"log", unit.log}};
   out["bytes"] = unit.bytes;
+  if (unit.stated) out["stated"] = true;
   out.update(content_of(unit));
   out["device"] = unit.device;
   out["cost"] = {{"seconds", unit.cost.seconds}, {"memory_bytes", unit.cost.memory_bytes}};
@@ -83,6 +84,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path) {
                       "device",
                       "log",
                       "sha256",
+                      "stated",
                       "bytes",
                       "leaves",
                       "parts",
@@ -95,6 +97,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path) {
   unit.device = at.count_or("device", 0);
   unit.log = at.text("log");
   unit.sha256 = at.text("sha256");
+  unit.stated = at.flag_or("stated", false);
   unit.bytes = at.count("bytes");
   unit.reports = at.flag_or("reports", true);
   if (unit.kind == UnitKind::stretch) unit.stretch = stretch_at(at);

@@ -34,6 +34,7 @@ struct FleetUnit {
   std::size_t device = 0;  ///< index in the plan
   std::string log;         ///< absolute path
   std::string sha256;      ///< of the log when it was planned
+  bool stated = false;     ///< the digest is a claim of the manifest's: the plan did not take it
   std::uint64_t bytes = 0;
   CharacterizeOptions options;
   StretchRange stretch;            ///< of a stretch

@@ -1,4 +1,5 @@
 """Runs of every verb that prints or writes documents, for tests of what they hold. usage: see schema_test.py"""
+import hashlib
 import json
 import pathlib
 import shutil
@@ -47,6 +48,7 @@ RUNS = [
     ["verify", "report"], ["verify", "report", "--rerun", "again"],
     ["fleet", "plan", "first.csv", "second.csv", "-o", "fleet"], ["fleet", "run", "fleet"], ["fleet", "status", "fleet"],
     ["fleet", "export", "fleet", "--to", "slurm"], ["fleet", "merge", "fleet", "-o", "fleet-report"],
+    ["fleet", "plan", "first.csv", "second.csv", "--sums", "SHA256SUMS", "-o", "stated"],
     ["fleet", "plan", "fleet.yaml", "-o", "batches"], ["fleet", "run", "batches"], ["fleet", "compare", "batches", "--batches", "b1,b2"],
     ["bench", "report/gyro_z.sensor.yaml", "scenes/rv-5.1-faults.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
      "characterization,design,fusion", "--algorithms", "mean,median"],
@@ -66,6 +68,7 @@ def prepare(folder):
     first, rows = lines[:head], lines[head:]
     (folder / "first.csv").write_text("\n".join(first + rows[:20000]) + "\n")
     (folder / "second.csv").write_text("\n".join(first + rows[25000:45000]) + "\n")
+    (folder / "SHA256SUMS").write_text(hashlib.sha256((folder / "first.csv").read_bytes()).hexdigest() + "  first.csv\n")
     for k in range(4):
         (folder / f"part{k}.csv").write_text("\n".join(first + rows[12000 * k:12000 * (k + 1)]) + "\n")
     dirty = rows[:3000] + rows[3200:9000] + rows[8990:20000]

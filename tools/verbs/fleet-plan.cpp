@@ -12,6 +12,7 @@
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"
+#include "libchar/fleet/sums.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -21,34 +22,45 @@ namespace {
 using namespace libchar;
 
 struct PlanVerb {
-  std::vector<std::string> inputs;
+  std::vector<std::string> inputs, sums;
   std::string folder;
   bool json = false, no_reports = false;
   FleetPlanOptions plan;
   AnalysisOptions analysis;
 };
 
-Manifest manifest_of(const PlanVerb& verb, const CharacterizeOptions& options) {
+Manifest manifest_of(const PlanVerb& verb, const CharacterizeOptions& options, Terminal& terminal) {
   const bool one = verb.inputs.size() == 1;
-  return one && is_manifest(verb.inputs[0]) ? read_manifest(verb.inputs[0], options)
-                                            : manifest_of_logs(verb.inputs, options);
+  Manifest manifest = one && is_manifest(verb.inputs[0]) ? read_manifest(verb.inputs[0], options)
+                                                         : manifest_of_logs(verb.inputs, options);
+  if (verb.sums.empty()) return manifest;
+  const std::size_t without = state_digests(read_sums(verb.sums), manifest);
+  if (without > 0)
+    terminal.note(fmt::format("{} of {} logs have no digest in {}: theirs are taken now",
+                              without,
+                              manifest.devices.size(),
+                              printable(fmt::format("{}", fmt::join(verb.sums, ", ")))));
+  return manifest;
 }
 
 void run_plan(Session& session, PlanVerb verb) {
   const CharacterizeOptions options = finish(verb.analysis);
   verb.plan.reports = !verb.no_reports;
-  const FleetPlan plan = plan_fleet(manifest_of(verb, options), verb.plan, session.terminal);
+  const Manifest manifest = manifest_of(verb, options, session.terminal);
+  const FleetPlan plan = plan_fleet(manifest, verb.plan, session.terminal);
   write_plan(plan, verb.folder);
   session.wrote = true;
   const FleetStatus status = fleet_status(plan, verb.folder, session.terminal);
   session.terminal.clear();
-  std::size_t skipped = 0;
+  std::size_t skipped = 0, stated = 0;
+  for (const FleetDevice& one : manifest.devices) stated += one.sha256.empty() ? 0 : 1;
   for (const PlannedDevice& one : plan.devices) skipped += one.problem.empty() ? 0 : 1;
   if (verb.json) {
     Json document = document_head(session, "fleet-planned", {});
     document["folder"] = verb.folder;
     document["devices"] = plan.devices.size();
     document["unreadable"] = skipped;
+    document["stated"] = stated;
     document["units"] = plan.units.size();
     document["done"] = status.done;
     document["seconds"] = status.seconds_left;
@@ -61,6 +73,9 @@ void run_plan(Session& session, PlanVerb verb) {
       plural(plan.units.size(), "unit"),
       status.done,
       duration_text(status.seconds_left));
+  if (stated > 0)
+    text +=
+        fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
   if (skipped > 0)
     text += fmt::format("{} cannot be read; the report says why\n", plural(skipped, "log"));
   text += fmt::format("next: sensorchar fleet run {}\n", shell_word(verb.folder));
@@ -80,6 +95,14 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results")
       .value_name("DIR")
       .required();
+  options
+      .add_texts(
+          "--sums",
+          verb->sums,
+          "file with digests of logs, as sha256sum prints them: the plan takes none of these, "
+          "workers check them")
+      .value_name("FILE")
+      .one_value_each();
   options.add_flag("--json", verb->json, "print what was planned as JSON");
   options.add_flag("--by-channel", verb->plan.by_channel, "a unit for each channel of a log");
   options.add_flag("--no-reports",
@@ -108,6 +131,8 @@ VerbEntry verb_fleet_plan() {
       "many logs as units of work for any engine (fleet plan|run|status|merge|export|compare)",
       plan_options,
       {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
+       {"with digests that sha256sum has taken",
+        "sensorchar fleet plan logs/*.npy --rate 200 --sums logs/SHA256SUMS -o fleet"},
        {"devices, batches and limits by a manifest", "sensorchar fleet plan line7.yaml -o fleet"}}};
 }
 

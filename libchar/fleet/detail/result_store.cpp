@@ -71,6 +71,15 @@ std::string digest_of(std::string_view text) {
   return hash.finish();
 }
 
+/// Whether `published` says the same of the log it was computed from, where `mine` says anything of it.
+bool same_log(const fs::path& mine, const fs::path& published) {
+  constexpr std::size_t kMost = std::size_t{1} << 16U;
+  if (!fs::exists(mine / kSeenFile)) return true;
+  return fs::exists(published / kSeenFile) &&
+         file_text((mine / kSeenFile).string(), kMost) ==
+             file_text((published / kSeenFile).string(), kMost);
+}
+
 [[noreturn]] void damaged(const fs::path& file, const std::string& why) {
   throw Error({ErrorKind::input,
                "E0791",
@@ -126,7 +135,8 @@ bool ResultFolder::publish() {
       return true;
     }
     if (errno != EEXIST && errno != ENOTEMPTY) cannot_write(final_name, errno);
-    if (has_result(fleet_, id_, fs::exists(path_ / state_file(0)))) return false;
+    if (has_result(fleet_, id_, fs::exists(path_ / state_file(0))) && same_log(path_, final_name))
+      return false;
     const fs::path aside =
         final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
     if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT)

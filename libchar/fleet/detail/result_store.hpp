@@ -27,7 +27,8 @@ class ResultFolder {
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// Gives it its name. False: another worker was first, whose result stays. One that is not whole is put aside under another name.
+  /// Gives it its name. False: another worker was first, whose result stays. One that is not whole, or of a log that was another when it
+  /// was read (log_seen.hpp), is put aside under another name.
   bool publish();
 
  private:
@@ -55,5 +56,6 @@ bool has_result(const std::filesystem::path& fleet, const std::string& id, bool 
 std::vector<std::string> unpublished(const std::filesystem::path& fleet);
 
 inline constexpr const char* kRecordFile = "device.record";
+inline constexpr const char* kSeenFile = "log.seen";
 
 }  // namespace libchar

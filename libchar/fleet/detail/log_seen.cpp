@@ -1,0 +1,46 @@
+#include "libchar/fleet/detail/log_seen.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "libchar/core/file_text.hpp"
+#include "libchar/core/whole_file.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+
+namespace libchar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostSeen = std::size_t{1} << 16U;
+
+}  // namespace
+
+std::string log_as_seen(const std::string& log) {
+  struct stat status {};
+  if (::stat(log.c_str(), &status) != 0) return log + "\n";
+  return fmt::format(
+      "{}\n{} {}.{:09}\n", log, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
+bool needs_log_seen(const FleetUnit& unit) {
+  return unit.stated || unit.kind == UnitKind::stretch;
+}
+
+void write_log_seen(const fs::path& folder, const std::string& seen) {
+  write_whole_file((folder / kSeenFile).string(), seen, true);
+}
+
+bool is_log_seen(const fs::path& fleet, const std::string& id, const std::string& log) {
+  const fs::path file = fleet / "results" / result_folder(id) / kSeenFile;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return false;
+  const std::string found = file_text(file.string(), kMostSeen), now = log_as_seen(log);
+  return now == log + "\n" ? found.starts_with(now) : found == now;
+}
+
+bool result_counts(const fs::path& fleet, const FleetUnit& unit) {
+  return !needs_log_seen(unit) || is_log_seen(fleet, unit.id, unit.log);
+}
+
+}  // namespace libchar
