@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <unordered_map>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
@@ -68,7 +71,77 @@ void add_result(const PlannedDevice& planned, const DeviceRecord& found, DeviceR
   record.channels.insert(record.channels.end(), found.channels.begin(), found.channels.end());
 }
 
+/// What of a log a unit has, and whose it is.
+struct LogPart {
+  std::size_t fleet = 0, device = 0;
+  std::vector<std::string> channels;  ///< empty: all
+};
+
+bool overlap(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  return a.empty() || b.empty() ||
+         std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+[[noreturn]] void refuse_common(const std::vector<PlannedFleet>& fleets,
+                                const LogPart& one,
+                                const LogPart& other) {
+  const auto name = [&](const LogPart& part) {
+    const PlannedFleet& fleet = fleets[part.fleet];
+    return fmt::format("{} in {}",
+                       printable(fleet.plan.devices[part.device].device),
+                       printable(fleet.folder.string()));
+  };
+  const PlannedFleet& fleet = fleets[other.fleet];
+  throw Error(
+      {ErrorKind::input,
+       "E0783",
+       fleet.folder.string(),
+       fmt::format("the logs of {} and {} are the same, byte by byte", name(one), name(other)),
+       fleet.plan.devices[other.device].log,
+       "leave one of the fleets out, or plan it without that log: it would count twice"});
+}
+
 }  // namespace
+
+std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders) {
+  std::vector<std::string> sorted = folders;
+  const auto whole = [](const std::string& folder) {
+    std::error_code ignored;
+    const fs::path path = fs::weakly_canonical(folder, ignored);
+    return path.has_filename() ? path : path.parent_path();
+  };
+  std::sort(sorted.begin(), sorted.end(), [&](const std::string& a, const std::string& b) {
+    return whole(a) < whole(b);
+  });
+  std::vector<PlannedFleet> out;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    if (k > 0 && whole(sorted[k]) == whole(sorted[k - 1]))
+      throw Error({ErrorKind::usage,
+                   "E0795",
+                   sorted[k],
+                   "this fleet is named twice",
+                   "",
+                   "name each folder once: its devices would count twice"});
+    out.push_back({sorted[k], read_plan(sorted[k])});
+  }
+  return out;
+}
+
+void refuse_common_logs(const std::vector<PlannedFleet>& fleets) {
+  if (fleets.size() < 2) return;
+  std::unordered_multimap<std::string, LogPart> known;
+  for (std::size_t f = 0; f < fleets.size(); ++f)
+    for (const FleetUnit& unit : fleets[f].plan.units) {
+      if (unit.kind == UnitKind::stretch) continue;
+      const LogPart part{f, unit.device, unit.options.reading.channels};
+      const std::string key = unit.sha256 + settings_id(unit.options);
+      const auto [begin, end] = known.equal_range(key);
+      for (auto at = begin; at != end; ++at)
+        if (at->second.fleet != f && overlap(at->second.channels, part.channels))
+          refuse_common(fleets, at->second, part);
+      known.emplace(key, part);
+    }
+}
 
 std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
                                          const fs::path& folder,

@@ -195,7 +195,9 @@ def examples():
     (scratch / "line7.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: {reading: {rate_hz: 50}}}\ndevices:\n" + "".join(
         f"  - {{log: logs/a0{k}.npy, batch: '2026-1{1 + k % 2}'}}\n" for k in range(4)))
     before = {"compare": ["cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"],
-              "fleet-plan": ["mkdir logs", *cut, "cd logs && sha256sum *.npy > SHA256SUMS"], "fleet-compare": ["cp -r fleet march", "cp -r fleet april"]}
+              "fleet-plan": ["mkdir logs", *cut, "cd logs && sha256sum *.npy > SHA256SUMS"], "fleet-merge": ["sensorchar fleet plan logs/a00.npy logs/a01.npy --rate 50 -o april && sensorchar fleet run april",
+                              "sensorchar fleet plan logs/a02.npy logs/a03.npy --rate 50 -o may && sensorchar fleet run may"],
+              "fleet-compare": ["cp -r fleet march", "cp -r fleet april"]}
     for verb in usage["verbs"]:
         expect(len(verb["examples"]) >= 2, f"{verb['name']} has fewer than two examples")
         for command in before.get(verb["name"], []):

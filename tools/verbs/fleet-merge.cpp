@@ -1,12 +1,14 @@
-// fleet merge DIR -o REPORT: the results of a fleet as one report of the lot.
+// fleet merge DIR… -o REPORT: the results of a fleet, or of several, as one report of the lot.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file_text.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/merge.hpp"
@@ -22,17 +24,23 @@ using namespace libchar;
 namespace fs = std::filesystem;
 
 struct MergeVerb {
-  std::string fleet, folder, name;
+  std::vector<std::string> fleets;
+  std::string folder, name;
   bool json = false, force = false, partial = false;
 };
 
+/// Plans of several machines may have a copy each.
+bool same_content(const std::string& a, const std::string& b) {
+  constexpr std::size_t kMostLimits = std::size_t{16} << 20U;
+  return a == b || file_text(a, kMostLimits) == file_text(b, kMostLimits);
+}
+
 /// The limits of each type; devices of one type have the same.
-std::map<std::string, std::string> limit_files(const FleetPlan& plan) {
-  std::map<std::string, std::string> files;
+void add_limit_files(const FleetPlan& plan, std::map<std::string, std::string>& files) {
   for (const PlannedDevice& one : plan.devices) {
     if (one.limits.empty()) continue;
     const auto [at, fresh] = files.emplace(one.type, one.limits);
-    if (!fresh && at->second != one.limits)
+    if (!fresh && !same_content(at->second, one.limits))
       throw Error(
           {ErrorKind::input,
            "E0793",
@@ -41,7 +49,42 @@ std::map<std::string, std::string> limit_files(const FleetPlan& plan) {
            at->second,
            "give them another `type` in the manifest, or the same limits"});
   }
-  return files;
+}
+
+/// What is merged, read before any result is.
+struct Merged {
+  std::vector<DeviceRecord> records;
+  FleetLotOptions options;
+};
+
+Merged merged(Session& session, const MergeVerb& verb) {
+  Merged out;
+  std::vector<PlannedFleet> fleets = read_fleets(verb.fleets);
+  refuse_common_logs(fleets);
+  std::map<std::string, std::string> limits;
+  for (const PlannedFleet& one : fleets) add_limit_files(one.plan, limits);
+  for (const auto& [type, file] : limits) out.options.limits[type] = read_limits_file(file);
+  for (PlannedFleet& one : fleets) {
+    std::vector<DeviceRecord> records =
+        merged_records(one.plan, one.folder, {verb.partial, verb.folder}, session.terminal);
+    std::move(records.begin(), records.end(), std::back_inserter(out.records));
+    one.plan = {};
+  }
+  return out;
+}
+
+/// The names of the folders, in an order that is not that of the command line.
+std::string name_of_fleets(const MergeVerb& verb) {
+  constexpr std::size_t kNamed = 4;
+  if (!verb.name.empty()) return verb.name;
+  std::vector<std::string> names;
+  for (const std::string& fleet : verb.fleets) {
+    const fs::path path = fs::absolute(fleet).lexically_normal();
+    names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names.size() > kNamed ? plural(names.size(), "fleet")
+                               : fmt::format("{}", fmt::join(names, ", "));
 }
 
 void run_merge(Session& session, const MergeVerb& verb) {
@@ -50,17 +93,12 @@ void run_merge(Session& session, const MergeVerb& verb) {
                   verb.folder,
                   {},
                   verb.force);
-  const FleetPlan plan = read_plan(verb.fleet);
-  FleetLotOptions options;
-  for (const auto& [type, file] : limit_files(plan)) options.limits[type] = read_limits_file(file);
-  const std::vector<DeviceRecord> records =
-      merged_records(plan, verb.fleet, {verb.partial, verb.folder}, session.terminal);
-  const FleetLot lot = fleet_lot(records, options);
+  const Merged fleet = merged(session, verb);
+  const FleetLot lot = fleet_lot(fleet.records, fleet.options);
   FleetReport report;
-  report.records = records;
+  report.records = fleet.records;
   report.lot = &lot;
-  report.name = verb.name.empty() ? fs::absolute(verb.fleet).lexically_normal().filename().string()
-                                  : verb.name;
+  report.name = name_of_fleets(verb);
   report.command = session.command;
   const auto files = fleet_files(report, verb.folder);
   write_outputs(files, verb.folder, {}, verb.force);
@@ -75,11 +113,13 @@ void run_merge(Session& session, const MergeVerb& verb) {
 
 std::function<void()> merge_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<MergeVerb>();
-  options.add_text("DIR", verb->fleet, "folder of a fleet").required();
+  options.add_texts("DIR", verb->fleets, "folder of a fleet; of several: one report of all")
+      .required();
   options.add_text("-o,--output", verb->folder, "folder for the report (made when absent)")
       .value_name("REPORT")
       .required();
-  options.add_text("--name", verb->name, "of the fleet, in words (default: the name of its folder)")
+  options
+      .add_text("--name", verb->name, "of the fleet, in words (default: the names of the folders)")
       .value_name("TEXT");
   options.add_flag(
       "--partial", verb->partial, "merge what there is; devices without a result stand as such");
@@ -96,6 +136,8 @@ VerbEntry verb_fleet_merge() {
           "the results of a fleet as one report: spread, batches, outliers, limits",
           merge_options,
           {{"the report of the lot", "sensorchar fleet merge fleet -o report"},
+           {"of batches that were planned on two machines",
+            "sensorchar fleet merge april may -o spring"},
            {"of what is done so far", "sensorchar fleet merge fleet -o so-far --partial"}}};
 }
 

@@ -1,4 +1,4 @@
-// fleet status DIR: how far a fleet is.
+// fleet status DIR…: how far a fleet is, or several.
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include "libchar/core/readable.hpp"
 #include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"
 #include "reading_options.hpp"
@@ -18,11 +19,43 @@ namespace {
 using namespace libchar;
 
 struct StatusVerb {
-  std::string folder;
+  std::vector<std::string> folders;
   bool json = false, list = false;
 };
 
-Json status_json(const Session& session, const FleetPlan& plan, const FleetStatus& status) {
+struct OneStatus {
+  std::string folder;
+  FleetPlan plan;
+  FleetStatus status;
+};
+
+std::vector<OneStatus> status_of_all(Session& session, const StatusVerb& verb) {
+  std::vector<OneStatus> out;
+  for (PlannedFleet& fleet : read_fleets(verb.folders)) {
+    FleetStatus status = fleet_status(fleet.plan, fleet.folder, session.terminal);
+    out.push_back({fleet.folder.string(), std::move(fleet.plan), std::move(status)});
+  }
+  return out;
+}
+
+/// Counts and sentences of all; which units are missing is theirs.
+FleetStatus together(const std::vector<OneStatus>& fleets) {
+  FleetStatus out;
+  for (const OneStatus& one : fleets) {
+    const FleetStatus& s = one.status;
+    out.devices += s.devices;
+    out.units += s.units;
+    out.done += s.done;
+    out.no_result += s.no_result;
+    out.damaged.insert(out.damaged.end(), s.damaged.begin(), s.damaged.end());
+    out.unpublished.insert(out.unpublished.end(), s.unpublished.begin(), s.unpublished.end());
+    out.seconds_left += s.seconds_left;
+  }
+  return out;
+}
+
+Json status_json(const Session& session, const std::vector<OneStatus>& fleets) {
+  const FleetStatus status = together(fleets);
   Json document = document_head(session, "fleet-status", {});
   document["devices"] = status.devices;
   document["units"] = status.units;
@@ -32,42 +65,62 @@ Json status_json(const Session& session, const FleetPlan& plan, const FleetStatu
   document["unpublished"] = status.unpublished;
   document["seconds_left"] = status.seconds_left;
   Json missing = Json::array();
-  for (const std::size_t k : status.missing)
-    missing.push_back(
-        {{"task", task_file(k)}, {"device", plan.devices[plan.units[k].device].device}});
+  for (const OneStatus& one : fleets)
+    for (const std::size_t k : one.status.missing)
+      missing.push_back({{"folder", one.folder},
+                         {"task", task_file(k)},
+                         {"device", one.plan.devices[one.plan.units[k].device].device}});
   document["missing"] = missing;
   return document;
 }
 
-void run_status(Session& session, const StatusVerb& verb) {
-  const FleetPlan plan = read_plan(verb.folder);
-  const FleetStatus status = fleet_status(plan, verb.folder, session.terminal);
-  session.terminal.clear();
-  if (verb.json) return print(dump_json(status_json(session, plan, status)));
-  if (verb.list) {
-    for (const std::size_t k : status.missing) print(verb.folder + "/" + task_file(k) + "\n");
-    return;
+std::string next_command(const std::vector<OneStatus>& fleets) {
+  std::string all, left;
+  for (const OneStatus& one : fleets) {
+    all += " " + shell_word(one.folder);
+    if (!one.status.missing.empty()) left += " " + shell_word(one.folder);
   }
-  std::string text = fmt::format("{} of {} done", status.done, plural(status.units, "unit"));
+  return left.empty() ? "sensorchar fleet merge" + all + " -o report"
+                      : "sensorchar fleet run" + left;
+}
+
+std::string status_text(const std::vector<OneStatus>& fleets) {
+  const FleetStatus status = together(fleets);
+  std::string text;
+  std::size_t missing = 0;
+  for (const OneStatus& one : fleets) {
+    missing += one.status.missing.size();
+    if (fleets.size() > 1)
+      text += fmt::format("{}: {} of {} done\n",
+                          printable(one.folder),
+                          one.status.done,
+                          plural(one.status.units, "unit"));
+  }
+  text += fmt::format("{} of {} done", status.done, plural(status.units, "unit"));
   if (status.no_result > 0)
     text += fmt::format(", {} of them without a result: their logs could not be characterized",
                         status.no_result);
-  text += fmt::format("\n{} left, about {} on one core\n",
-                      status.missing.size(),
-                      duration_text(status.seconds_left));
+  text +=
+      fmt::format("\n{} left, about {} on one core\n", missing, duration_text(status.seconds_left));
   if (!status.unpublished.empty())
     text += fmt::format("{} begun and not ended: workers at work, or killed\n",
                         status.unpublished.size());
   for (const std::string& sentence : status.damaged) text += "damaged: " + sentence + "\n";
-  text += status.missing.empty()
-              ? fmt::format("next: sensorchar fleet merge {} -o report\n", shell_word(verb.folder))
-              : fmt::format("next: sensorchar fleet run {}\n", shell_word(verb.folder));
-  print_text(text);
+  return text + "next: " + next_command(fleets) + "\n";
+}
+
+void run_status(Session& session, const StatusVerb& verb) {
+  const std::vector<OneStatus> fleets = status_of_all(session, verb);
+  session.terminal.clear();
+  if (verb.json) return print(dump_json(status_json(session, fleets)));
+  if (!verb.list) return print_text(status_text(fleets));
+  for (const OneStatus& one : fleets)
+    for (const std::size_t k : one.status.missing) print(one.folder + "/" + task_file(k) + "\n");
 }
 
 std::function<void()> status_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<StatusVerb>();
-  options.add_text("DIR", verb->folder, "folder of a fleet").required();
+  options.add_texts("DIR", verb->folders, "folder of a fleet, or of several").required();
   const Option json = options.add_flag("--json", verb->json, "print it as JSON");
   options.add_flag("--list", verb->list, "print the tasks that are left, a line each")
       .excludes(json);

@@ -1,0 +1,105 @@
+// Fleets that were planned apart: one report, as if one plan had had all devices.
+
+#include "libchar/fleet/merge.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "libchar/core/error.hpp"
+#include "libchar/lot/fleet_lot.hpp"
+#include "libchar/report/fleet_report.hpp"
+#include "tests/fleet/fleet_folder.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Everything that is written of these fleets.
+std::string report_of_fleets(const std::vector<std::string>& folders, const fs::path& to) {
+  const std::vector<PlannedFleet> fleets = read_fleets(folders);
+  refuse_common_logs(fleets);
+  std::vector<DeviceRecord> records;
+  for (const PlannedFleet& one : fleets)
+    for (DeviceRecord& record : merged_records(one.plan, one.folder, {false, to}))
+      records.push_back(std::move(record));
+  const FleetLot lot = fleet_lot(records);
+  std::string out;
+  for (const OutputFile& file : fleet_files({records, &lot, "", {}, {}}, to)) out += file.text;
+  return out;
+}
+
+std::string fleet_in(const fs::path& folder,
+                     const std::vector<std::string>& logs,
+                     const FleetPlanOptions& options) {
+  const FleetPlan plan = test::planned(logs, options);
+  write_plan(plan, folder);
+  test::run_all(plan, folder);
+  return folder.string();
+}
+
+}  // namespace
+
+TEST_CASE("fleets in any order give the bytes of one fleet that has all devices") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 7);
+  FleetPlanOptions options;
+  options.reports = false;  // their pages are in other folders
+  const std::string whole = fleet_in(folder / "whole", logs, options);
+  const std::string a = fleet_in(folder / "a", {logs[5], logs[0]}, options);
+  const std::string b = fleet_in(folder / "b", {logs[3]}, options);
+  options.by_channel = true;
+  const std::string c = fleet_in(folder / "c", {logs[1], logs[6], logs[2], logs[4]}, options);
+  const std::string expected = report_of_fleets({whole}, folder.path());
+  CHECK(expected.size() > 10000);
+  CHECK(report_of_fleets({a, b, c}, folder.path()) == expected);
+  CHECK(report_of_fleets({c, a, b}, folder.path()) == expected);
+  CHECK(report_of_fleets({b + "/", c, a}, folder.path()) == expected);
+}
+
+TEST_CASE("each device of several fleets is linked to the page in its own") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 2);
+  const std::string a = fleet_in(folder / "a", {logs[0]}, {}),
+                    b = fleet_in(folder / "deep" / "b", {logs[1]}, {});
+  fs::create_directory(folder / "report");
+  for (const PlannedFleet& one : read_fleets({a, b}))
+    for (const DeviceRecord& r : merged_records(one.plan, one.folder, {false, folder / "report"})) {
+      CHECK(fs::path(r.report).is_relative());
+      const fs::path page = folder / "report" / r.report / "report.html";
+      REQUIRE(fs::exists(page));
+      CHECK_THAT(test::slurp(page), Contains(r.device + ".csv"));
+    }
+}
+
+TEST_CASE("one log in two fleets is refused by name, and so is one fleet named twice") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 3);
+  fs::copy_file(logs[1], folder / "again.csv");
+  FleetPlanOptions options;
+  options.reports = false;
+  const std::string a = fleet_in(folder / "a", {logs[0], logs[1]}, options);
+  options.by_channel = true;
+  const std::string b = fleet_in(folder / "b", {logs[2], (folder / "again.csv").string()}, options);
+  for (const auto& order : {std::vector{a, b}, std::vector{b, a}})
+    CHECK_THROWS_WITH(refuse_common_logs(read_fleets(order)),
+                      Contains("E0783") && Contains("d1 in " + a) && Contains("again in " + b) &&
+                          Contains("the same, byte by byte"));
+  fs::create_directory_symlink(a, folder / "link");
+  CHECK_THROWS_WITH(read_fleets({a, b, (folder / "link").string()}), Contains("E0795"));
+  CHECK_THROWS_WITH(read_fleets({a, a + "/"}), Contains("named twice"));
+  // Other settings, or another channel: no recording counts twice.
+  Manifest manifest = manifest_of_logs({logs[1]});
+  manifest.options[0].reading.rate_hz = 50;
+  write_plan(plan_fleet(manifest, options), folder / "c");
+  CHECK_NOTHROW(refuse_common_logs(read_fleets({a, (folder / "c").string()})));
+  manifest.options[0] = {};
+  options.by_channel = false;
+  manifest.options[0].reading.channels = {"gx"};
+  write_plan(plan_fleet(manifest, options), folder / "x");
+  manifest.options[0].reading.channels = {"gy"};
+  write_plan(plan_fleet(manifest, options), folder / "y");
+  CHECK_NOTHROW(refuse_common_logs(read_fleets({folder / "x", folder / "y"})));
+  CHECK_THROWS_WITH(refuse_common_logs(read_fleets({a, folder / "y"})), Contains("d1 in"));
+}
