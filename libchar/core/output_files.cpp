@@ -68,14 +68,6 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
   return stale;
 }
 
-std::vector<std::string> names_of(const std::vector<OutputFile>& outputs) {
-  std::vector<std::string> names;
-  names.reserve(outputs.size());
-  for (const OutputFile& output : outputs)
-    names.push_back(std::filesystem::path(output.path).filename().string());
-  return names;
-}
-
 std::filesystem::path folder_of(const WholeFile& file) {
   const auto folder = std::filesystem::path(file.path()).parent_path();
   return folder.empty() ? "." : folder;  // the one we are in
@@ -186,15 +178,25 @@ void commit_together(const std::vector<WholeFile*>& files) {
   }
 }
 
+WrittenFile as_written(const OutputFile& file) {
+  Sha256 hash;
+  hash.update(file.text);
+  return {file.path, hash.finish()};
+}
+
 void name_files(Json& document, const std::vector<OutputFile>& outputs) {
-  document["files"] = Json(names_of(outputs));
+  std::vector<WrittenFile> files;
+  for (const OutputFile& output : outputs) files.push_back(as_written(output));
+  name_files(document, files);
+}
+
+void name_files(Json& document, const std::vector<WrittenFile>& outputs) {
+  document["files"] = Json::array();
   document["files_sha256"] = Json::object();
-  for (const OutputFile& output : outputs) {
-    if (is_document(output.path)) continue;
-    Sha256 hash;
-    hash.update(output.text);
-    document["files_sha256"][std::filesystem::path(output.path).filename().string()] =
-        hash.finish();
+  for (const WrittenFile& output : outputs) {
+    const std::string name = std::filesystem::path(output.path).filename().string();
+    document["files"].push_back(name);
+    if (!is_document(output.path)) document["files_sha256"][name] = output.sha256;
   }
 }
 

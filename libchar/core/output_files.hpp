@@ -44,9 +44,16 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
 /// first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
+/// A file that was written piece by piece, and what went into it.
+struct WrittenFile {
+  std::string path, sha256;
+};
+WrittenFile as_written(const OutputFile& file);
+
 /// Into a document among them: "files", their names in the folder (what a later run may remove), and "files_sha256", the digest of each
 /// but the documents themselves (what `check_results` looks at).
 void name_files(Json& document, const std::vector<OutputFile>& outputs);
+void name_files(Json& document, const std::vector<WrittenFile>& outputs);
 
 /// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
 /// file, where it is one of them.

@@ -12,6 +12,7 @@
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/schema.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
@@ -279,13 +280,13 @@ FleetPlan read_plan(const fs::path& folder) {
   const std::string whole = file_text(file.string(), kMostPlan);
   const std::string path = file.string();
   std::string_view text = whole;
-  const Document head = parse_document(take_line(text), path);
+  const Document head = parse_json_document(take_line(text), path);
   check_format(head, path, kPlanFormat, 1);
   const MapReader at(head, path, "", {"format", "version", "devices", "units"});
   FleetPlan plan;
   const std::uint64_t devices = at.count("devices"), units = at.count("units");
   for (std::uint64_t d = 0; d < devices && !text.empty(); ++d)
-    plan.devices.push_back(parse_device(parse_document(take_line(text), path), path));
+    plan.devices.push_back(parse_device(parse_json_document(take_line(text), path), path));
   for (std::uint64_t k = 0; k < units && !text.empty(); ++k)
     plan.units.push_back(parse_unit(take_line(text), path));
   if (plan.devices.size() != devices || plan.units.size() != units)

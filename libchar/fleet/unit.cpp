@@ -7,6 +7,7 @@
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/json_reader.hpp"
 #include "libchar/core/schema.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/version.hpp"
@@ -71,7 +72,7 @@ std::string unit_text(const FleetUnit& unit) {
 }
 
 FleetUnit parse_unit(std::string_view text, const std::string& path) {
-  const Document document = parse_document(text, path);
+  const Document document = parse_json_document(text, path);
   check_format(document, path, kTaskFormat, 1);
   const MapReader at(document,
                      path,

@@ -131,7 +131,9 @@ struct NpzArrayOf {
     for (const TableRow& row : rows) values.push_back(of(row));
     return values;
   }
-  void operator()(TextOf of) const { out.add(name, all<std::string>(of)); }
+  void operator()(TextOf of) const {
+    out.add(name, rows.size(), [&](std::size_t i) -> const std::string& { return of(rows[i]); });
+  }
   void operator()(CountOf of) const { out.add(name, all<std::uint64_t>(of)); }
   void operator()(const NumberOf& of) const { out.add(name, all<double>(of)); }
   void operator()(const StatusOf& of) const {
@@ -174,7 +176,9 @@ void write_coefficients_npz(std::span<const DeviceRecord> records,
   for (const TableColumn& column : table_columns(rows))
     std::visit(NpzArrayOf{out, column.name, rows}, column.of);
   static_assert(static_cast<int>(Status::detected) == 0, "the words are in the order of the enum");
-  out.add("status_words", words_of<Status>());
+  const std::vector<std::string> words = words_of<Status>();
+  out.add(
+      "status_words", words.size(), [&](std::size_t i) -> const std::string& { return words[i]; });
   out.finish();
 }
 

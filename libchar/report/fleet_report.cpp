@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/report/coefficient_table.hpp"
@@ -233,14 +234,18 @@ Json index_json(const FleetReport& report) {
           {"state", std::move(state)}};
 }
 
-OutputFile table_file(const FleetReport& report,
-                      const std::filesystem::path& path,
-                      void (*write)(std::span<const DeviceRecord>,
-                                    std::span<const std::size_t>,
-                                    const TakeBytes&)) {
-  OutputFile out{path.string(), ""};
-  write(report.records, report.lot->order, [&](std::string_view piece) { out.text += piece; });
-  return out;
+/// A table is too large for memory.
+WrittenFile written_table(const FleetReport& report,
+                          void (*write)(std::span<const DeviceRecord>,
+                                        std::span<const std::size_t>,
+                                        const TakeBytes&),
+                          WholeFile& file) {
+  Sha256 hash;
+  write(report.records, report.lot->order, [&](std::string_view piece) {
+    hash.update(piece);
+    file.write(piece);
+  });
+  return {file.path(), hash.finish()};
 }
 
 }  // namespace
@@ -284,17 +289,24 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   return out;
 }
 
-std::vector<OutputFile> fleet_files(const FleetReport& report,
-                                    const std::filesystem::path& folder) {
-  std::vector<OutputFile> out;
-  out.push_back({(folder / "index.html").string(), fleet_html(report)});
-  out.push_back(table_file(report, folder / "coefficients.csv", write_coefficients_csv));
-  out.push_back(table_file(report, folder / "coefficients.npz", write_coefficients_npz));
-  out.push_back({(folder / "lot.json").string(), ""});
+std::vector<std::string> write_fleet_report(const FleetReport& report,
+                                            const std::filesystem::path& folder,
+                                            bool force) {
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  const std::vector<std::string> paths = {
+      path("index.html"), path("coefficients.csv"), path("coefficients.npz"), path("lot.json")};
+  check_outputs(paths, folder, {}, force);
+  std::vector<OutputFile> texts = {{paths[0], fleet_html(report)}, {paths[3], ""}};
+  WholeFile csv(paths[1], force), npz(paths[2], force);
+  std::vector<WrittenFile> files = {as_written(texts[0]),
+                                    written_table(report, write_coefficients_csv, csv),
+                                    written_table(report, write_coefficients_npz, npz),
+                                    {paths[3], ""}};
   Json document = fleet_json(report);
-  name_files(document, out);
-  out.back().text = dump_json(document);
-  return out;
+  name_files(document, files);
+  texts[1].text = dump_json(document);
+  write_outputs(texts, folder, {}, force, {&csv, &npz});
+  return paths;
 }
 
 }  // namespace libchar

@@ -2,7 +2,7 @@
 // A fleet's lot: what is written, shown and printed of it.
 //
 //   const FleetLot lot = fleet_lot(records, options);
-//   write_outputs(fleet_files({.records = records, .lot = &lot, .name = "March"}, folder), folder, {}, force);
+//   write_fleet_report({.records = records, .lot = &lot, .name = "March"}, folder, force);
 
 #include <filesystem>
 #include <span>
@@ -25,9 +25,11 @@ struct FleetReport {
       inputs;  ///< small files that it was made from (document_info): limits, a plan
 };
 
-/// index.html, lot.json, coefficients.csv and coefficients.npz. A hundred thousand devices of six channels are half a gigabyte, nearly all of
-/// it the tables (report/coefficient_table.hpp writes them piece by piece).
-std::vector<OutputFile> fleet_files(const FleetReport& report, const std::filesystem::path& folder);
+/// index.html, coefficients.csv, coefficients.npz and lot.json, all of them or none; their paths. A hundred thousand devices of six channels
+/// are half a gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output) as write_outputs does.
+std::vector<std::string> write_fleet_report(const FleetReport& report,
+                                            const std::filesystem::path& folder,
+                                            bool force);
 Json fleet_json(const FleetReport& report);
 std::string fleet_html(const FleetReport& report);
 /// `worst`: devices named at most.

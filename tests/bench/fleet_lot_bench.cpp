@@ -1,6 +1,7 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
 // devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtzn: coverage, batches, differences of two lots,
-// temperatures, zone rules of charts, what is not detected]
+// temperatures, zone rules of charts, what is not detected] [FOLDER]
+// With a folder: a fleet of that many devices with all of its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +9,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "libchar/core/sha256.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/fleet/plan.hpp"
 #include "libchar/lot/lot_comparison.hpp"
 #include "libchar/report/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
@@ -295,6 +301,39 @@ void left_out_lots(Term term, int lots) {
       }
 }
 
+test::MadeLot large_lot(std::size_t devices) {
+  test::MadeLot made;
+  made.devices = devices;
+  made.channels = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
+  return made;
+}
+
+/// As a worker writes it, but not flushed to the disk one by one.
+void write_result(const std::filesystem::path& folder, const DeviceRecord& record) {
+  const std::string text = device_record_text(record);
+  Sha256 hash;
+  hash.update(text);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / kRecordFile, std::ios::binary) << hash.finish() << '\n' << text;
+}
+
+void write_fleet(std::size_t devices, const std::filesystem::path& folder) {
+  FleetPlan plan;
+  for (const DeviceRecord& r : test::made_lot(large_lot(devices), 1)) {
+    Sha256 hash;
+    hash.update(r.device);
+    FleetUnit unit;
+    unit.device = plan.devices.size();
+    unit.log = "/data/line7/" + r.log;
+    unit.sha256 = hash.finish();
+    unit.id = unit_id(unit);
+    plan.devices.push_back({r.device, r.type, r.batch, "", unit.log, unit.sha256, {}, ""});
+    write_result(folder / "results" / result_folder(unit.id), r);
+    plan.units.push_back(std::move(unit));
+  }
+  write_plan(plan, folder);
+}
+
 void size_of_a_fleet(std::size_t devices) {
   auto from = std::chrono::steady_clock::now();
   const auto lap = [&](const std::string& what) {
@@ -302,22 +341,24 @@ void size_of_a_fleet(std::size_t devices) {
     fmt::print("  {:<30} {:6.2f} s\n", what, std::chrono::duration<double>(now - from).count());
     from = std::chrono::steady_clock::now();
   };
-  test::MadeLot made;
-  made.devices = devices;
-  made.channels = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
   fmt::print("{} devices of six channels\n", devices);
   std::vector<std::string> lines;
-  for (const DeviceRecord& r : test::made_lot(made, 1)) lines.push_back(device_record_text(r));
+  for (const DeviceRecord& r : test::made_lot(large_lot(devices), 1))
+    lines.push_back(device_record_text(r));
   lap("records made and written");
   std::vector<DeviceRecord> records;
   for (const std::string& line : lines) records.push_back(parse_device_record(line, "fleet"));
   lap("records read");
   const FleetLot lot = fleet_lot(records);
   lap("the lot");
-  const auto files = fleet_files({records, &lot, "", {}, {}}, "fleet");
+  const auto folder = std::filesystem::temp_directory_path() / "libchar-fleet-lot-bench";
+  const auto files = write_fleet_report({records, &lot, "", {}, {}}, folder, true);
   lap("page, document, tables");
-  for (const OutputFile& file : files)
-    fmt::print("  {:<30} {:6.1f} MB\n", file.path, static_cast<double>(file.text.size()) / 1e6);
+  for (const std::string& file : files)
+    fmt::print("  {:<30} {:6.1f} MB\n",
+               std::filesystem::path(file).filename().string(),
+               static_cast<double>(std::filesystem::file_size(file)) / 1e6);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
@@ -355,6 +396,9 @@ int main(int argc, char** argv) {
       charts(n, n > 1000 ? lots : 10 * lots);
   if (asked('n'))
     for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
-  if (devices > 0) size_of_a_fleet(devices);
+  if (argc > 4)
+    write_fleet(devices, argv[4]);
+  else if (devices > 0)
+    size_of_a_fleet(devices);
   return 0;
 }

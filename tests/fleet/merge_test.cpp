@@ -7,8 +7,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/lot/fleet_lot.hpp"
-#include "libchar/report/fleet_report.hpp"
 #include "tests/fleet/fleet_folder.hpp"
+#include "tests/report/written_fleet.hpp"
 
 using namespace libchar;
 using Catch::Contains;
@@ -26,7 +26,7 @@ std::string report_of_fleets(const std::vector<std::string>& folders, const fs::
       records.push_back(std::move(record));
   const FleetLot lot = fleet_lot(records);
   std::string out;
-  for (const OutputFile& file : fleet_files({records, &lot, "", {}, {}}, to)) out += file.text;
+  for (const OutputFile& file : test::written_fleet({records, &lot, "", {}, {}})) out += file.text;
   return out;
 }
 

@@ -17,6 +17,7 @@
 #include "libchar/report/coefficient_table.hpp"
 #include "libchar/report/fleet_comparison_text.hpp"
 #include "tests/lot/made_fleet.hpp"
+#include "tests/report/written_fleet.hpp"
 #include "tests/support/schemas.hpp"
 #include "tests/support/shared.hpp"
 
@@ -76,7 +77,7 @@ TEST_CASE("a fleet's files do not depend on the order of its records") {
   auto records = two_batches();
   const auto files_of = [](const std::vector<DeviceRecord>& all) {
     const FleetLot lot = fleet_lot(all);
-    return fleet_files({all, &lot, "fleet", {"sensorchar", "fleet"}, {}}, "out");
+    return test::written_fleet({all, &lot, "fleet", {"sensorchar", "fleet"}, {}});
   };
   const auto before = files_of(records);
   std::reverse(records.begin(), records.end());
@@ -98,7 +99,7 @@ TEST_CASE("lot.json keeps its schema and names its files with their digests") {
       "{value: 3e-3, unit: deg/s}\n",
       "limits.yaml");
   const FleetLot lot = fleet_lot(records, options);
-  const auto files = fleet_files({records, &lot, "fleet", {}, {}}, "out");
+  const auto files = test::written_fleet({records, &lot, "fleet", {}, {}});
   CHECK(test::schema_fault(files[3].text) == "");
   const auto document = nlohmann::json::parse(files[3].text);
   CHECK(document["devices"] == 200);

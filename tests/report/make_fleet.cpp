@@ -79,10 +79,7 @@ int main(int argc, char** argv) {
           "deg/√h}\n",
           "limits.yaml");
     const FleetLot lot = fleet_lot(records, options);
-    std::filesystem::create_directories(folder);
-    for (const OutputFile& file :
-         fleet_files({records, &lot, "made of numbers", {"make_fleet", kind}, {}}, folder))
-      write_whole_file(file.path, file.text, true);
+    write_fleet_report({records, &lot, "made of numbers", {"make_fleet", kind}, {}}, folder, true);
     write_whole_file(folder + "/record.json", device_record_text(records[0]), true);
     const auto half = static_cast<std::ptrdiff_t>(records.size() / 2);
     const std::vector<DeviceRecord> first(records.begin(), records.begin() + half),

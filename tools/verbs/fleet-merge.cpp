@@ -100,14 +100,13 @@ void run_merge(Session& session, const MergeVerb& verb) {
   report.lot = &lot;
   report.name = name_of_fleets(verb);
   report.command = session.command;
-  const auto files = fleet_files(report, verb.folder);
-  write_outputs(files, verb.folder, {}, verb.force);
+  const std::vector<std::string> files = write_fleet_report(report, verb.folder, verb.force);
   session.wrote = true;
   session.terminal.clear();
   if (verb.json) return print(dump_json(fleet_json(report)));
   print_beside(session, fleet_text(report, table_width()));
   std::string written = "\nwrote";
-  for (const OutputFile& file : files) written += " " + printable(file.path);
+  for (const std::string& file : files) written += " " + printable(file);
   print_beside(session, written + "\n");
 }
 

@@ -18,6 +18,7 @@ static_assert(std::endian::native == std::endian::little,
               "arrays are written as they are in memory");
 
 constexpr std::size_t kNpyBlock = 64;
+constexpr std::size_t kPieceOfTexts = std::size_t{1} << 16U;
 /// Without extensions an archive's sizes and places have 32 bits.
 constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
@@ -90,48 +91,59 @@ void NpzWriter::put(std::string_view bytes) {
 void NpzWriter::add_array(const std::string& name,
                           const std::string& type,
                           std::size_t count,
-                          std::string_view data) {
+                          std::uint64_t bytes_of_data,
+                          const GiveData& give) {
   const std::string file = name + ".npy", header = npy_header(type, count);
-  const std::uint64_t bytes = header.size() + data.size();
+  const std::uint64_t bytes = header.size() + bytes_of_data;
+  std::uint32_t crc = crc32_of(as_span(header));
+  give([&](std::string_view piece) { crc = crc32_of(as_span(piece), crc); });
   Member member{file,
-                crc32_of(as_span(data), crc32_of(as_span(header))),
+                crc,
                 static_cast<std::uint32_t>(std::min(bytes, kMostBytes)),
                 static_cast<std::uint32_t>(written_)};
   std::string local = "PK\x03\x04";
   append_member(local, member.crc, member.bytes, file.size());
   put(local + file);
   put(header);
-  put(data);
+  give([&](std::string_view piece) { put(piece); });
   members_.push_back(std::move(member));
 }
 
+void NpzWriter::add_bytes(const std::string& name,
+                          const std::string& type,
+                          std::size_t count,
+                          std::string_view data) {
+  add_array(name, type, count, data.size(), [&](const auto& take) { take(data); });
+}
+
 void NpzWriter::add(const std::string& name, std::span<const double> values) {
-  add_array(name, "<f8", values.size(), bytes_of(values));
+  add_bytes(name, "<f8", values.size(), bytes_of(values));
 }
 
 void NpzWriter::add(const std::string& name, std::span<const std::uint64_t> values) {
-  add_array(name, "<u8", values.size(), bytes_of(values));
+  add_bytes(name, "<u8", values.size(), bytes_of(values));
 }
 
 void NpzWriter::add(const std::string& name, std::span<const std::uint8_t> values) {
-  add_array(name, "|u1", values.size(), bytes_of(values));
+  add_bytes(name, "|u1", values.size(), bytes_of(values));
 }
 
-void NpzWriter::add(const std::string& name, std::span<const std::string> texts) {
+void NpzWriter::add(const std::string& name,
+                    std::size_t count,
+                    const std::function<const std::string&(std::size_t)>& text) {
   std::size_t width = 1;
-  std::vector<std::u32string> wide;
-  wide.reserve(texts.size());
-  for (const std::string& text : texts) {
-    wide.push_back(wide_text(text));
-    width = std::max(width, wide.back().size());
-  }
-  std::string data;
-  data.reserve(4 * width * texts.size());
-  for (const std::u32string& text : wide) {
-    data.append(reinterpret_cast<const char*>(text.data()), 4 * text.size());
-    data.append(4 * (width - text.size()), '\0');
-  }
-  add_array(name, fmt::format("<U{}", width), texts.size(), data);
+  for (std::size_t i = 0; i < count; ++i) width = std::max(width, wide_text(text(i)).size());
+  add_array(name, fmt::format("<U{}", width), count, 4 * width * count, [&](const auto& take) {
+    std::string piece;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::u32string wide = wide_text(text(i));
+      piece.append(reinterpret_cast<const char*>(wide.data()), 4 * wide.size());
+      piece.append(4 * (width - wide.size()), '\0');
+      if (piece.size() < kPieceOfTexts && i + 1 < count) continue;
+      take(piece);
+      piece.clear();
+    }
+  });
 }
 
 void NpzWriter::finish() {

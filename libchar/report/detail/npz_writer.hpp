@@ -19,8 +19,11 @@ class NpzWriter {
   void add(const std::string& name, std::span<const double> values);
   void add(const std::string& name, std::span<const std::uint64_t> values);
   void add(const std::string& name, std::span<const std::uint8_t> values);
-  /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped.
-  void add(const std::string& name, std::span<const std::string> texts);
+  /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped. Asked for several times: the array is four bytes for each character
+  /// of the longest, and is never in memory as a whole.
+  void add(const std::string& name,
+           std::size_t count,
+           const std::function<const std::string&(std::size_t)>& text);
   /// The directory of the archive; nothing may follow.
   void finish();
 
@@ -29,7 +32,15 @@ class NpzWriter {
     std::string name;
     std::uint32_t crc = 0, bytes = 0, at = 0;
   };
+  /// Whoever has the data gives them to whoever asks, a piece after the other, twice: for the checksum, which stands in front, and to be
+  /// written.
+  using GiveData = std::function<void(const std::function<void(std::string_view)>&)>;
   void add_array(const std::string& name,
+                 const std::string& type,
+                 std::size_t count,
+                 std::uint64_t bytes,
+                 const GiveData& give);
+  void add_bytes(const std::string& name,
                  const std::string& type,
                  std::size_t count,
                  std::string_view data);
