@@ -36,9 +36,9 @@ std::vector<std::string> keys_with(std::vector<std::string> more) {
 }
 
 /// Entries with the same options share them.
-class OptionsTable {
+class ManifestOptions {
  public:
-  explicit OptionsTable(Manifest& manifest) : manifest_(manifest) {}
+  explicit ManifestOptions(Manifest& manifest) : manifest_(manifest) {}
   std::size_t index(const CharacterizeOptions& options) {
     const std::string text = json_of(settings_of(options)).dump();
     const auto [at, fresh] = known_.emplace(text, manifest_.options.size());
@@ -85,7 +85,7 @@ Manifest parse_tree(std::string_view text,
   const MapReader top(document, path, "", {"format", "version", "defaults", "devices"});
   const fs::path folder = folder_of_file(path);
   Manifest manifest;
-  OptionsTable table(manifest);
+  ManifestOptions table(manifest);
   FleetDevice defaults;
   CharacterizeOptions common = options;
   if (top.has("defaults")) {

@@ -130,11 +130,17 @@ std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders) {
 void refuse_common_logs(const std::vector<PlannedFleet>& fleets) {
   if (fleets.size() < 2) return;
   std::unordered_multimap<std::string, LogPart> known;
+  std::unordered_map<const CharacterizeOptions*, std::string> settings;
+  const auto settings_of_unit = [&](const FleetUnit& unit) {
+    std::string& id = settings[unit.options.get()];
+    if (id.empty()) id = settings_id(*unit.options);
+    return id;
+  };
   for (std::size_t f = 0; f < fleets.size(); ++f)
     for (const FleetUnit& unit : fleets[f].plan.units) {
       if (unit.kind == UnitKind::stretch) continue;
-      const LogPart part{f, unit.device, unit.options.reading.channels};
-      const std::string key = unit.sha256 + settings_id(unit.options);
+      const LogPart part{f, unit.device, unit.options->reading.channels};
+      const std::string key = unit.sha256 + settings_of_unit(unit);
       const auto [begin, end] = known.equal_range(key);
       for (auto at = begin; at != end; ++at)
         if (at->second.fleet != f && overlap(at->second.channels, part.channels))

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -28,7 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPlanFormat = "fleet-plan";
-constexpr std::size_t kMostPlan = std::size_t{4} << 30U;
 
 struct LookedAt {
   LogInfo head;
@@ -124,7 +124,9 @@ class UnitMaker {
     if (!options_.by_channel || log.head.channels.size() < 2) return add_log(log, unit);
     for (const Channel& channel : log.head.channels) {
       FleetUnit one = unit;
-      one.options.reading.channels = {channel.name};
+      CharacterizeOptions of_channel = *unit.options;
+      of_channel.reading.channels = {channel.name};
+      one.options = shared_.of(of_channel);
       add_log(log, one);
     }
   }
@@ -132,7 +134,7 @@ class UnitMaker {
  private:
   void add_log(const LookedAt& log, const FleetUnit& unit) {
     const bool large = unit.bytes > options_.split_bytes;
-    large&& why_not_divided(log.head, unit.options).empty() ? add_stretches(log, unit)
+    large&& why_not_divided(log.head, *unit.options).empty() ? add_stretches(log, unit)
                                                             : add_unit(log, unit);
   }
 
@@ -161,6 +163,7 @@ class UnitMaker {
   const FleetPlanOptions& options_;
   const CostModel& cost_;
   FleetPlan& plan_;
+  OptionsTable shared_;
 };
 
 Json device_json(const PlannedDevice& one) {
@@ -201,13 +204,62 @@ PlannedDevice parse_device(const Document& document, const std::string& path) {
                "make a plan with: sensorchar fleet plan MANIFEST -o DIR"});
 }
 
-/// The next line, without its end; the rest of the text stays.
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
+/// One after the other: the text of a plan of a hundred thousand units is larger than the plan. What stands behind the last end of line is
+/// a line too.
+void for_lines_of(const std::string& path, const std::function<void(std::string_view)>& take) {
+  constexpr std::size_t kPieceOfPlan = std::size_t{1} << 20U;
+  std::string begun;
+  for_pieces_of_file(path, kPieceOfPlan, [&](std::string_view piece) {
+    for (std::size_t end = piece.find('\n'); end != std::string_view::npos;
+         end = piece.find('\n')) {
+      begun.append(piece.substr(0, end));
+      take(begun);
+      begun.clear();
+      piece.remove_prefix(end + 1);
+    }
+    begun.append(piece);
+  });
+  if (!begun.empty()) take(begun);
 }
+
+/// A plan line by line: its head, the devices, the units.
+class PlanReader {
+ public:
+  explicit PlanReader(const fs::path& file) : file_(file), path_(file.string()) {}
+
+  void take(std::string_view line) {
+    if (!head_) return take_head(line);
+    if (plan_.devices.size() < devices_)
+      plan_.devices.push_back(parse_device(parse_json_document(line, path_), path_));
+    else if (plan_.units.size() < units_)
+      plan_.units.push_back(parse_unit(line, path_, shared_));
+  }
+
+  FleetPlan finish() {
+    if (!head_ || plan_.devices.size() != devices_ || plan_.units.size() != units_)
+      refuse_plan(file_, "the plan is cut");
+    for (const FleetUnit& unit : plan_.units)
+      if (unit.device >= devices_) refuse_plan(file_, "a unit is of no device of the plan");
+    return std::move(plan_);
+  }
+
+ private:
+  void take_head(std::string_view line) {
+    const Document head = parse_json_document(line, path_);
+    check_format(head, path_, kPlanFormat, 1);
+    const MapReader at(head, path_, "", {"format", "version", "devices", "units"});
+    devices_ = at.count("devices");
+    units_ = at.count("units");
+    head_ = true;
+  }
+
+  const fs::path& file_;
+  std::string path_;
+  bool head_ = false;
+  std::uint64_t devices_ = 0, units_ = 0;
+  FleetPlan plan_;
+  OptionsTable shared_;
+};
 
 }  // namespace
 
@@ -222,6 +274,9 @@ FleetPlan plan_fleet(const Manifest& manifest,
   const CostModel cost = measured_cost();
   FleetPlan plan;
   UnitMaker units(options, cost, plan);
+  OptionsTable shared;
+  std::vector<SharedOptions> settings;
+  for (const CharacterizeOptions& one : manifest.options) settings.push_back(shared.of(one));
   for (std::size_t d = 0; d < logs.size(); ++d) {
     const FleetDevice& one = manifest.devices[d];
     plan.devices.push_back({one.device,
@@ -239,7 +294,7 @@ FleetPlan plan_fleet(const Manifest& manifest,
     unit.sha256 = logs[d].sha256;
     unit.stated = !one.sha256.empty();
     unit.bytes = logs[d].head.bytes;
-    unit.options = manifest.options[one.options];
+    unit.options = settings[one.options];
     unit.reports = options.reports;
     units.add(logs[d], unit);
   }
@@ -277,23 +332,9 @@ FleetPlan read_plan(const fs::path& folder) {
   const fs::path file = folder / "plan.jsonl";
   std::error_code ignored;
   if (!fs::exists(file, ignored)) refuse_plan(file, "there is no plan in this folder");
-  const std::string whole = file_text(file.string(), kMostPlan);
-  const std::string path = file.string();
-  std::string_view text = whole;
-  const Document head = parse_json_document(take_line(text), path);
-  check_format(head, path, kPlanFormat, 1);
-  const MapReader at(head, path, "", {"format", "version", "devices", "units"});
-  FleetPlan plan;
-  const std::uint64_t devices = at.count("devices"), units = at.count("units");
-  for (std::uint64_t d = 0; d < devices && !text.empty(); ++d)
-    plan.devices.push_back(parse_device(parse_json_document(take_line(text), path), path));
-  for (std::uint64_t k = 0; k < units && !text.empty(); ++k)
-    plan.units.push_back(parse_unit(take_line(text), path));
-  if (plan.devices.size() != devices || plan.units.size() != units)
-    refuse_plan(file, "the plan is cut");
-  for (const FleetUnit& unit : plan.units)
-    if (unit.device >= devices) refuse_plan(file, "a unit is of no device of the plan");
-  return plan;
+  PlanReader reader(file);
+  for_lines_of(file.string(), [&](std::string_view line) { reader.take(line); });
+  return reader.finish();
 }
 
 }  // namespace libchar

@@ -57,12 +57,12 @@ void check_log_is_there(const FleetUnit& unit) {
 /// The same words whoever computes it, and in however many stretches.
 void finish_characterization(const FleetUnit& unit, Characterization& result) {
   result.command = {"sensorchar", "fleet", "run"};
-  result.settings = settings_of(unit.options);
+  result.settings = settings_of(*unit.options);
   result.seconds = std::numeric_limits<double>::quiet_NaN();
 }
 
 Characterization of_log(const FleetUnit& unit, Progress& progress) {
-  CharacterizeOptions options = unit.options;
+  CharacterizeOptions options = *unit.options;
   options.reading.hash = true;
   Characterization result = characterize(unit.log, options, progress);
   if (result.log.sha256 != unit.sha256) refuse_other_digest(unit, result.log.sha256);
@@ -112,7 +112,7 @@ void check_digest(const FleetUnit& unit) {
 Characterization of_parts(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   const std::vector<NamedState> states = states_of(unit, fleet);
   check_digest(unit);  // of the file that the stretches were read from
-  Characterization result = characterize_from_stretches(states, unit.options, progress);
+  Characterization result = characterize_from_stretches(states, *unit.options, progress);
   result.log.sha256 = unit.sha256;
   return result;
 }
@@ -129,7 +129,7 @@ DeviceRecord write_results(const FleetUnit& unit,
   finish_characterization(unit, result);
   if (unit.reports)
     write_outputs(report_files(characterization_view(result), folder), folder, {}, false);
-  return record_of(result, unit.options.data);
+  return record_of(result, unit.options->data);
 }
 
 DeviceRecord record_in(const FleetUnit& unit,
@@ -149,7 +149,7 @@ DeviceRecord record_in(const FleetUnit& unit,
   }
   if (result) record = write_results(unit, *result, folder);
   if (!result) record.program = version();
-  record.settings = settings_id(unit.options);
+  record.settings = settings_id(*unit.options);
   record.log = unit.log;
   record.sha256 = unit.sha256;
   return record;
@@ -164,7 +164,7 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
     const auto write = [&](const std::string& bytes) {
       write_whole_file((folder.path() / state_file(channel++)).string(), bytes);
     };
-    characterize_stretch(unit.log, unit.options, unit.stretch, unit.sha256, write, progress);
+    characterize_stretch(unit.log, *unit.options, unit.stretch, unit.sha256, write, progress);
   } else {
     const DeviceRecord record = record_in(unit, fleet, folder.path(), progress);
     write_record(folder.path(), record);

@@ -23,7 +23,7 @@ Json content_of(const FleetUnit& unit) {
   Json out = {{"version_of_program", version()},
               {"kind", name_of(unit.kind)},
               {"sha256", unit.sha256},
-              {"config", json_of(settings_of(unit.options))},
+              {"config", json_of(settings_of(*unit.options))},
               {"reports", unit.reports}};
   if (unit.kind == UnitKind::stretch)
     out["leaves"] = {unit.stretch.first_leaf, unit.stretch.end_leaf};
@@ -71,7 +71,18 @@ std::string unit_text(const FleetUnit& unit) {
   return with_valid_text(std::move(out)).dump();
 }
 
+SharedOptions OptionsTable::of(const CharacterizeOptions& options) {
+  const auto [at, fresh] = known_.try_emplace(json_of(settings_of(options)).dump());
+  if (fresh) at->second = std::make_shared<const CharacterizeOptions>(options);
+  return at->second;
+}
+
 FleetUnit parse_unit(std::string_view text, const std::string& path) {
+  OptionsTable alone;
+  return parse_unit(text, path, alone);
+}
+
+FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTable& shared) {
   const Document document = parse_json_document(text, path);
   check_format(document, path, kTaskFormat, 1);
   const MapReader at(document,
@@ -103,8 +114,9 @@ FleetUnit parse_unit(std::string_view text, const std::string& path) {
   unit.reports = at.flag_or("reports", true);
   if (unit.kind == UnitKind::stretch) unit.stretch = stretch_at(at);
   if (unit.kind == UnitKind::join) unit.parts = at.texts("parts");
-  read_fields(
-      characterize_fields(), at.map("config", keys_of(characterize_fields())), unit.options);
+  CharacterizeOptions options;
+  read_fields(characterize_fields(), at.map("config", keys_of(characterize_fields())), options);
+  unit.options = shared.of(options);
   const MapReader cost = at.map("cost", {"seconds", "memory_bytes"});
   unit.cost = {cost.number("seconds", kNotNegative), cost.count("memory_bytes")};
   if (at.text("version_of_program") != version())

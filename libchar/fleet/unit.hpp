@@ -3,6 +3,8 @@
 // depends on the log's content, the settings and the version of the program, and so does its name.
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +30,17 @@ struct UnitCost {
   std::uint64_t memory_bytes = 0;  ///< resident at most
 };
 
+/// A hundred thousand units of the same settings have them in memory once.
+using SharedOptions = std::shared_ptr<const CharacterizeOptions>;
+
+class OptionsTable {
+ public:
+  SharedOptions of(const CharacterizeOptions& options);
+
+ private:
+  std::map<std::string, SharedOptions> known_;
+};
+
 struct FleetUnit {
   std::string id;  ///< 32 hexadecimal digits (unit_id)
   UnitKind kind = UnitKind::log;
@@ -36,7 +49,7 @@ struct FleetUnit {
   std::string sha256;      ///< of the log when it was planned
   bool stated = false;     ///< the digest is a claim of the manifest's: the plan did not take it
   std::uint64_t bytes = 0;
-  CharacterizeOptions options;
+  SharedOptions options = std::make_shared<const CharacterizeOptions>();
   StretchRange stretch;            ///< of a stretch
   std::vector<std::string> parts;  ///< of a join: the ids of its stretches
   bool reports = true;  ///< report.html, report.json, curves.csv and models besides the record
@@ -52,5 +65,7 @@ std::string settings_id(const CharacterizeOptions& options);
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).
 std::string unit_text(const FleetUnit& unit);
 FleetUnit parse_unit(std::string_view text, const std::string& path);
+/// Of many units: those whose options are alike share them.
+FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTable& shared);
 
 }  // namespace libchar

@@ -20,7 +20,7 @@ TEST_CASE("a unit a log, or one a channel, the plan reads back") {
   options.by_channel = true;
   const FleetPlan plan = test::planned(logs, options);
   REQUIRE(plan.units.size() == 6);
-  CHECK(plan.units[1].options.reading.channels == std::vector<std::string>{"gy"});
+  CHECK(plan.units[1].options->reading.channels == std::vector<std::string>{"gy"});
   CHECK(plan.units[0].cost.seconds > 0);
   CHECK(plan.units[0].cost.memory_bytes > 1000000);
   std::set<std::string> ids;

@@ -46,7 +46,7 @@ TEST_CASE("a unit is done once, its folder has the record and the reports") {
   REQUIRE(record->channels.size() == 2);
   CHECK(record->channels[1].name == "gy");
   CHECK(record->channels[1].fitted);
-  CHECK(record->settings == settings_id(plan.units[0].options));
+  CHECK(record->settings == settings_id(*plan.units[0].options));
   CHECK(unpublished(fleet).empty());
 }
 

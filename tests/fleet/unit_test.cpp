@@ -20,11 +20,13 @@ FleetUnit some_unit() {
   unit.sha256 = std::string(64, 'a');
   unit.bytes = 12345678901;
   unit.device = 7;
-  unit.options.reading.channels = {"gx", "gy"};
-  unit.options.reading.rate_hz = 0.1;
-  unit.options.fit.terms = {true, false, true, false, true};
-  unit.options.spectrum.segment = 4096;
-  unit.options.still.stretch_s = Interval{1.5, 20};
+  CharacterizeOptions options;
+  options.reading.channels = {"gx", "gy"};
+  options.reading.rate_hz = 0.1;
+  options.fit.terms = {true, false, true, false, true};
+  options.spectrum.segment = 4096;
+  options.still.stretch_s = Interval{1.5, 20};
+  unit.options = std::make_shared<const CharacterizeOptions>(options);
   unit.cost = {1.25, 1000};
   unit.id = unit_id(unit);
   return unit;
@@ -44,8 +46,8 @@ TEST_CASE("a task reads back as it was written, every setting with it") {
   CHECK(again.bytes == unit.bytes);
   CHECK(again.device == unit.device);
   CHECK(again.cost.seconds == unit.cost.seconds);
-  CHECK(settings_text(again.options) == settings_text(unit.options));
-  CHECK(again.options.fit.terms == unit.options.fit.terms);
+  CHECK(settings_text(*again.options) == settings_text(*unit.options));
+  CHECK(again.options->fit.terms == unit.options->fit.terms);
 }
 
 TEST_CASE(
@@ -60,7 +62,11 @@ TEST_CASE(
   CHECK(id_with([](FleetUnit& u) { u.cost.seconds = 9; }) == unit.id);
   CHECK(id_with([](FleetUnit& u) { u.device = 0; }) == unit.id);
   CHECK(id_with([](FleetUnit& u) { u.sha256[0] = 'b'; }) != unit.id);
-  CHECK(id_with([](FleetUnit& u) { u.options.fit.threshold = 6; }) != unit.id);
+  CHECK(id_with([](FleetUnit& u) {
+          CharacterizeOptions options = *u.options;
+          options.fit.threshold = 6;
+          u.options = std::make_shared<const CharacterizeOptions>(options);
+        }) != unit.id);
   CHECK(id_with([](FleetUnit& u) { u.reports = false; }) != unit.id);
   CHECK(id_with([](FleetUnit& u) { u.kind = UnitKind::stretch; }) != unit.id);
 }

@@ -120,9 +120,9 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
   constexpr double kStretchBytes =
       70e6;  // of the channels of a pass, or of a state and the tree that it comes to
   constexpr double kTimesKept = 4;  // the record, its transform, what is written of it
-  const double chosen = unit.options.reading.channels.empty()
+  const double chosen = unit.options->reading.channels.empty()
                             ? static_cast<double>(head.channels.size())
-                            : static_cast<double>(unit.options.reading.channels.size());
+                            : static_cast<double>(unit.options->reading.channels.size());
   double rows = static_cast<double>(head.rows), bytes = static_cast<double>(unit.bytes);
   if (unit.kind == UnitKind::stretch) {
     const double leaves = static_cast<double>(unit.stretch.end_leaf - unit.stretch.first_leaf);
@@ -135,7 +135,7 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
                 bytes * (is_text(head.format) ? text_byte_s : binary_byte_s) +
                 (unit.reports && unit.kind != UnitKind::stretch ? kReports * chosen : 0);
   const double kept = 8 * rows * (chosen + kTimesKept);
-  const double limit = static_cast<double>(unit.options.memory_bytes) * 1.5 + kStageBytes * chosen;
+  const double limit = static_cast<double>(unit.options->memory_bytes) * 1.5 + kStageBytes * chosen;
   const double needed = unit.kind == UnitKind::log ? std::min(kept, limit) : kStretchBytes;
   out.memory_bytes = static_cast<std::uint64_t>(kProgram + needed);
   return out;
