@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "libchar/core/document.hpp"
@@ -29,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPlanFormat = "fleet-plan";
+constexpr const char* kPlanFile = "plan.jsonl";
 
 struct LookedAt {
   LogInfo head;
@@ -261,6 +267,31 @@ class PlanReader {
   OptionsTable shared_;
 };
 
+/// Whole or not there for whoever reads it now, after a power cut perhaps neither: flushing thousands of files takes longer than all else
+/// of planning, and whoever reads a task sees whether it is torn.
+void write_task(const fs::path& file, const std::string& text) {
+  const std::string temporary = fmt::format("{}{}{}-0", file.string(), kTemporaryMark, ::getpid());
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out || ::rename(temporary.c_str(), file.c_str()) != 0) {
+    const int number = errno;
+    ::unlink(temporary.c_str());
+    refuse_unwritable(file, number);
+  }
+}
+
+/// The unit whose task file this is by its name, where its folder has a plan that has it.
+std::optional<FleetUnit> unit_of_plan(const std::string& file) {
+  const fs::path path = fs::absolute(file), folder = path.parent_path().parent_path();
+  std::error_code ignored;
+  if (!fs::exists(folder / kPlanFile, ignored)) return std::nullopt;
+  FleetPlan plan = read_plan(folder);
+  for (std::size_t k = 0; k < plan.units.size(); ++k)
+    if (folder / task_file(k) == path) return std::move(plan.units[k]);
+  return std::nullopt;
+}
+
 }  // namespace
 
 FleetPlan plan_fleet(const Manifest& manifest,
@@ -315,21 +346,30 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
   for (const PlannedDevice& one : plan.devices)
     text += with_valid_text(device_json(one)).dump() + "\n";
   std::vector<std::string> lines(plan.units.size());
-  // Side by side: most of it is waiting for the disk.
   tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t k) {
     lines[k] = unit_text(plan.units[k]) + "\n";
-    write_whole_file((folder / task_file(k)).string(), lines[k], true);
+    write_task(folder / task_file(k), lines[k]);
   });
   for (const std::string& line : lines) text += line;
   // Tasks of an earlier, longer plan are none of this one.
   std::error_code error;
   for (std::size_t k = plan.units.size(); fs::remove(folder / task_file(k), error); ++k) {
   }
-  write_whole_file((folder / "plan.jsonl").string(), text, true);
+  remove_litter((folder / "tasks").string());
+  sync_folder((folder / "tasks").string());
+  write_whole_file((folder / kPlanFile).string(), text, true);
+}
+
+FleetUnit read_task(const std::string& file) {
+  constexpr std::size_t kMostTask = std::size_t{16} << 20U;
+  const std::string text = file_text(file, kMostTask);
+  if (!text.ends_with("}\n"))
+    if (auto unit = unit_of_plan(file)) return *std::move(unit);
+  return parse_unit(text, file);
 }
 
 FleetPlan read_plan(const fs::path& folder) {
-  const fs::path file = folder / "plan.jsonl";
+  const fs::path file = folder / kPlanFile;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) refuse_plan(file, "there is no plan in this folder");
   PlanReader reader(file);

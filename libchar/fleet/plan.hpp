@@ -44,12 +44,16 @@ FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress = no_progress());
 
-/// Writes DIR/plan.jsonl and the tasks. A plan that stands there is replaced; results stay, and those of units that are still the same are
-/// used. Throws Error(output).
+/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that stands there is replaced; results stay, and
+/// those of units that are still the same are used. Throws Error(output).
 void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 
 /// Throws Error(input) for what is no plan, or one of another version of the program.
 FleetPlan read_plan(const std::filesystem::path& folder);
+
+/// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a power cut has torn is read from the plan.
+/// Throws Error(input).
+FleetUnit read_task(const std::string& file);
 
 /// The file of a unit's task, relative to the folder of the plan.
 std::string task_file(std::size_t unit);

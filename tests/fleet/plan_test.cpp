@@ -86,6 +86,30 @@ TEST_CASE(
   CHECK_THAT(plan.devices[3].problem, Contains("absent.csv"));
 }
 
+TEST_CASE("a task that a power cut has torn is read from the plan, one that was changed is not") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 3));
+  write_plan(plan, folder / "F");
+  const std::string task = (folder / "F" / task_file(1)).string();
+  const std::string whole = test::slurp(task);
+  CHECK(read_task(task).id == plan.units[1].id);
+  for (const std::string& torn :
+       {std::string(), whole.substr(0, 300), std::string(whole.size(), '\0')}) {
+    test::write_file(task, torn);
+    CHECK(unit_text(read_task(task)) + "\n" == whole);
+  }
+  test::write_file(task, test::slurp(folder / "F" / task_file(0)).replace(10, 5, "xxxxx"));
+  CHECK_THROWS_AS(read_task(task), Error);
+  // Of no plan, or of a longer one that is not there any more.
+  test::write_file((folder / "F" / task_file(3)).string(), "");
+  CHECK_THROWS_WITH(read_task((folder / "F" / task_file(3)).string()), Contains("is empty"));
+  std::filesystem::remove(folder / "F" / "plan.jsonl");
+  test::write_file(task, "");
+  CHECK_THROWS_WITH(read_task(task), Contains("is empty"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "F" / "tasks"))
+    CHECK(entry.path().filename().string().size() == std::string("000001.json").size());
+}
+
 TEST_CASE("limits that cannot be read are told before the work") {
   const test::TemporaryFolder folder;
   Manifest manifest = manifest_of_logs(test::write_logs(folder.path(), 2));

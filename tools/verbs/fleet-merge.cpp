@@ -71,7 +71,8 @@ Merged merged(Session& session, const MergeVerb& verb) {
     std::move(records.begin(), records.end(), std::back_inserter(out.records));
     one.plan = {};
   }
-  ::malloc_trim(0);  // what the plans took: the threads that compute the lot have heaps of their own
+  ::malloc_trim(
+      0);  // what the plans took: the threads that compute the lot have heaps of their own
   return out;
 }
 

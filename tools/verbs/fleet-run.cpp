@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/fleet/plan.hpp"
@@ -33,13 +32,12 @@ struct Work {
 };
 
 void add_work(const std::string& input, std::vector<Work>& work) {
-  constexpr std::size_t kMostTask = std::size_t{16} << 20U;
   if (fs::is_directory(input)) {
     for (FleetUnit& unit : read_plan(input).units) work.push_back({std::move(unit), input});
     return;
   }
   const fs::path folder = fs::absolute(input).parent_path().parent_path();
-  work.push_back({parse_unit(file_text(input, kMostTask), input), folder});
+  work.push_back({read_task(input), folder});
 }
 
 /// What came of the units.

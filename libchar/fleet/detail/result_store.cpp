@@ -56,15 +56,6 @@ void remove_litter_in(const fs::path& folder) {
     if (is_litter(entry.path().filename().string())) fs::remove_all(entry.path(), ignored);
 }
 
-[[noreturn]] void cannot_write(const fs::path& path, int number) {
-  throw Error({ErrorKind::output,
-               "E0790",
-               path.string(),
-               "cannot be written: " + std::generic_category().message(number),
-               "",
-               ""});
-}
-
 std::string digest_of(std::string_view text) {
   Sha256 hash;
   hash.update(text);
@@ -102,10 +93,19 @@ std::string checked_text(const fs::path& file, std::size_t most) {
 
 }  // namespace
 
+void refuse_unwritable(const fs::path& path, int number) {
+  throw Error({ErrorKind::output,
+               "E0790",
+               path.string(),
+               "cannot be written: " + std::generic_category().message(number),
+               "",
+               ""});
+}
+
 void make_fleet_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) cannot_write(folder, error.value());
+  if (error) refuse_unwritable(folder, error.value());
 }
 
 std::string result_folder(const std::string& id) {
@@ -134,13 +134,13 @@ bool ResultFolder::publish() {
       sync_folder(final_name.parent_path().string());
       return true;
     }
-    if (errno != EEXIST && errno != ENOTEMPTY) cannot_write(final_name, errno);
+    if (errno != EEXIST && errno != ENOTEMPTY) refuse_unwritable(final_name, errno);
     if (has_result(fleet_, id_, fs::exists(path_ / state_file(0))) && same_log(path_, final_name))
       return false;
     const fs::path aside =
         final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
     if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT)
-      cannot_write(final_name, errno);
+      refuse_unwritable(final_name, errno);
   }
   return false;
 }

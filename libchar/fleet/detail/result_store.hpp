@@ -12,6 +12,9 @@
 
 namespace libchar {
 
+/// Throws Error(output) for a failed call of the system and its number.
+[[noreturn]] void refuse_unwritable(const std::filesystem::path& path, int number);
+
 /// With those above it. Throws Error(output).
 void make_fleet_folder(const std::filesystem::path& folder);
 
