@@ -15,6 +15,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/report/coefficient_table.hpp"
+#include "libchar/report/detail/npz_writer.hpp"
 #include "libchar/report/fleet_comparison_text.hpp"
 #include "tests/lot/made_fleet.hpp"
 #include "tests/report/written_fleet.hpp"
@@ -277,6 +278,55 @@ TEST_CASE("the arrays of coefficients are read by our own reader of .npz") {
       CHECK(read.samples[1][row++] == c.values[3].sd);
     }
   CHECK(row == read.samples[0].size());
+}
+
+TEST_CASE("an archive of arrays above four gigabytes, made small: sizes and places in extensions") {
+  const std::vector<double> values = {1, 2.5, -3};
+  const std::vector<std::uint64_t> counts = {7, 8, 9};
+  const auto archive = [&](std::uint64_t wide_from) {
+    std::string out;
+    NpzWriter writer([&](std::string_view piece) { out += piece; }, wide_from);
+    writer.add("a", values);  // 152 bytes, at 0
+    writer.add("b", counts);  // 152 bytes, at 187
+    writer.finish();
+    return out;
+  };
+  const auto entry = [](const std::string& text, std::size_t at, std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;)
+      value = value << 8U | static_cast<std::uint8_t>(text[at + i]);
+    return value;
+  };
+  const std::string plain = archive(1000);
+  CHECK(archive(std::numeric_limits<std::uint32_t>::max()) == plain);
+  // The second place is far, the directory is, no member is large; then everything is.
+  for (const std::uint64_t wide_from : {160, 100}) {
+    const std::string wide = archive(wide_from);
+    const bool large = wide_from < 152;
+    CHECK(entry(wide, 4, 2) == (large ? 45U : 20U));
+    CHECK(entry(wide, 18, 4) == (large ? 0xFFFFFFFFU : 152U));
+    CHECK(entry(wide, 28, 2) == (large ? 20U : 0U));  // length of the extension
+    if (large) CHECK(wide.substr(35, 4) == std::string("\1\0\x10\0", 4));
+    if (large) CHECK(entry(wide, 39, 8) == 152);
+    const std::size_t end = wide.size() - 22, locator = end - 20, record = locator - 56;
+    CHECK(entry(wide, end + 16, 4) == 0xFFFFFFFFU);
+    CHECK(wide.substr(locator, 4) == "PK\x06\x07");
+    CHECK(entry(wide, locator + 8, 8) == record);
+    CHECK(wide.substr(record, 4) == "PK\x06\x06");
+    CHECK(entry(wide, record + 32, 8) == 2);
+    const std::size_t directory = entry(wide, record + 48, 8);
+    CHECK(wide.substr(directory, 4) == "PK\x01\x02");
+    CHECK(directory + entry(wide, record + 40, 8) == record);
+    const test::TemporaryFolder folder;
+    const std::string path = (folder.path() / "wide.npz").string();
+    write_whole_file(path, wide);
+    ReadOptions options;
+    options.rate_hz = 1;
+    const Recording read = read_recording(path, options);
+    REQUIRE(read.samples.size() == 2);
+    CHECK(read.samples[0][1] == 2.5);
+    CHECK(read.samples[1][2] == 9);
+  }
 }
 
 TEST_CASE("the page of a fleet grows by names, not by drawings") {

@@ -1,9 +1,10 @@
 #pragma once
-// An .npz archive of named one-dimensional arrays (NumPy enhancement proposal 1 in an uncompressed zip archive, APPNOTE 6.3.3), which
+// An .npz archive of named one-dimensional arrays (NumPy enhancement proposal 1 in an uncompressed zip archive, APPNOTE 6.3.3, ZIP64 above 4 GiB), which
 // numpy.load reads with allow_pickle=False.
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,8 +14,11 @@ namespace libchar {
 
 class NpzWriter {
  public:
-  /// `take` gets the bytes of the archive, a piece after the other.
-  explicit NpzWriter(std::function<void(std::string_view)> take) : take_(std::move(take)) {}
+  /// `take` gets the bytes of the archive, a piece after the other. Sizes and places from `wide_from` on stand in extensions (tests have
+  /// no four gigabytes).
+  explicit NpzWriter(std::function<void(std::string_view)> take,
+                     std::uint64_t wide_from = std::numeric_limits<std::uint32_t>::max())
+      : take_(std::move(take)), wide_from_(wide_from) {}
 
   void add(const std::string& name, std::span<const double> values);
   void add(const std::string& name, std::span<const std::uint64_t> values);
@@ -30,7 +34,8 @@ class NpzWriter {
  private:
   struct Member {
     std::string name;
-    std::uint32_t crc = 0, bytes = 0, at = 0;
+    std::uint32_t crc = 0;
+    std::uint64_t bytes = 0, at = 0;
   };
   /// Whoever has the data gives them to whoever asks, a piece after the other, twice: for the checksum, which stands in front, and to be
   /// written.
@@ -44,10 +49,11 @@ class NpzWriter {
                  const std::string& type,
                  std::size_t count,
                  std::string_view data);
+  void finish_directory(std::uint64_t at, std::uint64_t size);
   void put(std::string_view bytes);
 
   std::function<void(std::string_view)> take_;
-  std::uint64_t written_ = 0;
+  std::uint64_t wide_from_, written_ = 0;
   std::vector<Member> members_;
 };
 
