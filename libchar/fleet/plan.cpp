@@ -141,7 +141,7 @@ class UnitMaker {
   void add_log(const LookedAt& log, const FleetUnit& unit) {
     const bool large = unit.bytes > options_.split_bytes;
     large&& why_not_divided(log.head, *unit.options).empty() ? add_stretches(log, unit)
-                                                            : add_unit(log, unit);
+                                                             : add_unit(log, unit);
   }
 
   void add_unit(const LookedAt& log, FleetUnit unit) {

@@ -52,7 +52,7 @@ TEST_CASE("a long log's channels can be units too: stretches of each, and a join
   REQUIRE(plan.units.size() == 6);
   CHECK(plan.units[2].kind == UnitKind::join);
   CHECK(plan.units[3].kind == UnitKind::stretch);
-  CHECK(plan.units[3].options.reading.channels == std::vector<std::string>{"b"});
+  CHECK(plan.units[3].options->reading.channels == std::vector<std::string>{"b"});
 }
 
 TEST_CASE("a shorter plan in the same folder leaves no task of the longer one") {
