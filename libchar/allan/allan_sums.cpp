@@ -138,6 +138,18 @@ LevelEnd read_end(StateReader& from) {
   return end;
 }
 
+/// Terms of sums of 2^k values start at some of those that have as many behind them; others would make a curve that no record has, whose
+/// covariance takes for ever.
+bool possible(const AllanLevel& level) {
+  for (std::size_t k = 0; k < level.terms.size(); ++k) {
+    const std::uint64_t span = std::uint64_t{2} << k;
+    const std::uint64_t most = level.count < span ? 0 : level.count - span + 1;
+    const PresentTerms& terms = level.terms[k];
+    if (terms.terms > terms.starts || terms.starts > most) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void LevelEnd::push_back(double z, double lacks) {
@@ -240,7 +252,7 @@ AllanSums read_allan_sums(StateReader& from) {
       terms.starts = from.number();
     }
     if (level.head.count != std::min<std::uint64_t>(level.count, kReach) ||
-        level.tail.count != level.head.count)
+        level.tail.count != level.head.count || !possible(level))
       from.refuse("a level of the pyramid");
   }
   // What follows is joined by these numbers.

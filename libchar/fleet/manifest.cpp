@@ -190,7 +190,7 @@ std::vector<std::string> files_of_pattern(const std::string& word) {
 void check_devices(const Manifest& manifest, const std::string& path) {
   if (manifest.devices.empty())
     throw Error({ErrorKind::input, "E0780", path, "the fleet has no device", "", ""});
-  for (const FleetDevice& one : manifest.devices)
+  for (const FleetDevice& one : manifest.devices) {
     if (one.device.empty() || first_invalid_utf8(one.device) != std::string::npos)
       throw Error({ErrorKind::input,
                    "E0780",
@@ -198,6 +198,16 @@ void check_devices(const Manifest& manifest, const std::string& path) {
                    "a device needs a name in UTF-8",
                    one.device,
                    "give it a name"});
+    // Plans and tasks are JSON: another path would stand there, and be sought for ever.
+    for (const std::string* text : {&one.log, &one.limits, &one.type, &one.batch})
+      if (first_invalid_utf8(*text) != std::string::npos)
+        throw Error({ErrorKind::input,
+                     "E0780",
+                     one.where,
+                     "paths and words of a fleet are in UTF-8, and this is not",
+                     *text,
+                     "rename the file or its folder, or save the manifest in UTF-8"});
+  }
 }
 
 }  // namespace

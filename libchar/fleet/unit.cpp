@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/settings.hpp"
@@ -43,9 +45,23 @@ UnitKind kind_at(const MapReader& at) {
 
 StretchRange stretch_at(const MapReader& at) {
   const std::vector<double> ends = at.numbers("leaves");
-  if (ends.size() != 2 || !(ends[0] >= 0) || !(ends[1] > ends[0]))
+  constexpr double kMost = 0x1p53;  // numbers of a document are whole up to here
+  const auto is_leaf = [&](double end) { return end >= 0 && end <= kMost && end == std::floor(end); };
+  if (ends.size() != 2 || !is_leaf(ends[0]) || !is_leaf(ends[1]) || !(ends[1] > ends[0]))
     at.refuse("leaves", "expected the first leaf and the one behind the last");
   return {static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])};
+}
+
+/// Results are found by these: they lead nowhere else.
+bool is_id(std::string_view word) {
+  return word.size() == kIdDigits && word.find_first_not_of("0123456789abcdef") == word.npos;
+}
+
+std::vector<std::string> parts_at(const MapReader& at) {
+  std::vector<std::string> parts = at.texts("parts");
+  if (parts.empty() || !std::all_of(parts.begin(), parts.end(), is_id))
+    at.refuse("parts", "expected the names of the stretches that are joined");
+  return parts;
 }
 
 }  // namespace
@@ -113,7 +129,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTabl
   unit.bytes = at.count("bytes");
   unit.reports = at.flag_or("reports", true);
   if (unit.kind == UnitKind::stretch) unit.stretch = stretch_at(at);
-  if (unit.kind == UnitKind::join) unit.parts = at.texts("parts");
+  if (unit.kind == UnitKind::join) unit.parts = parts_at(at);
   CharacterizeOptions options;
   read_fields(characterize_fields(), at.map("config", keys_of(characterize_fields())), options);
   unit.options = shared.of(options);

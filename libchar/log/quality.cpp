@@ -798,6 +798,8 @@ void QualityMeter::read_state(StateReader& from) {
     return x;
   };
   const auto v = reals(4), d = reals(5);
+  constexpr double kExact = 0x1p53;  // a count is whole up to here
+  if (!(v[1] >= 0 && v[1] <= kExact)) from.refuse("the number of its samples");
   s.values = {v[0], v[1], v[2], v[3]};
   s.differences = {d[0], d[1], d[2], d[3], d[4]};
   const std::vector<double> distinct = from.reals();

@@ -138,16 +138,20 @@ WelchSums WelchParts::read_state(StateReader& from) const {
   sums.moves_little = from.flag();
   const Layout& layout = state_->layout;
   const std::size_t lags = (layout.segment - 1) / layout.hop;
-  const bool none = sums.samples == 0 && sums.power.empty() && sums.pairs.empty() &&
-                    sums.begin.empty() && sums.end.empty() && sums.head.empty() &&
-                    sums.tail.empty();
+  const bool none = sums.samples == 0 && sums.used == 0 && sums.dropped == 0 &&
+                    sums.power.empty() && sums.pairs.empty() && sums.begin.empty() &&
+                    sums.end.empty() && sums.head.empty() && sums.tail.empty();
   if (none) return sums;
+  const std::uint64_t segments = layout.count(sums.samples);
+  const std::size_t ends = std::min<std::uint64_t>(sums.samples, state_->end_samples());
   const bool whole = (sums.used == 0 || !sums.power.empty()) &&
                      (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
-                     sums.pairs.size() == lags + 1 && sums.begin.size() <= lags &&
-                     sums.end.size() == sums.begin.size() &&
-                     sums.head.size() <= state_->end_samples() &&
-                     sums.tail.size() == sums.head.size();
+                     sums.used <= segments && sums.dropped == segments - sums.used &&
+                     sums.pairs.size() == lags + 1 &&
+                     *std::max_element(sums.pairs.begin(), sums.pairs.end()) <= segments &&
+                     sums.begin.size() == std::min<std::uint64_t>(segments, lags) &&
+                     sums.end.size() == sums.begin.size() && sums.head.size() == ends &&
+                     sums.tail.size() == ends;
   if (!whole) from.refuse("the sums of its spectrum");
   return sums;
 }

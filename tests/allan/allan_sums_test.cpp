@@ -7,6 +7,7 @@
 #include <random>
 
 #include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/core/error.hpp"
 #include "tests/support/parts.hpp"
 
 using namespace libchar;
@@ -92,6 +93,22 @@ TEST_CASE("Allan sums: a state that was written and read is the same") {
   REQUIRE(a.points.size() == b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i)
     REQUIRE(a.points[i].deviation == b.points[i].deviation);
+}
+
+TEST_CASE("Allan sums: a state with more terms than its samples have is refused") {
+  const AllanSums sums = sums_in_parts(record_of_parts(16, 1, 0, 0), 16);
+  const auto refused = [&](auto change) {
+    AllanSums odd = sums;
+    change(odd.levels[0].terms[0]);
+    StateWriter to("allan", 1);
+    write_state(odd, to);
+    const std::string bytes = to.finish();
+    StateReader from(bytes, "x", "allan", 1);
+    REQUIRE_THROWS_AS(read_allan_sums(from), Error);
+  };
+  refused([](PresentTerms& terms) { terms.terms = terms.starts = 16; });  // 15 fit
+  refused([](PresentTerms& terms) { terms.terms = terms.starts = std::uint64_t{1} << 60U; });
+  refused([](PresentTerms& terms) { terms.starts = 0; });
 }
 
 TEST_CASE("Allan sums: a part that would straddle is refused") {

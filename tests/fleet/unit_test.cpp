@@ -71,6 +71,27 @@ TEST_CASE(
   CHECK(id_with([](FleetUnit& u) { u.kind = UnitKind::stretch; }) != unit.id);
 }
 
+TEST_CASE("stretches without whole ends and joins of what is no result are refused") {
+  const auto said = [](UnitKind kind, const std::string& key, const std::string& value) {
+    FleetUnit unit = some_unit();
+    unit.kind = kind;
+    unit.stretch = {0, 1};
+    unit.parts = {unit.id};
+    Json task = Json::parse(unit_text(unit));
+    task[key] = Json::parse(value);
+    try {
+      parse_unit(task.dump(), "t.json");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const char* leaves : {"[0, 1e300]", "[0.5, 2]", "[1, 1]", "[-1, 1]", "[0]"})
+    CHECK_THAT(said(UnitKind::stretch, "leaves", leaves), Contains("first leaf"));
+  for (const char* parts : {R"(["../../elsewhere"])", "[]", R"([""])"})
+    CHECK_THAT(said(UnitKind::join, "parts", parts), Contains("names of the stretches"));
+}
+
 TEST_CASE("a task that was changed by hand, or is of another version, is refused") {
   const std::string text = unit_text(some_unit());
   const auto with = [&](const std::string& from, const std::string& to) {

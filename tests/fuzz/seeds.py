@@ -154,6 +154,57 @@ def made_by(program):
         yield "figure", 2, table.read_text()[:LARGEST]
 
 
+def stretch_content(state):
+    """What stands in a partial state behind the settings and in front of the digest."""
+    at = 20  # magic, version, length
+    for _ in range(3):  # kind, identity, settings
+        at += 8 + struct.unpack_from("<Q", state, at)[0]
+    return state[at:-64]
+
+
+def fleets_of(program):
+    """(target, bytes) of what fleets read: manifests, and the plan, tasks, records and states of a small fleet."""
+    generator = random.Random(4)
+    devices = [("A1", "a.csv", "x", "b1", "21.5"), ("B 2", "b;2.npy", "", "", ""), ("Ä", "/logs/c.ulg", "y", "", "-3e1")]
+    heads = ["device", "log", "type", "batch", "temperature_c"]
+    for mark in ",;":
+        for end in ("\n", "\r\n"):
+            rows = [heads] + [[f'"{cell}"' if mark in cell else cell for cell in row] for row in devices]
+            yield "manifest", b"\2" + end.join(mark.join(row) for row in rows).encode()
+    tree = {"format": "fleet-manifest", "version": 1,
+            "defaults": {"type": "x", "batch": "b", "limits": "l.yaml", "options": {"reading": {"rate_hz": 200}, "fit": {"threshold": 6}}},
+            "devices": [{key: cell for key, cell in zip(heads[:4], row) if cell} for row in devices]}
+    tree["devices"][0] |= {"temperature_c": 21.5, "options": {"spectrum": {"segment": 64}}}
+    text = json.dumps(tree, ensure_ascii=False).encode()
+    yield "manifest", b"\1" + text
+    yield "manifest", b"\0" + text  # JSON is YAML
+    yield "manifest", b"\0format: fleet-manifest\nversion: 1\ndevices:\n  - {device: A, log: a.npy}\n  - log: b.npy\n    batch: \"2\"\n"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run = lambda *words: subprocess.run([str(program), "fleet", *map(str, words)], capture_output=True, cwd=folder, check=True)
+        (folder / "a.f64").write_bytes(b"".join(struct.pack("<d", generator.gauss(0, 1)) for _ in range(16 * 20)))
+        channels = [{"name": f"a{k}", "unit": "deg/s"} for k in range(20)]
+        (folder / "a.f64.json").write_text(json.dumps({"dtype": "f64", "endian": "little", "rate_hz": 100, "channels": channels}))
+        (folder / "b.csv").write_text("t[s],gx[deg/s]\n" + "".join(f"{k / 100},{generator.gauss(0, 1):.4f}\n" for k in range(400)))
+        run("plan", "a.f64", "--split-above", "1KiB", "--segment", "8", "-c", "a0", "--no-reports", "-o", "f")
+        run("plan", "b.csv", "--no-reports", "-o", "g")
+        for fleet in ("f", "g"):
+            run("run", fleet)
+            for first in (b"\0", b"\1"):
+                yield "plan", first + (folder / fleet / "plan.jsonl").read_bytes()
+                for task in sorted((folder / fleet / "tasks").iterdir()):
+                    yield "task", first + task.read_bytes()
+        records = [path.read_bytes()[65:] for path in sorted(folder.rglob("device.record"))]
+        for first in range(0, 32, 5):
+            for text in [*records, b"\n".join(records), records[0].replace(b",", b", ")]:
+                yield "record", bytes([first]) + text[:LARGEST]
+        for path in folder.rglob("state.bin"):
+            for length in (LARGEST, 3000, 1000, 300):
+                yield "stretch", b"\0\0" + stretch_content(path.read_bytes())[:length]
+    for choice in range(256):
+        yield "stretch", bytes([choice, 1 + choice % 3]) + generator.randbytes(generator.choice([8, 16, 60]))
+
+
 def seeds(program):
     """(target, bytes) of every seed."""
     generator = random.Random(1)
@@ -213,6 +264,7 @@ def seeds(program):
         for target, first, text in made_by(program):
             for piece in cut(text.encode(), generator):
                 yield target, bytes([first]) + piece
+        yield from fleets_of(program)
 
 
 def main():

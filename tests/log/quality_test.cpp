@@ -4,10 +4,14 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <vector>
 
+#include "libchar/core/error.hpp"
 #include "libchar/core/moments.hpp"
+#include "libchar/core/sha256.hpp"
+#include "libchar/core/state_archive.hpp"
 
 using namespace libchar;
 
@@ -273,6 +277,24 @@ std::vector<std::vector<double>> odd_channels(std::size_t n) {
 }
 
 }  // namespace
+
+TEST_CASE("quality: a state whose number of samples is no count is refused") {
+  for (const double n : {-1.0, 1e300, std::nan("")}) {
+    QualityMeter meter;
+    StateWriter to("quality", 1);
+    meter.write_state(to);
+    std::string bytes = to.finish();
+    const std::size_t at = 8 + 4 + 8 + 8 + std::string("quality").size() + 8 + 8;
+    std::memcpy(&bytes[at], &n, sizeof n);
+    bytes.resize(bytes.size() - 64);
+    Sha256 digest;
+    digest.update(bytes);
+    bytes += digest.finish();
+    StateReader from(bytes, "x", "quality", 1);
+    QualityMeter again;
+    REQUIRE_THROWS_AS(again.read_state(from), Error);
+  }
+}
 
 TEST_CASE("quality: parts joined are the record, wherever it is cut") {
   std::mt19937_64 engine(4);

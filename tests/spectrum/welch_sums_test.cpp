@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "libchar/core/error.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 #include "tests/support/parts.hpp"
 
@@ -75,4 +76,29 @@ TEST_CASE("Welch sums: segments that do not divide a part are refused in a sente
           "segments begin every 500 samples, which do not divide a leaf of 4096");
   REQUIRE(WelchParts::why_not({.segment = 8192}, 4096) ==
           "segments of 8192 samples are longer than a leaf of 4096");
+}
+
+TEST_CASE("Welch sums: a state that no part of a record has is refused") {
+  const WelchParts parts({.segment = 16});
+  const std::vector<double> y = spectral_record(100, 0, false);
+  const auto read = [&](const WelchSums& sums) {
+    StateWriter to("spectrum", 1);
+    WelchParts::write_state(sums, to);
+    const std::string bytes = to.finish();
+    StateReader from(bytes, "x", "spectrum", 1);
+    return parts.read_state(from);
+  };
+  const auto refused = [&](auto change) {
+    WelchSums odd = parts.take(y);
+    change(odd);
+    REQUIRE_THROWS_AS(read(odd), Error);
+  };
+  REQUIRE(read(parts.take(y)).used == 11);
+  REQUIRE(read({}).samples == 0);
+  refused([](WelchSums& sums) { sums = {}, sums.used = 5; });
+  refused([](WelchSums& sums) { sums.used = 1000000; });
+  refused([](WelchSums& sums) { ++sums.dropped; });
+  refused([](WelchSums& sums) { sums.pairs[1] = std::uint64_t{1} << 60U; });
+  refused([](WelchSums& sums) { sums.head.pop_back(); });
+  refused([](WelchSums& sums) { sums.end.clear(); });
 }
