@@ -75,10 +75,9 @@ Case made(std::size_t rows, std::size_t channels, std::uint64_t segment, bool al
   out.options.spectrum.segment = segment;
   out.options.wanted.spectrum = all;
   for (std::uint64_t leaf = 0; leaf < leaves_of(rows); ++leaf)
-    characterize_stretch(
-        path, out.options, {leaf, leaf + 1}, "log", [&](const std::string& bytes) {
-          out.states.push_back(cut(bytes, out.options));
-        });
+    characterize_stretch(path, out.options, {leaf, leaf + 1}, "log", [&](const std::string& bytes) {
+      out.states.push_back(cut(bytes, out.options));
+    });
   return out;
 }
 
