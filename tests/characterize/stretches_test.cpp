@@ -394,6 +394,25 @@ TEST_CASE("states that are changed and have the digest of that end in a result o
   }
 }
 
+TEST_CASE("a state whose sampling rate no log can have is refused") {
+  const TwoStates two;
+  const std::string whole = two.states[0].bytes();
+  const double rate_hz = 200;
+  const std::string there(reinterpret_cast<const char*>(&rate_hz), sizeof rate_hz);
+  const std::size_t at = whole.find(there);
+  REQUIRE(at < 3000);
+  for (const double wrong : {std::nan(""), -1.0, 1e300, 5e-324}) {
+    CAPTURE(wrong);
+    std::string other = whole.substr(0, whole.size() - 64);
+    std::memcpy(&other[at], &wrong, sizeof wrong);
+    Sha256 digest;
+    digest.update(other);
+    other += digest.finish();
+    const std::vector<NamedState> states = {state_in_memory("bad", other), two.states[1]};
+    REQUIRE_THAT(refusal_of_states(states), Catch::Contains("bad: error E0723"));
+  }
+}
+
 TEST_CASE("logs and options that cannot be divided are refused in a sentence") {
   const TwoStates two;
   const std::string& path = two.log.path();

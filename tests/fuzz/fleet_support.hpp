@@ -35,8 +35,9 @@ inline libchar::FleetUnit named_content(const libchar::Document& document) {
     if (ends.size() == 2 && ends[0] >= 0 && ends[1] >= 0 && ends[0] < 1e15 && ends[1] < 1e15)
       unit.stretch = {static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])};
   }
-  read_fields(
-      characterize_fields(), at.map("config", keys_of(characterize_fields())), unit.options);
+  CharacterizeOptions options;
+  read_fields(characterize_fields(), at.map("config", keys_of(characterize_fields())), options);
+  unit.options = std::make_shared<const CharacterizeOptions>(options);
   return unit;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "libchar/core/free_memory.hpp"
+#include "libchar/log/reading_fields.hpp"
 
 namespace libchar {
 namespace {
@@ -23,6 +24,8 @@ void write_time(const TimeBase& time, StateWriter& to) {
 TimeBase read_time(StateReader& from) {
   TimeBase time;
   time.rate_hz = from.real();
+  const bool known = time.rate_hz >= kRates.lowest && time.rate_hz <= kRates.highest;
+  if (!known && time.rate_hz != 0) from.refuse("its sampling rate");
   time.column = from.text();
   time.unit = from.text();
   time.unit_ns = std::bit_cast<std::int64_t>(from.number());
