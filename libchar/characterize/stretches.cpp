@@ -172,7 +172,7 @@ std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& optio
     why = "`from_s` and `to_s` are a part of it already";
   if (why.empty() && options.wanted.spectrum)
     why = WelchParts::why_not(in_samples(log, options).spectrum, kLeafSamples);
-  return why.empty() ? "" : "the log cannot be taken in stretches: " + why;
+  return why;
 }
 
 std::string settings_digest(const CharacterizeOptions& options) {
@@ -197,8 +197,9 @@ void characterize_stretch(const std::string& path,
                           Progress& progress) {
   StretchState state;
   state.log = read_log_head(path, options.reading);
-  if (std::string why = why_not_divided(state.log, options); !why.empty())
-    throw Error({ErrorKind::usage, "E0726", path, std::move(why), "", ""});
+  if (const std::string why = why_not_divided(state.log, options); !why.empty())
+    throw Error(
+        {ErrorKind::usage, "E0726", path, "the log cannot be taken in stretches: " + why, "", ""});
   const std::uint64_t samples = state.log.rows;
   check_range(path, range, leaves_of(samples));
   const std::size_t channels = state.log.channels.size();

@@ -6,7 +6,7 @@
 // stretches, and in whatever order their states arrive.
 //
 //   const LogInfo head = read_log_head(path, options.reading);              // channel_names.hpp; head.rows: samples
-//   if (const auto why = why_not_divided(head, options); !why.empty()) …    // a sentence
+//   if (const auto why = why_not_divided(head, options); !why.empty()) …    // why
 //   const std::uint64_t leaves = leaves_of(head.rows);
 //   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);   // on one machine: a file for each channel
 //   …                                                                               // {leaves / 2, leaves} on another
@@ -32,8 +32,8 @@ struct StretchRange {
 /// How many leaves a log of so many samples has.
 std::uint64_t leaves_of(std::uint64_t samples);
 
-/// "" or the sentence that says why this log, or what these options ask for, cannot be divided: "the log cannot be taken in stretches:
-/// its rows have no fixed places (csv)". `log`: its head (read_log_head).
+/// "" or why this log, or what these options ask for, cannot be divided: "its rows have no fixed places (csv)". `log`: its head
+/// (read_log_head).
 std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& options);
 
 /// Takes the partial states of a stretch, a channel each in their order, as bytes for a file.

@@ -20,6 +20,7 @@
 #include "libchar/core/file_text.hpp"
 #include "libchar/core/json_reader.hpp"
 #include "libchar/core/schema.hpp"
+#include "libchar/core/sha256.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fleet/detail/log_digest.hpp"
@@ -139,9 +140,11 @@ class UnitMaker {
 
  private:
   void add_log(const LookedAt& log, const FleetUnit& unit) {
-    const bool large = unit.bytes > options_.split_bytes;
-    large&& why_not_divided(log.head, *unit.options).empty() ? add_stretches(log, unit)
-                                                             : add_unit(log, unit);
+    if (unit.bytes <= options_.split_bytes) return add_unit(log, unit);
+    const std::string why_not = why_not_divided(log.head, *unit.options);
+    if (why_not.empty()) return add_stretches(log, unit);
+    plan_.undivided[why_not].insert(unit.device);
+    add_unit(log, unit);
   }
 
   void add_unit(const LookedAt& log, FleetUnit unit) {
@@ -235,6 +238,8 @@ class PlanReader {
 
   void take(std::string_view line) {
     if (!head_) return take_head(line);
+    digest_.update(line);
+    digest_.update("\n");
     if (plan_.devices.size() < devices_)
       plan_.devices.push_back(parse_device(parse_json_document(line, path_), path_));
     else if (plan_.units.size() < units_)
@@ -244,6 +249,9 @@ class PlanReader {
   FleetPlan finish() {
     if (!head_ || plan_.devices.size() != devices_ || plan_.units.size() != units_)
       refuse_plan(file_, "the plan is cut");
+    // Which device a unit is of stands nowhere else.
+    if (digest_.finish() != sha256_)
+      refuse_plan(file_, "the plan was changed after it was made: its digest is another one");
     for (const FleetUnit& unit : plan_.units)
       if (unit.device >= devices_) refuse_plan(file_, "a unit is of no device of the plan");
     return std::move(plan_);
@@ -253,7 +261,8 @@ class PlanReader {
   void take_head(std::string_view line) {
     const Document head = parse_json_document(line, path_);
     check_format(head, path_, kPlanFormat, 1);
-    const MapReader at(head, path_, "", {"format", "version", "devices", "units"});
+    const MapReader at(head, path_, "", {"format", "version", "devices", "units", "sha256"});
+    sha256_ = at.text("sha256");
     devices_ = at.count("devices");
     units_ = at.count("units");
     head_ = true;
@@ -263,6 +272,8 @@ class PlanReader {
   std::string path_;
   bool head_ = false;
   std::uint64_t devices_ = 0, units_ = 0;
+  std::string sha256_;
+  Sha256 digest_;  ///< of all lines behind the head
   FleetPlan plan_;
   OptionsTable shared_;
 };
@@ -338,11 +349,7 @@ std::string task_file(std::size_t unit) {
 
 void write_plan(const FleetPlan& plan, const fs::path& folder) {
   make_fleet_folder(folder / "tasks");
-  const Json head = {{"format", kPlanFormat},
-                     {"version", 1},
-                     {"devices", plan.devices.size()},
-                     {"units", plan.units.size()}};
-  std::string text = head.dump() + "\n";
+  std::string text;
   for (const PlannedDevice& one : plan.devices)
     text += with_valid_text(device_json(one)).dump() + "\n";
   std::vector<std::string> lines(plan.units.size());
@@ -351,13 +358,20 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
     write_task(folder / task_file(k), lines[k]);
   });
   for (const std::string& line : lines) text += line;
+  Sha256 digest;
+  digest.update(text);
+  const Json head = {{"format", kPlanFormat},
+                     {"version", 1},
+                     {"devices", plan.devices.size()},
+                     {"units", plan.units.size()},
+                     {"sha256", digest.finish()}};
   // Tasks of an earlier, longer plan are none of this one.
   std::error_code error;
   for (std::size_t k = plan.units.size(); fs::remove(folder / task_file(k), error); ++k) {
   }
   remove_litter((folder / "tasks").string());
   sync_folder((folder / "tasks").string());
-  write_whole_file((folder / kPlanFile).string(), text, true);
+  write_whole_file((folder / kPlanFile).string(), head.dump() + "\n" + text, true);
 }
 
 FleetUnit read_task(const std::string& file) {

@@ -7,6 +7,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,8 @@ struct PlannedDevice {
 struct FleetPlan {
   std::vector<PlannedDevice> devices;  ///< in the order of the manifest
   std::vector<FleetUnit> units;  ///< of the devices in their order; a join behind its stretches
+  /// Why logs above `split_bytes` are not divided, and whose; not in the file.
+  std::map<std::string, std::set<std::size_t>> undivided;
 };
 
 /// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, and for logs that cannot be read (all of them named, the first few with

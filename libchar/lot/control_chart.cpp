@@ -1,6 +1,5 @@
 // Individuals chart (Montgomery, Introduction to Statistical Quality Control, 6.4): sigma = mean |x_i - x_{i-1}| / d2, d2 = 2/sqrt(pi) =
-// 1.128, limits at the mean ± 3 sigma. A normal process leaves them with 0.27 % of its values. A stretch of eight or more on one side
-// (Western Electric) begins at a value with probability 2^-8: it and seven more are on one side, the one before on the other.
+// 1.128, limits at the mean ± 3 sigma. How often chance leaves them or stays on a side: zone_rules.hpp.
 #include "libchar/lot/control_chart.hpp"
 
 #include <algorithm>
@@ -9,9 +8,6 @@
 
 namespace libchar {
 namespace {
-
-constexpr std::size_t kRun = 8;
-constexpr double kBeyondThreeSigma = 0.0026997960632601866;
 
 std::vector<ChartPoint> chart_points(std::span<const double> values) {
   const std::size_t n = values.size(), points = std::min(n, kChartPoints);
@@ -25,16 +21,6 @@ std::vector<ChartPoint> chart_points(std::span<const double> values) {
     out.push_back({first, part.size(), sum / static_cast<double>(part.size()), *low, *high});
   }
   return out;
-}
-
-std::size_t count_runs(std::span<const double> values, double centre) {
-  std::size_t runs = 0, length = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool same = i > 0 && (values[i] > centre) == (values[i - 1] > centre);
-    length = same ? length + 1 : 1;
-    runs += length == kRun;
-  }
-  return runs;
 }
 
 }  // namespace
@@ -54,10 +40,6 @@ ControlChart control_chart(std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (values[i] < out.limits.low || values[i] > out.limits.high)
       out.beyond.push_back({i, values[i]});
-  out.beyond_by_chance = n * kBeyondThreeSigma;
-  out.runs = count_runs(values, out.centre);
-  // The first value begins a stretch whatever stood before it: 2 times as probable.
-  out.runs_by_chance = n < kRun ? 0 : (n - kRun + 2) * std::exp2(-static_cast<double>(kRun));
   if (out.sigma > 0) out.zones = zone_findings(values, out.centre, out.sigma);
   return out;
 }

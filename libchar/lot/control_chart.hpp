@@ -27,11 +27,7 @@ struct ControlChart {
   Interval limits;                 ///< centre ± 3 sigma
   std::vector<ChartPoint> points;  ///< at most kChartPoints
   std::vector<ChartValue> beyond;  ///< outside of the limits, in order
-  double beyond_by_chance = 0;     ///< as many are expected of a process that stays where it is
-  std::size_t runs =
-      0;  ///< stretches of eight or more on one side of the centre (Western Electric's fourth rule)
-  double runs_by_chance = 0;
-  ZoneFindings zones;  ///< nothing where sigma is zero
+  ZoneFindings zones;              ///< nothing where sigma is zero
 };
 
 inline constexpr std::size_t kChartPoints = 300;

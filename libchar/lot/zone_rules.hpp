@@ -36,6 +36,8 @@ struct ZoneFindings {
   std::array<ZoneFinding, kZoneRules> rule;
   double any_by_chance = 0;  ///< probability that a process that stays where it is shows any signal
   bool alarm = false;        ///< of any rule: in at most 1 % of such processes
+
+  const ZoneFinding& of(ZoneRule one) const { return rule[static_cast<std::size_t>(one)]; }
 };
 
 inline constexpr double kChartAlarm = 0.01;

@@ -66,15 +66,16 @@ Json zones_json(const ZoneFindings& zones) {
 Json chart_json(const FleetReport& report, const QuantityLot& q) {
   if (!q.chart) return nullptr;
   const ControlChart& c = *q.chart;
+  const ZoneFinding& runs = c.zones.of(ZoneRule::eight_in_a_row);
   Json out = {{"centre", json_number(c.centre)},
               {"sigma", json_number(c.sigma)},
               {"limits", interval_json(c.limits)},
               {"of", in_logarithm(q.quantity) ? "logarithm" : "value"},
               {"beyond", Json::array()},
               {"beyond_count", c.beyond.size()},
-              {"beyond_by_chance", c.beyond_by_chance},
-              {"runs", c.runs},
-              {"runs_by_chance", c.runs_by_chance},
+              {"beyond_by_chance", c.zones.of(ZoneRule::beyond_3_sigma).by_chance},
+              {"runs", runs.signals},
+              {"runs_by_chance", runs.by_chance},
               {"zones", zones_json(c.zones)}};
   for (std::size_t i = 0; i < std::min(kOutliersInJson, c.beyond.size()); ++i)
     out["beyond"].push_back(json_text(report.records[q.charted[c.beyond[i].index]].device));

@@ -8,6 +8,7 @@
 
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/power_sums.hpp"
+#include "tests/fit/power_state.hpp"
 
 using namespace libchar;
 
@@ -180,14 +181,5 @@ TEST_CASE(
 }
 
 TEST_CASE("mean series: a settled state that was written and read is the same") {
-  const PowerSums sums = in_parts(white_walk_means(33 * kMeansBlock + 500, 1e-4, 9), 1e-6);
-  StateWriter to("power", 1);
-  write_state(sums, to);
-  const std::string bytes = to.finish();
-  StateReader from(bytes, "x", "power", 1);
-  const std::vector<PowerBin> a = binner_of(sums).finish(1),
-                              b = binner_of(read_power_sums(from)).finish(1);
-  from.finish();
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) REQUIRE(a[i].energy == b[i].energy);
+  test::check_power_state(in_parts(white_walk_means(33 * kMeansBlock + 500, 1e-4, 9), 1e-6));
 }

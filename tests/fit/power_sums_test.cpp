@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/fit/power_state.hpp"
 #include "tests/support/parts.hpp"
 
 using namespace libchar;
@@ -113,14 +114,5 @@ TEST_CASE(
 TEST_CASE("power sums: a state that was written and read is the same") {
   std::vector<double> y = white_walk(2 * kLeafOfFour + 5000, 0.3);
   blank(y, 1000, 1100);
-  const PowerSums sums = power_in_parts(y);
-  StateWriter to("power", 1);
-  write_state(sums, to);
-  const std::string bytes = to.finish();
-  StateReader from(bytes, "x", "power", 1);
-  const std::vector<PowerBin> a = binner_of(sums).finish(1),
-                              b = binner_of(read_power_sums(from)).finish(1);
-  from.finish();
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) REQUIRE(a[i].energy == b[i].energy);
+  test::check_power_state(power_in_parts(y));
 }

@@ -55,6 +55,18 @@ TEST_CASE("a long log's channels can be units too: stretches of each, and a join
   CHECK(plan.units[3].options->reading.channels == std::vector<std::string>{"b"});
 }
 
+TEST_CASE("a large log that cannot be divided is one unit, and the plan says why") {
+  const test::TemporaryFolder folder;
+  FleetPlanOptions options;
+  options.split_bytes = 100;
+  options.by_channel = true;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 2), options);
+  REQUIRE(plan.undivided.size() == 1);
+  CHECK(plan.undivided.begin()->first == "its rows have no fixed places (csv)");
+  CHECK(plan.undivided.begin()->second == std::set<std::size_t>{0, 1});
+  CHECK(test::planned(test::write_logs(folder.path(), 2)).undivided.empty());
+}
+
 TEST_CASE("a shorter plan in the same folder leaves no task of the longer one") {
   const test::TemporaryFolder folder;
   auto logs = test::write_logs(folder.path(), 3);
@@ -125,6 +137,10 @@ TEST_CASE("a plan that is cut, or is none, is refused") {
   const std::string path = (folder / "F" / "plan.jsonl").string();
   test::write_file(path, text.substr(0, text.rfind("{\"format\"")));
   CHECK_THROWS_WITH(read_plan(folder / "F"), Contains("cut"));
+  std::string of_another = text;
+  of_another[of_another.find("\"device\":1,") + std::string("\"device\":").size()] = '0';
+  test::write_file(path, of_another);
+  CHECK_THROWS_WITH(read_plan(folder / "F"), Contains("changed"));
   for (std::size_t at = 0; at + 1 < text.size(); at += 97) {
     test::write_file(path, text.substr(0, at));
     CHECK_THROWS_AS(read_plan(folder / "F"), Error);

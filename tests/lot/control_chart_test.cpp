@@ -27,9 +27,10 @@ TEST_CASE("control chart: normal values leave the limits and stay on a side as o
   std::vector<double> values(100000);
   for (double& v : values) v = 5 + gauss();
   const ControlChart chart = control_chart(values);
-  CHECK(chart.beyond_by_chance == Approx(270).epsilon(0.01));
+  CHECK(chart.zones.of(ZoneRule::beyond_3_sigma).by_chance == Approx(270).epsilon(0.01));
   CHECK(std::abs(static_cast<double>(chart.beyond.size()) - 270) < 4 * std::sqrt(270));
-  CHECK(std::abs(static_cast<double>(chart.runs) - chart.runs_by_chance) < 4 * std::sqrt(391));
+  const ZoneFinding& runs = chart.zones.of(ZoneRule::eight_in_a_row);
+  CHECK(std::abs(static_cast<double>(runs.signals) - runs.by_chance) < 4 * std::sqrt(391));
   REQUIRE(chart.points.size() == kChartPoints);
   std::size_t covered = 0;
   for (const ChartPoint& p : chart.points) {
@@ -50,7 +51,7 @@ TEST_CASE("control chart: a value far off and a shift are seen") {
     return v.index == 12 && v.value == -9;
   }));
   CHECK(chart.beyond.size() <= 3);
-  CHECK(chart.runs >= 1);
+  CHECK(chart.zones.of(ZoneRule::eight_in_a_row).signals >= 1);
 }
 
 TEST_CASE("histogram: every value once, a wild one in its own place") {

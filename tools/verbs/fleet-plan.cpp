@@ -62,6 +62,9 @@ void run_plan(Session& session, PlanVerb verb) {
     document["unreadable"] = skipped;
     document["stated"] = stated;
     document["units"] = plan.units.size();
+    document["undivided"] = Json::array();
+    for (const auto& [why, devices] : plan.undivided)
+      document["undivided"].push_back({{"why", why}, {"devices", devices.size()}});
     document["done"] = status.done;
     document["seconds"] = status.seconds_left;
     return print(dump_json(document));
@@ -78,6 +81,12 @@ void run_plan(Session& session, PlanVerb verb) {
         fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
   if (skipped > 0)
     text += fmt::format("{} cannot be read; the report says why\n", plural(skipped, "log"));
+  for (const auto& [why, devices] : plan.undivided)
+    text +=
+        fmt::format("{} larger than {} stays one unit: {}\n",
+                    devices.size() == 1 ? "1 log" : fmt::format("each of {} logs", devices.size()),
+                    bytes_text(verb.plan.split_bytes),
+                    why);
   text += fmt::format("next: sensorchar fleet run {}\n", shell_word(verb.folder));
   print_beside(session, text);
 }

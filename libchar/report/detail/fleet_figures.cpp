@@ -276,18 +276,22 @@ std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind) {
   return out;
 }
 
+/// Where the middle 95 % lie; of one device, its value.
+std::string devices_text(const QuantityLot& q) {
+  if (q.counts.counted == 0) return "–";
+  const std::string low = number_text(q.quantiles[1], 3);
+  if (q.counts.counted == 1) return fmt::format("{} {}", low, q.unit);
+  return fmt::format("{} … {} {}", low, number_text(q.quantiles[5], 3), q.unit);
+}
+
 std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lot) {
-  const bool logarithm = in_logarithm(q.quantity), some = q.counts.counted > 0;
+  const bool logarithm = in_logarithm(q.quantity);
   std::vector<std::string> out = {
       group_title(q, lot),
       title_of(q.quantity),
       mean_text(q.figures, q.unit) + off_text(q),
       q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
-      some ? fmt::format("{} … {} {}",
-                         number_text(q.quantiles[1], 3),
-                         number_text(q.quantiles[5], 3),
-                         q.unit)
-           : "–",
+      devices_text(q),
       fmt::format("{} of {}", count_text(q.counts.counted), count_text(q.counts.members)),
       not_counted(q.counts)};
   const std::size_t columns = quantity_heads(lot, q.of_kind).size();
