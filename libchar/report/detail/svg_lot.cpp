@@ -226,7 +226,7 @@ std::string zones_text(const ControlChart& chart, std::size_t values) {
   std::string list, alarms;
   for (std::size_t r = 0; r < kZoneRules; ++r) {
     const ZoneFinding& found = chart.zones.rule[r];
-    list += fmt::format("{}{} {} times ({} expected by chance)",
+    list += fmt::format("{}{} {} ({})",
                         r == 0 ? "" : ", ",
                         names[r],
                         count_text(found.signals),
@@ -243,7 +243,10 @@ std::string zones_text(const ControlChart& chart, std::size_t values) {
                 number_text(100 * chart.zones.any_by_chance, 2))
           : "Alarm, more than chance brings: " + alarms + ".";
   return fmt::format(
-      "{} values, mean and σ of the moving range; {}. {}", count_text(values), list, end);
+      "{} values, mean and σ of the moving range. Signals (expected by chance): {}. {}",
+      count_text(values),
+      list,
+      end);
 }
 
 }  // namespace
