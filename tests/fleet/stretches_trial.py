@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """One long log in several divisions: the joined reports have to be the same bytes; the memory of a worker and of the one that joins.
 
-usage: stretches_trial.py BUILD FOLDER [--samples N] [--divisions 64,7,2,1]
+usage: stretches_trial.py BUILD FOLDER [--samples N] [--channels C] [--divisions 64,7,2,1]
 
-Makes N samples of float32 (four bytes each; white noise and a walk) in FOLDER, plans them in so many stretches, runs every unit in a process of
+Makes N samples of float32 (four bytes each; white noise and a walk; of C channels in turn) in FOLDER, plans them in so many stretches, runs every unit in a process of
 its own, and prints a row a division: largest worker, join, seconds, digests of report.json, curves.csv and the record. Exit 1 where they differ.
 """
 
@@ -29,6 +29,7 @@ def main():
     parser.add_argument("build", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("folder", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("--samples", type=int, default=5_000_000_000)
+    parser.add_argument("--channels", type=int, default=1)
     parser.add_argument("--divisions", default="64,7,2,1")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
@@ -36,6 +37,8 @@ def main():
     log = options.folder / "long.f32"
     if not log.exists():
         subprocess.run([options.build / "tests/bench/stretches_bench", "make", str(options.samples), log], check=True, stdout=subprocess.DEVNULL)
+        channels = ", ".join(f'{{"name": "gyro_{c + 1}", "unit": "deg/s"}}' for c in range(options.channels))
+        pathlib.Path(f"{log}.json").write_text(f'{{"dtype": "f32", "endian": "little", "rate_hz": 1000, "channels": [{channels}]}}\n')
     seen = set()
     print("| stretches | worker, MB | join, MB | s | report.json, curves.csv, device.record |\n|---:|---:|---:|---:|---|")
     for count in map(int, options.divisions.split(",")):
