@@ -113,6 +113,7 @@ constexpr const char* kNoMemory = "E0403";
 constexpr const char* kNoThread = "E0419";
 
 const char* g_memory_hint = "close other programs, or use a machine with more";
+int g_refused_exit = exit_code(ErrorKind::numeric);
 
 // Said without taking memory: there is none.
 int refuse_for_memory() noexcept {
@@ -123,7 +124,7 @@ int refuse_for_memory() noexcept {
         std::string_view(g_memory_hint),
         std::string_view("\n")})
     if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
-  return 4;
+  return g_refused_exit;
 }
 
 /// The C++ library's way and that of the pool of threads.
@@ -214,7 +215,7 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
       return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "
                               "raise the limit of processes (ulimit -u), or end others",
                               kNoThread),
-                  4);
+                  g_refused_exit);
     return fail(
         fmt::format("sensorchar: internal error: {}; please report this with the command line",
                     libchar::printable(error.what())),
@@ -229,6 +230,10 @@ void set_memory_hint(const Session& session) {
     g_memory_hint = "read less of it with --channel, --from and --to";
   else if (session.flags.count("--duration") > 0)
     g_memory_hint = "make it shorter with --duration";
+}
+
+void try_again_where_refused() {
+  g_refused_exit = exit_code(ErrorKind::again);
 }
 
 void end_in_a_sentence() {

@@ -69,6 +69,9 @@ void foresee_output(const std::string& path, const std::vector<std::string>& inp
 /// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.
 int exit_code_of(Session& session, const std::function<void()>& work);
 
+/// A call that is refused memory or a thread ends with exit code 75 instead of 4 from here on: an engine may try it again, or elsewhere.
+void try_again_where_refused();
+
 /// For std::set_terminate: an exception that could go nowhere (memory refused to a destructor) still ends in a sentence and an exit code.
 [[noreturn]] void end_in_a_sentence();
 

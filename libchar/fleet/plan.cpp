@@ -240,18 +240,21 @@ class PlanReader {
     if (!head_) return take_head(line);
     digest_.update(line);
     digest_.update("\n");
-    if (plan_.devices.size() < devices_)
-      plan_.devices.push_back(parse_device(parse_json_document(line, path_), path_));
-    else if (plan_.units.size() < units_)
-      plan_.units.push_back(parse_unit(line, path_, shared_));
+    if (wrong_) return;
+    try {
+      take_entry(line);
+    } catch (const Error& error) {
+      wrong_ = error.problem();
+    }
   }
 
   FleetPlan finish() {
-    if (!head_ || plan_.devices.size() != devices_ || plan_.units.size() != units_)
-      refuse_plan(file_, "the plan is cut");
+    const bool all = plan_.devices.size() == devices_ && plan_.units.size() == units_;
+    if (!head_ || (!all && !wrong_)) refuse_plan(file_, "the plan is cut");
     // Which device a unit is of stands nowhere else.
     if (digest_.finish() != sha256_)
       refuse_plan(file_, "the plan was changed after it was made: its digest is another one");
+    if (wrong_) throw Error(*wrong_);  // as it was written: by another version of the program
     for (const FleetUnit& unit : plan_.units)
       if (unit.device >= devices_) refuse_plan(file_, "a unit is of no device of the plan");
     return std::move(plan_);
@@ -268,12 +271,20 @@ class PlanReader {
     head_ = true;
   }
 
+  void take_entry(std::string_view line) {
+    if (plan_.devices.size() < devices_)
+      plan_.devices.push_back(parse_device(parse_json_document(line, path_), path_));
+    else if (plan_.units.size() < units_)
+      plan_.units.push_back(parse_unit(line, path_, shared_));
+  }
+
   const fs::path& file_;
   std::string path_;
   bool head_ = false;
   std::uint64_t devices_ = 0, units_ = 0;
   std::string sha256_;
-  Sha256 digest_;  ///< of all lines behind the head
+  Sha256 digest_;                 ///< of all lines behind the head
+  std::optional<Problem> wrong_;  ///< the first, told once the digest is known
   FleetPlan plan_;
   OptionsTable shared_;
 };

@@ -41,17 +41,26 @@ namespace fs = std::filesystem;
                "state the digest of this log, or none, and plan the fleet again"});
 }
 
+[[noreturn]] void refuse_absent(const FleetUnit& unit) {
+  throw Error({ErrorKind::again,
+               "E0786",
+               unit.log,
+               "the log that was planned cannot be opened now",
+               "",
+               "mount or restore it and run the unit again, or plan the fleet without it"});
+}
+
 void check_log_is_there(const FleetUnit& unit) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(unit.log, error);
-  if (error || ::access(unit.log.c_str(), R_OK) != 0)
-    throw Error({ErrorKind::again,
-                 "E0786",
-                 unit.log,
-                 "the log that was planned cannot be opened now",
-                 "",
-                 "mount or restore it and run the unit again, or plan the fleet without it"});
+  if (error || ::access(unit.log.c_str(), R_OK) != 0) refuse_absent(unit);
   if (bytes != unit.bytes) refuse_changed(unit);
+}
+
+std::string seen_log(const FleetUnit& unit) {
+  std::optional<std::string> seen = log_as_seen(unit.log);
+  if (!seen) refuse_absent(unit);
+  return *std::move(seen);
 }
 
 /// The same words whoever computes it, and in however many stretches.
@@ -117,10 +126,17 @@ Characterization of_parts(const FleetUnit& unit, const fs::path& fleet, Progress
   return result;
 }
 
-/// What the content does not allow, and no other try will.
+/// Of the machine it was tried on: a disk that does not answer (E0101, E0104), no memory (E0403).
+bool is_of_machine(const Problem& problem) {
+  return problem.kind == ErrorKind::output || problem.code == "E0101" || problem.code == "E0104" ||
+         problem.code == "E0403";
+}
+
+/// What the content may not allow, so that no other try will do.
 bool is_of_content(const Problem& problem) {
-  return problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric ||
-         problem.kind == ErrorKind::usage;
+  return !is_of_machine(problem) && problem.code != "E0785" &&
+         (problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric ||
+          problem.kind == ErrorKind::usage);
 }
 
 DeviceRecord write_results(const FleetUnit& unit,
@@ -132,23 +148,48 @@ DeviceRecord write_results(const FleetUnit& unit,
   return record_of(result, unit.options->data);
 }
 
+/// A characterization, or what the log's content does not allow.
+struct Attempt {
+  std::optional<Characterization> result;
+  Problem problem;
+};
+
+Attempt attempt(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
+  Attempt out;
+  try {
+    out.result =
+        unit.kind == UnitKind::join ? of_parts(unit, fleet, progress) : of_log(unit, progress);
+  } catch (const Error& error) {
+    out.problem = error.problem();
+    if (!is_of_content(out.problem)) throw;
+  }
+  return out;
+}
+
+/// A problem is the log's when it comes twice, in the same words, and the log is there and the one that was planned.
+Attempt confirmed_attempt(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
+  Attempt first = attempt(unit, fleet, progress);
+  if (first.result) return first;
+  check_log_is_there(unit);
+  check_digest(unit);
+  Attempt second = attempt(unit, fleet, progress);
+  if (second.result || one_line(second.problem) == one_line(first.problem)) return second;
+  second.problem.kind = ErrorKind::again;
+  throw Error(second.problem);
+}
+
 DeviceRecord record_in(const FleetUnit& unit,
                        const fs::path& fleet,
                        const fs::path& folder,
                        Progress& progress) {
-  std::optional<Characterization> result;
+  Attempt found = confirmed_attempt(unit, fleet, progress);
   DeviceRecord record;
-  try {
-    result = unit.kind == UnitKind::join ? of_parts(unit, fleet, progress) : of_log(unit, progress);
-  } catch (const Error& error) {
-    const Problem& problem = error.problem();
-    if (!is_of_content(problem) || problem.code == "E0785") throw;
-    check_log_is_there(unit);  // else it is the place, not the content
-    check_digest(unit);        // nor is what another log does not allow a result of this one
-    record.problem = one_line(problem);
+  if (found.result) {
+    record = write_results(unit, *found.result, folder);
+  } else {
+    record.problem = one_line(found.problem);
+    record.program = version();
   }
-  if (result) record = write_results(unit, *result, folder);
-  if (!result) record.program = version();
   record.settings = settings_id(*unit.options);
   record.log = unit.log;
   record.sha256 = unit.sha256;
@@ -157,7 +198,7 @@ DeviceRecord record_in(const FleetUnit& unit,
 
 UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   ResultFolder folder(fleet, unit.id);
-  const std::string seen = log_as_seen(unit.log);
+  const std::string seen = seen_log(unit);
   UnitRun out;
   if (unit.kind == UnitKind::stretch) {
     std::size_t channel = 0;
@@ -178,7 +219,7 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
 
 /// A result is there, the digest that was stated for it is not that of this log yet: a manifest may take one log for another.
 UnitRun confirm(const FleetUnit& unit, const fs::path& fleet) {
-  const std::string seen = log_as_seen(unit.log);
+  const std::string seen = seen_log(unit);
   check_digest(unit);
   write_log_seen(fleet / "results" / result_folder(unit.id), seen);
   return {UnitOutcome::already_there, ""};
@@ -195,7 +236,7 @@ UnitRun run_unit(const FleetUnit& unit, const fs::path& fleet, Progress& progres
     return compute(unit, fleet, progress);
   } catch (const Error& error) {
     Problem problem = error.problem();
-    if (problem.kind != ErrorKind::output) throw;
+    if (!is_of_machine(problem)) throw;
     problem.kind = ErrorKind::again;
     throw Error(problem);
   } catch (const std::bad_alloc&) {

@@ -20,25 +20,36 @@ Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
 
 }  // namespace
 
+std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
+                                                 const std::filesystem::path& folder) {
+  std::unordered_set<std::string> out;
+  for (const FleetUnit& unit : plan.units)
+    if (unit.kind == UnitKind::join && has_result(folder, unit.id, false))
+      out.insert(unit.parts.begin(), unit.parts.end());
+  return out;
+}
+
 FleetStatus fleet_status(const FleetPlan& plan,
                          const std::filesystem::path& folder,
                          Progress& progress) {
   FleetStatus out;
   out.devices = plan.devices.size();
   out.units = plan.units.size();
+  const std::unordered_set<std::string> joined = joined_stretches(plan, folder);
   for (std::size_t k = 0; k < plan.units.size(); ++k) {
     if (k % 256 == 0)
       progress.update(static_cast<double>(k) / static_cast<double>(out.units),
                       "looking at results");
+    const FleetUnit& unit = plan.units[k];
     Found found = Found::nothing;
     try {
-      found = look_at(plan.units[k], folder);
+      found = joined.contains(unit.id) ? Found::result : look_at(unit, folder);
     } catch (const Error& error) {
       out.damaged.push_back(one_line(error.problem()));
     }
     if (found == Found::nothing) {
       out.missing.push_back(k);
-      out.seconds_left += plan.units[k].cost.seconds;
+      out.seconds_left += unit.cost.seconds;
     } else {
       ++out.done;
       if (found == Found::no_result) ++out.no_result;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "libchar/core/progress.hpp"
@@ -24,5 +25,9 @@ struct FleetStatus {
 FleetStatus fleet_status(const FleetPlan& plan,
                          const std::filesystem::path& folder,
                          Progress& progress = no_progress());
+
+/// Ids of stretches whose log has been joined: their partial states are not needed any more, whether they are there, count, or not.
+std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
+                                                 const std::filesystem::path& folder);
 
 }  // namespace libchar

@@ -164,6 +164,14 @@ def finished(folder):
         journal.unlink()
 
 
+def spread(count, most):
+    """So many of the numbers from 1 to count: each once at the beginning, then in growing steps to the end."""
+    if count <= most:
+        return list(range(1, count + 1))
+    step = (math.log(count) - math.log(1)) / most
+    return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)} | {count * k // most for k in range(1, most)})
+
+
 class Verb:
     def __init__(self, bench, name):
         self.bench, self.name, self.words = bench, name, VERBS[name]["words"]
@@ -218,11 +226,7 @@ class Verb:
         most = 1 if self.bench.quick else self.bench.heap if kind == "malloc" else count
         if self.bench.quick and kind == "kill":
             most = 6
-        if count <= most:
-            return list(range(1, count + 1))
-        # Each once at the beginning, then in growing steps to the end.
-        step = (math.log(count) - math.log(1)) / most
-        return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)} | {count * k // most for k in range(1, most)})
+        return spread(count, most)
 
     def sizes(self, kind):
         """Bytes a file or the address space may have, or pages that a full disk has left: from nothing to more than enough."""

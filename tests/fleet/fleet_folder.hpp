@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,25 @@ inline std::vector<std::string> write_logs(const std::filesystem::path& folder,
     write_file(logs.back(), text);
   }
   return logs;
+}
+
+/// One channel of float64 in numpy's format: a log that is divided.
+inline std::string write_long_log(const std::filesystem::path& path,
+                                  std::uint64_t seed,
+                                  std::size_t rows) {
+  std::string head =
+      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", rows);
+  head.resize(117, ' ');
+  head += '\n';
+  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+  bytes += head;
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(rows);
+  for (double& value : values) value = normal(engine);
+  bytes.append(reinterpret_cast<const char*>(values.data()), 8 * rows);
+  write_file(path, bytes);
+  return path.string();
 }
 
 inline libchar::FleetPlan planned(const std::vector<std::string>& logs,

@@ -103,3 +103,34 @@ TEST_CASE("one log in two fleets is refused by name, and so is one fleet named t
   CHECK_NOTHROW(refuse_common_logs(read_fleets({folder / "x", folder / "y"})));
   CHECK_THROWS_WITH(refuse_common_logs(read_fleets({a, folder / "y"})), Contains("d1 in"));
 }
+
+TEST_CASE("a thermometer in the log tells its temperature where the manifest says nothing") {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> logs;
+  for (const double degrees : {20.0, 40.0}) {
+    test::Gaussian gauss(static_cast<std::uint64_t>(degrees));
+    std::string text = "t[s],gx[deg/s],temp[degC]\n";
+    for (int k = 0; k < 6000; ++k) {
+      // Up by 6 °C and down again: the mean is 3 °C above where it began.
+      const double temperature = degrees + 6 - 0.002 * std::abs(k - 2999.5);
+      text += fmt::format(
+          "{:.2f},{:.6f},{:.4f}\n", k / 100.0, gauss() + 0.1 * temperature, temperature);
+    }
+    logs.push_back((folder / fmt::format("t{}.csv", degrees)).string());
+    test::write_file(logs.back(), text);
+  }
+  CharacterizeOptions options;
+  options.temperature = "temp";
+  Manifest manifest = manifest_of_logs(logs, options);
+  manifest.devices[1].temperature_c = 60;
+  const FleetPlan plan = plan_fleet(manifest, {});
+  test::run_all(plan, folder / "F");
+  const auto records = merged_records(plan, folder / "F");
+  REQUIRE(records.size() == 2);
+  REQUIRE(records[0].temperature_c);
+  CHECK(*records[0].temperature_c == Approx(23).margin(0.01));
+  CHECK(records[1].temperature_c == 60.0);
+  const RecordedValue* found = records[0].channels[0].find(DeviceQuantity::temperature_coefficient);
+  REQUIRE(found);
+  CHECK(found->value == Approx(0.1).epsilon(0.2));
+}

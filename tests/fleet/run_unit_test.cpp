@@ -2,6 +2,9 @@
 
 #include "libchar/fleet/run_unit.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -107,6 +110,38 @@ TEST_CASE("two workers on one unit: one result, no litter") {
   CHECK(std::count(outcomes.begin(), outcomes.end(), UnitOutcome::done) == 1);
   CHECK(unpublished(fleet).empty());
   CHECK(stored_record(fleet, plan.units[0].id));
+}
+
+TEST_CASE(
+    "what a worker that is no more has begun is removed by the next one, that of others stays") {
+  const test::TemporaryFolder folder;
+  const FleetPlan plan = test::planned(test::write_logs(folder.path(), 1));
+  const fs::path fleet = folder / "F";
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  REQUIRE(::waitpid(gone, nullptr, 0) == gone);
+  std::string mine;
+  {
+    const ResultFolder working(fleet, plan.units[0].id);
+    mine = working.path().filename().string();
+  }
+  const fs::path parent = result_of(fleet, plan.units[0]).parent_path();
+  const auto begun_by = [&](const std::string& machine, long process) {
+    const std::string host = mine.substr(0, mine.rfind('-', mine.rfind('-') - 1));
+    const std::string name = machine.empty() ? host : host.substr(0, host.rfind('-') + 1) + machine;
+    const fs::path path = parent / fmt::format("{}-{}-0", name, process);
+    fs::create_directories(path);
+    test::write_file(path / "report.json", "{");
+    return path;
+  };
+  const fs::path dead = begun_by("", gone), alive = begun_by("", ::getppid()),
+                 elsewhere = begun_by("another", gone);
+  CHECK(unpublished(fleet).size() == 3);
+  CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::done);
+  CHECK_FALSE(fs::exists(dead));
+  CHECK(fs::exists(alive));
+  CHECK(fs::exists(elsewhere));
+  CHECK(fleet_status(plan, fleet).unpublished.size() == 2);
 }
 
 TEST_CASE("a log that was changed after planning is told by name, one that is gone may come back") {

@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
-#include <random>
 
 #include "libchar/core/error.hpp"
 #include "libchar/fleet/detail/log_digest.hpp"
@@ -38,23 +37,6 @@ FleetPlan stated_plan(const std::vector<std::string>& logs,
   Manifest manifest = manifest_of_logs(logs);
   for (std::size_t d = 0; d < digests.size(); ++d) manifest.devices[d].sha256 = digests[d];
   return plan_fleet(manifest, options);
-}
-
-/// One channel of float64 in numpy's format: a log that is divided.
-std::string write_long_log(const fs::path& path, std::uint64_t seed, std::size_t rows) {
-  std::string head =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", rows);
-  head.resize(117, ' ');
-  head += '\n';
-  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
-  bytes += head;
-  std::mt19937_64 engine(seed);
-  std::normal_distribution<double> normal;
-  std::vector<double> values(rows);
-  for (double& value : values) value = normal(engine);
-  bytes.append(reinterpret_cast<const char*>(values.data()), 8 * rows);
-  test::write_file(path, bytes);
-  return path.string();
 }
 
 }  // namespace
@@ -188,8 +170,8 @@ TEST_CASE("a result that is there does not make a wrong digest right") {
 TEST_CASE("stretches of another log are none of this one") {
   const test::TemporaryFolder folder;
   const std::size_t rows = std::size_t{3} << 20U;
-  const std::vector<std::string> logs = {write_long_log(folder / "a.npy", 1, rows),
-                                         write_long_log(folder / "b.npy", 2, rows)};
+  const std::vector<std::string> logs = {test::write_long_log(folder / "a.npy", 1, rows),
+                                         test::write_long_log(folder / "b.npy", 2, rows)};
   const std::string a = digest_of_log(logs[0]), b = digest_of_log(logs[1]);
   FleetPlanOptions options;
   options.split_bytes = 1U << 20U;

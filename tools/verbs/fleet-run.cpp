@@ -10,6 +10,7 @@
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/run_unit.hpp"
+#include "libchar/fleet/status.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -31,20 +32,27 @@ struct Work {
   fs::path folder;
 };
 
-void add_work(const std::string& input, std::vector<Work>& work) {
-  if (fs::is_directory(input)) {
-    for (FleetUnit& unit : read_plan(input).units) work.push_back({std::move(unit), input});
-    return;
-  }
-  const fs::path folder = fs::absolute(input).parent_path().parent_path();
-  work.push_back({read_task(input), folder});
-}
-
 /// What came of the units.
 struct Counts {
   std::uint64_t done = 0, there = 0, no_result = 0;
   std::vector<Problem> again, failed;
 };
+
+void add_fleet(const std::string& folder, std::vector<Work>& work, Counts& counts) {
+  FleetPlan plan = read_plan(folder);
+  const auto joined = joined_stretches(plan, folder);
+  for (FleetUnit& unit : plan.units)
+    if (joined.contains(unit.id))
+      ++counts.there;
+    else
+      work.push_back({std::move(unit), folder});
+}
+
+void add_work(const std::string& input, std::vector<Work>& work, Counts& counts) {
+  if (fs::is_directory(input)) return add_fleet(input, work, counts);
+  const fs::path folder = fs::absolute(input).parent_path().parent_path();
+  work.push_back({read_task(input), folder});
+}
 
 void run_one(Session& session, const Work& one, Counts& counts) {
   try {
@@ -95,10 +103,11 @@ void refuse(const std::vector<Problem>& problems) {
 }
 
 void run_run(Session& session, const RunVerb& verb) {
+  try_again_where_refused();
   if (verb.threads > 0) keep_to_threads(static_cast<int>(verb.threads));
   std::vector<Work> work;
-  for (const std::string& input : verb.inputs) add_work(input, work);
   Counts counts;
+  for (const std::string& input : verb.inputs) add_work(input, work, counts);
   for (std::size_t k = 0; k < work.size(); ++k) {
     session.terminal.update(static_cast<double>(k) / static_cast<double>(work.size()), "units");
     run_one(session, work[k], counts);

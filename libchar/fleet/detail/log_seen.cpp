@@ -16,9 +16,9 @@ constexpr std::size_t kMostSeen = std::size_t{1} << 16U;
 
 }  // namespace
 
-std::string log_as_seen(const std::string& log) {
+std::optional<std::string> log_as_seen(const std::string& log) {
   struct stat status {};
-  if (::stat(log.c_str(), &status) != 0) return log + "\n";
+  if (::stat(log.c_str(), &status) != 0) return std::nullopt;
   return fmt::format(
       "{}\n{} {}.{:09}\n", log, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
@@ -35,8 +35,9 @@ bool is_log_seen(const fs::path& fleet, const std::string& id, const std::string
   const fs::path file = fleet / "results" / result_folder(id) / kSeenFile;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return false;
-  const std::string found = file_text(file.string(), kMostSeen), now = log_as_seen(log);
-  return now == log + "\n" ? found.starts_with(now) : found == now;
+  const std::string found = file_text(file.string(), kMostSeen);
+  const std::optional<std::string> now = log_as_seen(log);
+  return now ? found == *now : found.starts_with(log + "\n");
 }
 
 bool result_counts(const fs::path& fleet, const FleetUnit& unit) {

@@ -5,14 +5,15 @@
 // still that. Times are compared for being the same, never for being earlier.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "libchar/fleet/unit.hpp"
 
 namespace libchar {
 
-/// As the file stands now; without size and time where it cannot be looked at.
-std::string log_as_seen(const std::string& log);
+/// As the file stands now: path, size and time of change. Nothing where it cannot be looked at.
+std::optional<std::string> log_as_seen(const std::string& log);
 
 /// Whether results of the unit need it.
 bool needs_log_seen(const FleetUnit& unit);
