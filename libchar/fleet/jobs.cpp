@@ -87,6 +87,9 @@ void export_jobs(const std::vector<FleetJob>& jobs,
     std::string lines;
     for (const std::size_t k : job.units) lines += task_file(k) + "\n";
     write_whole_file((folder / "jobs" / (job.name + ".txt")).string(), lines, true);
+    // Of an earlier time: its results were lost or damaged since.
+    std::error_code ignored;
+    fs::remove(folder / "jobs" / (job.name + ".done"), ignored);
   }
   for (const OutputFile& file : engine.files(jobs, folder, options))
     write_whole_file(file.path, file.text, true);

@@ -55,6 +55,8 @@ void name_device(const PlannedDevice& planned, DeviceRecord& record) {
 std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::path& relative_to) {
   if (!unit.reports) return "";
   const fs::path report = fs::absolute(folder) / "results" / result_folder(unit.id);
+  std::error_code ignored;
+  if (!fs::exists(report / "report.html", ignored)) return "";  // no link that leads nowhere
   return relative_to.empty() ? report.lexically_normal().string()
                              : report.lexically_normal()
                                    .lexically_relative(fs::absolute(relative_to).lexically_normal())
@@ -182,6 +184,11 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     add_result(plan.devices[unit.device], *found, record);
   }
   if (!options.partial) refuse_missing(plan, missing, folder);
+  for (DeviceRecord& record : out)
+    if (std::string why = why_nothing_fitted(record); !why.empty()) {
+      record.problem = std::move(why);
+      record.channels.clear();
+    }
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
@@ -27,6 +28,7 @@
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/detail/unit_cost.hpp"
 #include "libchar/log/channel_names.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/model/noise_limits.hpp"
 
 namespace libchar {
@@ -42,14 +44,23 @@ struct LookedAt {
   std::string sha256, problem;
 };
 
+/// Other formats know it only once they are read.
+bool is_without_rate(const LogInfo& head, const ReadOptions& options) {
+  const bool tells_in_head = head.format == "csv" || head.format == "npy";
+  return tells_in_head && head.time.column.empty() && !options.rate_hz;
+}
+
 LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options) {
   LookedAt out;
   try {
     out.head = read_log_head(device.log, options.reading);
+    if (is_without_rate(out.head, options.reading)) known_rate_hz(out.head);
     out.sha256 = device.sha256.empty() ? digest_of_log(device.log) : device.sha256;
   } catch (const Error& error) {
     Problem problem = error.problem();
-    problem.hint = "";  // the sentence that holds these has its own
+    // The sentence that holds these has a hint of its own.
+    if (!problem.hint.empty())
+      problem.what += fmt::format(" ({})", std::exchange(problem.hint, ""));
     out.problem = one_line(problem);
   }
   return out;
@@ -387,10 +398,20 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
 
 FleetUnit read_task(const std::string& file) {
   constexpr std::size_t kMostTask = std::size_t{16} << 20U;
-  const std::string text = file_text(file, kMostTask);
+  std::error_code ignored;
+  const bool there = fs::exists(file, ignored);
+  const std::string text = there ? file_text(file, kMostTask) : "";
   if (!text.ends_with("}\n"))
     if (auto unit = unit_of_plan(file)) return *std::move(unit);
-  return parse_unit(text, file);
+  return parse_unit(there ? text : file_text(file, kMostTask), file);
+}
+
+fs::path fleet_of_task(const std::string& file) {
+  const fs::path folder = fs::absolute(file).parent_path().parent_path();
+  std::error_code ignored;
+  if (!fs::exists(folder / kPlanFile, ignored))
+    refuse_plan(file, "this task is in the folder of no fleet: there is no plan beside it");
+  return folder;
 }
 
 FleetPlan read_plan(const fs::path& folder) {

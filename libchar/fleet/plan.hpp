@@ -42,8 +42,8 @@ struct FleetPlan {
   std::map<std::string, std::set<std::size_t>> undivided;
 };
 
-/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, and for logs that cannot be read (all of them named, the first few with
-/// the reason) or that are one log twice.
+/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, for
+/// logs that cannot be read or have no sampling rate (all of them named, the first few with the reason), and for one log twice.
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress = no_progress());
@@ -55,9 +55,12 @@ void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 /// Throws Error(input) for what is no plan, or one of another version of the program.
 FleetPlan read_plan(const std::filesystem::path& folder);
 
-/// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a power cut has torn is read from the plan.
-/// Throws Error(input).
+/// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a power cut has torn, or that is gone, is read
+/// from the plan. Throws Error(input).
 FleetUnit read_task(const std::string& file);
+
+/// The folder of the fleet that a task is in, DIR. Throws Error(input) where it has no plan.
+std::filesystem::path fleet_of_task(const std::string& file);
 
 /// The file of a unit's task, relative to the folder of the plan.
 std::string task_file(std::size_t unit);

@@ -209,8 +209,8 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
   } else {
     const DeviceRecord record = record_in(unit, fleet, folder.path(), progress);
     write_record(folder.path(), record);
-    out.problem = record.problem;
-    if (!record.problem.empty()) out.outcome = UnitOutcome::no_result;
+    out.problem = record.problem.empty() ? why_nothing_fitted(record) : record.problem;
+    if (!out.problem.empty()) out.outcome = UnitOutcome::no_result;
   }
   if (needs_log_seen(unit)) write_log_seen(folder.path(), seen);
   if (!folder.publish()) out.outcome = UnitOutcome::already_there;

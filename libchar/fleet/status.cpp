@@ -15,7 +15,8 @@ Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
                                                                                   : Found::nothing;
   const auto record = stored_record(folder, unit.id);
   if (!record || !result_counts(folder, unit)) return Found::nothing;
-  return record->problem.empty() ? Found::result : Found::no_result;
+  const bool any = record->problem.empty() && why_nothing_fitted(*record).empty();
+  return any ? Found::result : Found::no_result;
 }
 
 }  // namespace

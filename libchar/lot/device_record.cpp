@@ -1,9 +1,12 @@
 #include "libchar/lot/device_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/characterize/limits.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/fit/shaped_curves.hpp"
@@ -111,6 +114,17 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
     if (unit && unit->symbol == "°C") out.temperature_c = channel.fit->temperature->mean;
   }
   return out;
+}
+
+std::string why_nothing_fitted(const DeviceRecord& record) {
+  if (!record.problem.empty()) return "";
+  for (const RecordedChannel& channel : record.channels)
+    if (channel.fitted) return "";
+  Problem problem{ErrorKind::numeric, "E0711", record.log, "no channel could be fitted", "", ""};
+  if (!record.channels.empty() && !record.channels[0].problems.empty())
+    problem.what +=
+        fmt::format("; {}: {}", record.channels[0].name, record.channels[0].problems[0]);
+  return one_line(problem);
 }
 
 Coefficient coefficient_of(const RecordedValue& v) {

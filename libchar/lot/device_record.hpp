@@ -59,6 +59,9 @@ struct DeviceRecord {
 /// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is no bias.
 DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
 
+/// Where its log was read and nothing in it could be fitted: why, in a sentence; else "".
+std::string why_nothing_fitted(const DeviceRecord& record);
+
 /// The coefficient again, as far as the record holds it.
 Coefficient coefficient_of(const RecordedValue& value);
 

@@ -75,6 +75,11 @@ TEST_CASE("an export has a list of tasks for each job, and the engine's own file
     INFO(engine.name);
     CHECK(fs::exists(folder / engine.file));
   }
+  // Its units have no result any more: Snakemake must not take it for done.
+  const fs::path done = folder / "jobs" / (jobs[0].name + ".done");
+  test::write_file(done, "");
+  export_jobs(jobs, engines()[0], folder.path(), options);
+  CHECK_FALSE(fs::exists(done));
   std::string tasks;
   for (const FleetJob& job : jobs) tasks += test::slurp(folder / "jobs" / (job.name + ".txt"));
   for (std::size_t k = 0; k < 12; ++k) CHECK_THAT(tasks, Contains(task_file(k) + "\n"));

@@ -110,6 +110,12 @@ TEST_CASE("a task that a power cut has torn is read from the plan, one that was 
     test::write_file(task, torn);
     CHECK(unit_text(read_task(task)) + "\n" == whole);
   }
+  std::filesystem::remove(task);
+  CHECK(unit_text(read_task(task)) + "\n" == whole);
+  CHECK(fleet_of_task(task) == folder / "F");
+  test::write_file((folder / "tasks-alone.json").string(), whole);
+  CHECK_THROWS_WITH(fleet_of_task((folder / "tasks-alone.json").string()),
+                    Contains("E0784") && Contains("there is no plan beside it"));
   test::write_file(task, test::slurp(folder / "F" / task_file(0)).replace(10, 5, "xxxxx"));
   CHECK_THROWS_AS(read_task(task), Error);
   // Of no plan, or of a longer one that is not there any more.
@@ -144,5 +150,25 @@ TEST_CASE("a plan that is cut, or is none, is refused") {
   for (std::size_t at = 0; at + 1 < text.size(); at += 97) {
     test::write_file(path, text.substr(0, at));
     CHECK_THROWS_AS(read_plan(folder / "F"), Error);
+  }
+}
+
+TEST_CASE("a log without a sampling rate is told before the work") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 1);
+  const std::string stamps_none = (folder / "plain.csv").string();
+  test::write_file(stamps_none, "gx,gy\n1,2\n2,1\n1.5,2\n");
+  const std::string npy = test::write_long_log(folder / "a.npy", 1, 2000);
+  for (const std::string& log : {stamps_none, npy}) {
+    CHECK_THROWS_WITH(test::planned({logs[0], log}),
+                      Contains("E0782") && Contains("1 of 2 logs") && Contains("`rate_hz`"));
+    FleetPlanOptions options;
+    options.skip_unreadable = true;
+    const FleetPlan plan = test::planned({logs[0], log}, options);
+    CHECK(plan.units.size() == 1);
+    CHECK_THAT(plan.devices[1].problem, Contains("the sampling rate is not known"));
+    CharacterizeOptions given;
+    given.reading.rate_hz = 100;
+    CHECK(plan_fleet(manifest_of_logs({log}, given), {}).units.size() == 1);
   }
 }

@@ -187,6 +187,30 @@ TEST_CASE("what a log's content does not allow is a result, and stands in the me
   CHECK(records[1].channels.empty());
 }
 
+TEST_CASE("a log in which nothing could be fitted has no result, and says why") {
+  const test::TemporaryFolder folder;
+  auto logs = test::write_logs(folder.path(), 2);
+  test::write_file(logs[1], "t[s],gx[deg/s],gy[deg/s]\n0,1,1\n0.01,1,2\n0.02,2,1\n");
+  FleetPlanOptions options;
+  for (const bool by_channel : {false, true}) {
+    options.by_channel = by_channel;
+    const FleetPlan plan = test::planned(logs, options);
+    const fs::path fleet = folder / (by_channel ? "C" : "F");
+    for (const FleetUnit& unit : plan.units) {
+      const UnitRun run = run_unit(unit, fleet);
+      CHECK((run.outcome == UnitOutcome::no_result) == (unit.device == 1));
+      CHECK((unit.device == 0 ||
+             run.problem.find("no channel could be fitted; g") != std::string::npos));
+    }
+    CHECK(fleet_status(plan, fleet).no_result == (by_channel ? 2 : 1));
+    const auto records = merged_records(plan, fleet);
+    CHECK(records[0].problem.empty());
+    CHECK_THAT(records[1].problem,
+               Contains("d1.csv: error E0711: no channel could be fitted; gx: "));
+    CHECK(records[1].channels.empty());
+  }
+}
+
 TEST_CASE("merging what there is names what there is not") {
   const test::TemporaryFolder folder;
   const FleetPlan plan = test::planned(test::write_logs(folder.path(), 2));

@@ -19,7 +19,9 @@ TEST_CASE("a log that has been joined needs its stretches no more") {
   options.stretch_bytes = std::uint64_t{12} << 20U;
   options.reports = false;
   const fs::path fleet = folder / "F";
-  const FleetPlan plan = test::planned({log}, options);
+  CharacterizeOptions reading;
+  reading.reading.rate_hz = 100;
+  const FleetPlan plan = plan_fleet(manifest_of_logs({log}, reading), options);
   REQUIRE(plan.units.size() == 3);
   run_unit(plan.units[0], fleet);
   run_unit(plan.units[1], fleet);

@@ -34,7 +34,9 @@ std::string refused_sums(const std::string& text) {
 FleetPlan stated_plan(const std::vector<std::string>& logs,
                       const std::vector<std::string>& digests,
                       const FleetPlanOptions& options = {}) {
-  Manifest manifest = manifest_of_logs(logs);
+  CharacterizeOptions reading;
+  reading.reading.rate_hz = 100;  // of logs without stamps
+  Manifest manifest = manifest_of_logs(logs, reading);
   for (std::size_t d = 0; d < digests.size(); ++d) manifest.devices[d].sha256 = digests[d];
   return plan_fleet(manifest, options);
 }
@@ -101,7 +103,7 @@ TEST_CASE("a manifest states digests by entry and by column, and they have 64 di
 TEST_CASE("digests that are stated give the plan and the results of digests that were taken") {
   const test::TemporaryFolder folder;
   const auto logs = test::write_logs(folder.path(), 2);
-  const FleetPlan taken = test::planned(logs);
+  const FleetPlan taken = stated_plan(logs, {});
   const FleetPlan claimed = stated_plan(logs, {digest_of_log(logs[0]), digest_of_log(logs[1])});
   REQUIRE(claimed.units.size() == 2);
   CHECK(claimed.units[0].stated);

@@ -50,8 +50,8 @@ void add_fleet(const std::string& folder, std::vector<Work>& work, Counts& count
 
 void add_work(const std::string& input, std::vector<Work>& work, Counts& counts) {
   if (fs::is_directory(input)) return add_fleet(input, work, counts);
-  const fs::path folder = fs::absolute(input).parent_path().parent_path();
-  work.push_back({read_task(input), folder});
+  FleetUnit unit = read_task(input);
+  work.push_back({std::move(unit), fleet_of_task(input)});
 }
 
 void run_one(Session& session, const Work& one, Counts& counts) {
@@ -89,7 +89,10 @@ void say(Session& session, const RunVerb& verb, const Counts& counts) {
                                  plural(counts.done + counts.no_result, "unit"),
                                  counts.there);
   if (counts.no_result > 0)
-    text += fmt::format("; {} could not be characterized", plural(counts.no_result, "log"));
+    text +=
+        fmt::format("; of {} a log could not be characterized", plural(counts.no_result, "unit"));
+  const std::size_t failed = counts.failed.size() + counts.again.size();
+  if (failed > 0) text += fmt::format("; {} failed", plural(failed, "unit"));
   print_beside(session, text + "\n");
 }
 
