@@ -48,9 +48,13 @@ int exit_code(ErrorKind kind) {
 }  // namespace
 
 void report_warnings(Session& session, const libchar::LogInfo& info) {
-  if (info.warnings.empty()) return;
-  session.terminal.warn(info.warnings, info.file);
-  session.warned_files.push_back(info.file);
+  report_warnings(session, info.warnings, info.file);
+}
+
+void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file) {
+  if (warnings.empty()) return;
+  session.terminal.warn(warnings, file);
+  session.warned_files.push_back(file);
 }
 
 libchar::Json document_head(const Session& session,

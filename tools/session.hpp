@@ -25,6 +25,7 @@ struct Session {
 
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
+void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file);
 
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],"warnings":[{code,message,
 /// count,where}…],"measured":{"work":{…}}}: the head of every --json document; the verb adds its own keys behind.

@@ -38,9 +38,9 @@ const Warning* Warnings::find(std::string_view code) const {
   return found == list_.end() ? nullptr : &*found;
 }
 
-std::string one_line(const Warning& warning, std::string_view file) {
-  std::string line = printable(file) + ": warning: ";
-  if (warning.count != 1) line += std::to_string(warning.count) + " × ";
+std::string sentence_of(const Warning& warning) {
+  std::string line;
+  if (warning.count != 1) line = std::to_string(warning.count) + " × ";
   line += printable(warning.message);
   if (!warning.places.empty()) {
     line += warning.count > warning.places.size() ? " (first: " : " (";
@@ -49,6 +49,10 @@ std::string one_line(const Warning& warning, std::string_view file) {
     line += ")";
   }
   return line;
+}
+
+std::string one_line(const Warning& warning, std::string_view file) {
+  return printable(file) + ": warning: " + sentence_of(warning);
 }
 
 }  // namespace libchar

@@ -70,6 +70,9 @@ void add_result(const PlannedDevice& planned, const DeviceRecord& found, DeviceR
   record.program = found.program;
   record.settings = found.settings;
   if (record.problem.empty()) record.problem = found.problem;
+  for (const std::string& warning : found.warnings)
+    if (std::find(record.warnings.begin(), record.warnings.end(), warning) == record.warnings.end())
+      record.warnings.push_back(warning);
   record.channels.insert(record.channels.end(), found.channels.begin(), found.channels.end());
 }
 
@@ -184,11 +187,13 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     add_result(plan.devices[unit.device], *found, record);
   }
   if (!options.partial) refuse_missing(plan, missing, folder);
-  for (DeviceRecord& record : out)
+  for (DeviceRecord& record : out) {
+    use_thermometer(record);
     if (std::string why = why_nothing_fitted(record); !why.empty()) {
       record.problem = std::move(why);
       record.channels.clear();
     }
+  }
   return out;
 }
 

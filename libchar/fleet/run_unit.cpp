@@ -178,11 +178,7 @@ Attempt confirmed_attempt(const FleetUnit& unit, const fs::path& fleet, Progress
   throw Error(second.problem);
 }
 
-DeviceRecord record_in(const FleetUnit& unit,
-                       const fs::path& fleet,
-                       const fs::path& folder,
-                       Progress& progress) {
-  Attempt found = confirmed_attempt(unit, fleet, progress);
+DeviceRecord record_in(const FleetUnit& unit, const fs::path& folder, Attempt found) {
   DeviceRecord record;
   if (found.result) {
     record = write_results(unit, *found.result, folder);
@@ -207,7 +203,9 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
     };
     characterize_stretch(unit.log, *unit.options, unit.stretch, unit.sha256, write, progress);
   } else {
-    const DeviceRecord record = record_in(unit, fleet, folder.path(), progress);
+    Attempt found = confirmed_attempt(unit, fleet, progress);
+    if (found.result) out.warnings = found.result->log.warnings;
+    const DeviceRecord record = record_in(unit, folder.path(), std::move(found));
     write_record(folder.path(), record);
     out.problem = record.problem.empty() ? why_nothing_fitted(record) : record.problem;
     if (!out.problem.empty()) out.outcome = UnitOutcome::no_result;
@@ -222,14 +220,14 @@ UnitRun confirm(const FleetUnit& unit, const fs::path& fleet) {
   const std::string seen = seen_log(unit);
   check_digest(unit);
   write_log_seen(fleet / "results" / result_folder(unit.id), seen);
-  return {UnitOutcome::already_there, ""};
+  return {UnitOutcome::already_there};
 }
 
 }  // namespace
 
 UnitRun run_unit(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   const bool there = has_result(fleet, unit.id, unit.kind == UnitKind::stretch);
-  if (there && result_counts(fleet, unit)) return {UnitOutcome::already_there, ""};
+  if (there && result_counts(fleet, unit)) return {UnitOutcome::already_there};
   check_log_is_there(unit);
   try {
     if (there && unit.kind != UnitKind::stretch) return confirm(unit, fleet);

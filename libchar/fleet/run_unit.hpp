@@ -6,6 +6,7 @@
 
 #include "libchar/core/enum_table.hpp"
 #include "libchar/core/progress.hpp"
+#include "libchar/core/warnings.hpp"
 #include "libchar/fleet/unit.hpp"
 
 namespace libchar {
@@ -23,7 +24,8 @@ inline constexpr auto enum_table<UnitOutcome> =
 
 struct UnitRun {
   UnitOutcome outcome = UnitOutcome::done;
-  std::string problem;  ///< of no_result: why
+  std::string problem{};  ///< of no_result: why
+  Warnings warnings{};    ///< of a log that was read to its end
 };
 
 /// Computes what is missing of the unit and publishes it in `fleet`/results, whole or not at all. What the log's content does not allow is a

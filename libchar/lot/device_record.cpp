@@ -62,6 +62,7 @@ RecordedChannel channel_record(const ChannelResult& channel, SampleKind data) {
   out.unit = channel.channel.unit;
   out.samples = channel.quality.samples;
   out.missing = channel.quality.missing;
+  if (std::isfinite(channel.quality.mean)) out.mean = channel.quality.mean;
   out.problems = channel.problems;
   if (!channel.fit) return out;
   const NoiseFit& fit = *channel.fit;
@@ -81,6 +82,19 @@ RecordedChannel channel_record(const ChannelResult& channel, SampleKind data) {
   return out;
 }
 
+/// What moves a thermometer is what it measures.
+void drop_own_effects(RecordedChannel& thermometer) {
+  std::erase_if(thermometer.values, [](const RecordedValue& v) {
+    return v.quantity == DeviceQuantity::turn_on_bias ||
+           v.quantity == DeviceQuantity::temperature_coefficient;
+  });
+}
+
+bool is_in_celsius(const std::string& text) {
+  const auto unit = find_unit(text);
+  return unit && unit->symbol == "°C";
+}
+
 }  // namespace
 
 bool RecordedValue::operator==(const RecordedValue& o) const {
@@ -91,8 +105,8 @@ bool RecordedValue::operator==(const RecordedValue& o) const {
 
 bool RecordedChannel::operator==(const RecordedChannel& o) const {
   return name == o.name && unit == o.unit && rate_hz == o.rate_hz && duration_s == o.duration_s &&
-         samples == o.samples && missing == o.missing && fitted == o.fitted &&
-         same_number(p, o.p) && values == o.values && problems == o.problems;
+         samples == o.samples && missing == o.missing && same_number(mean, o.mean) &&
+         fitted == o.fitted && same_number(p, o.p) && values == o.values && problems == o.problems;
 }
 
 const RecordedValue* RecordedChannel::find(DeviceQuantity quantity) const {
@@ -107,13 +121,30 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
   out.sha256 = result.log.sha256;
   out.program = version();
   if (result.limits) out.limits = result.limits->verdict;
+  for (const Warning& warning : result.log.warnings.list())
+    out.warnings.push_back(sentence_of(warning));
   for (const ChannelResult& channel : result.channels) {
     out.channels.push_back(channel_record(channel, data));
-    if (!channel.fit || !channel.fit->temperature) continue;
-    const auto unit = find_unit(channel.fit->temperature->unit);
-    if (unit && unit->symbol == "°C") out.temperature_c = channel.fit->temperature->mean;
+    if (result.temperature && channel.channel.name == result.temperature->name)
+      drop_own_effects(out.channels.back());
+    if (channel.fit && channel.fit->temperature && is_in_celsius(channel.fit->temperature->unit))
+      out.temperature_c = channel.fit->temperature->mean;
   }
+  use_thermometer(out);
   return out;
+}
+
+void use_thermometer(DeviceRecord& record) {
+  RecordedChannel* thermometer = nullptr;
+  for (RecordedChannel& channel : record.channels) {
+    if (!is_in_celsius(channel.unit)) continue;
+    if (thermometer != nullptr) return;  // which of them is that of the sensor?
+    thermometer = &channel;
+  }
+  if (thermometer == nullptr || record.channels.size() < 2) return;
+  drop_own_effects(*thermometer);
+  if (!record.temperature_c && std::isfinite(thermometer->mean))
+    record.temperature_c = thermometer->mean;
 }
 
 std::string why_nothing_fitted(const DeviceRecord& record) {

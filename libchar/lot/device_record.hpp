@@ -34,6 +34,7 @@ struct RecordedChannel {
   std::string name, unit;
   double rate_hz = 0, duration_s = 0;
   std::uint64_t samples = 0, missing = 0;
+  double mean = kNone;  ///< of the samples
   bool fitted = false;
   double p = kNone;  ///< goodness of fit
   std::vector<RecordedValue>
@@ -52,12 +53,17 @@ struct DeviceRecord {
   std::string report;    ///< folder of its own report, relative to the page of the lot; "": none
   std::string limits;    ///< verdict on its data sheet; "": none was held against it
   std::string problem;   ///< why its log could not be characterized; "": it was
+  std::vector<std::string> warnings;  ///< what was dirty in its log and what was done, in sentences
   std::vector<RecordedChannel> channels;
   bool operator==(const DeviceRecord&) const = default;
 };
 
 /// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is no bias.
 DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
+
+/// The one channel in °C beside others is a thermometer: its mean is the temperature of a recording that says none, and it has no turn-on
+/// bias and no temperature coefficient itself.
+void use_thermometer(DeviceRecord& record);
 
 /// Where its log was read and nothing in it could be fitted: why, in a sentence; else "".
 std::string why_nothing_fitted(const DeviceRecord& record);

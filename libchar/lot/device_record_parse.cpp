@@ -59,6 +59,7 @@ RecordedChannel read_record_channel(const MapReader& map) {
   out.unit = map.text_or("unit", "");
   out.samples = map.count_or("samples", 0);
   out.missing = map.count_or("missing", 0);
+  out.mean = map.number_or("mean", kNone);
   out.fitted = map.has("values");
   if (map.has("problems")) out.problems = map.texts("problems");
   if (!out.fitted) return out;
@@ -92,6 +93,7 @@ DeviceRecord read_device_record(std::string_view text, const std::string& path) 
   out.report = map.text_or("report", "");
   out.limits = map.text_or("limits", "");
   out.problem = map.text_or("problem", "");
+  if (map.has("warnings")) out.warnings = map.texts("warnings");
   const std::vector<Document>& channels = map.list("channels");
   out.channels.reserve(channels.size());
   for (std::size_t i = 0; i < channels.size(); ++i) {

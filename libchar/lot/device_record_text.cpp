@@ -23,6 +23,7 @@ Json channel_json(const RecordedChannel& c) {
               {"unit", json_text(c.unit)},
               {"samples", c.samples},
               {"missing", c.missing}};
+  if (!std::isnan(c.mean)) out["mean"] = json_number(c.mean);
   if (c.fitted) {
     out["rate_hz"] = json_number(c.rate_hz);
     out["duration_s"] = json_number(c.duration_s);
@@ -52,6 +53,7 @@ std::string device_record_text(const DeviceRecord& record) {
                                   std::pair("limits", &record.limits),
                                   std::pair("problem", &record.problem)})
     if (!text->empty()) out[key] = json_text(*text);
+  for (const std::string& warning : record.warnings) out["warnings"].push_back(json_text(warning));
   out["channels"] = Json::array();
   for (const RecordedChannel& channel : record.channels)
     out["channels"].push_back(channel_json(channel));

@@ -2,7 +2,10 @@
 // the values scatter is taken out, so that the spread is that of the devices.
 #include "libchar/lot/fleet_lot.hpp"
 
+#include <fmt/format.h>
+
 #include "libchar/core/error.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/lot/detail/fleet_data.hpp"
 #include "libchar/lot/detail/fleet_verdict.hpp"
 #include "libchar/lot/detail/lot_outliers.hpp"
@@ -10,6 +13,26 @@
 #include "libchar/lot/detail/worst_devices.hpp"
 
 namespace libchar {
+namespace {
+
+/// What was mended in the logs does not get lost in the number of them.
+std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
+                                       std::span<const std::size_t> order) {
+  const DeviceRecord* first = nullptr;
+  std::size_t count = 0;
+  for (const std::size_t r : order) {
+    if (records[r].warnings.empty()) continue;
+    if (++count == 1) first = &records[r];
+  }
+  if (count == 0) return {};
+  return {fmt::format("{} of {} read with warnings, which their pages say; the first, of {}: {}",
+                      count,
+                      plural(records.size(), "recording"),
+                      first->device,
+                      first->warnings[0])};
+}
+
+}  // namespace
 
 FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options) {
   if (records.empty())
@@ -35,6 +58,7 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   out.notes = fleet.sorted.notes;
   for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups))
     out.notes.push_back(std::move(note));
+  for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.verdict = fleet_verdict(out);
   return out;
 }

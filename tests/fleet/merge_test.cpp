@@ -104,14 +104,15 @@ TEST_CASE("one log in two fleets is refused by name, and so is one fleet named t
   CHECK_THROWS_WITH(refuse_common_logs(read_fleets({a, folder / "y"})), Contains("d1 in"));
 }
 
-TEST_CASE("a thermometer in the log tells its temperature where the manifest says nothing") {
-  const test::TemporaryFolder folder;
+namespace {
+
+/// Gyros of .1 deg/s/K at these temperatures: up by 6 °C and down again, so that the mean is 3 °C above where it began.
+std::vector<std::string> write_warm_logs(const fs::path& folder, const std::vector<double>& from) {
   std::vector<std::string> logs;
-  for (const double degrees : {20.0, 40.0}) {
+  for (const double degrees : from) {
     test::Gaussian gauss(static_cast<std::uint64_t>(degrees));
     std::string text = "t[s],gx[deg/s],temp[degC]\n";
     for (int k = 0; k < 6000; ++k) {
-      // Up by 6 °C and down again: the mean is 3 °C above where it began.
       const double temperature = degrees + 6 - 0.002 * std::abs(k - 2999.5);
       text += fmt::format(
           "{:.2f},{:.6f},{:.4f}\n", k / 100.0, gauss() + 0.1 * temperature, temperature);
@@ -119,18 +120,66 @@ TEST_CASE("a thermometer in the log tells its temperature where the manifest say
     logs.push_back((folder / fmt::format("t{}.csv", degrees)).string());
     test::write_file(logs.back(), text);
   }
-  CharacterizeOptions options;
-  options.temperature = "temp";
-  Manifest manifest = manifest_of_logs(logs, options);
-  manifest.devices[1].temperature_c = 60;
-  const FleetPlan plan = plan_fleet(manifest, {});
-  test::run_all(plan, folder / "F");
+  return logs;
+}
+
+}  // namespace
+
+TEST_CASE("a thermometer in the log tells its temperature where the manifest says nothing") {
+  const test::TemporaryFolder folder;
+  const auto logs = write_warm_logs(folder.path(), {20, 40});
+  for (const bool taken_out : {false, true}) {
+    CharacterizeOptions options;
+    if (taken_out) options.temperature = "temp";
+    Manifest manifest = manifest_of_logs(logs, options);
+    manifest.devices[1].temperature_c = 60;
+    const FleetPlan plan = plan_fleet(manifest, {});
+    const fs::path fleet = folder / (taken_out ? "out" : "in");
+    test::run_all(plan, fleet);
+    const auto records = merged_records(plan, fleet);
+    REQUIRE(records.size() == 2);
+    REQUIRE(records[0].temperature_c);
+    CHECK(*records[0].temperature_c == Approx(23).margin(0.01));
+    CHECK(records[1].temperature_c == 60.0);
+    for (const DeviceRecord& record : records) {
+      REQUIRE(record.channels.size() == 2);
+      const RecordedValue* found = record.channels[0].find(DeviceQuantity::temperature_coefficient);
+      REQUIRE((found != nullptr) == taken_out);
+      if (taken_out) CHECK(found->value == Approx(0.1).epsilon(0.2));
+      CHECK(record.channels[1].find(DeviceQuantity::temperature_coefficient) == nullptr);
+      CHECK(record.channels[1].find(DeviceQuantity::turn_on_bias) == nullptr);
+    }
+  }
+  FleetPlanOptions by_channel;
+  by_channel.by_channel = true;
+  const FleetPlan whole = test::planned(logs), parts = test::planned(logs, by_channel);
+  test::run_all(whole, folder / "whole");
+  test::run_all(parts, folder / "parts");
+  const auto a = merged_records(whole, folder / "whole"),
+             b = merged_records(parts, folder / "parts");
+  for (std::size_t d = 0; d < 2; ++d) {
+    CHECK(a[d].channels == b[d].channels);
+    CHECK(a[d].temperature_c == b[d].temperature_c);
+  }
+}
+
+TEST_CASE("what was mended in a log is told by the worker, in the record, and in the lot") {
+  const test::TemporaryFolder folder;
+  auto logs = test::write_logs(folder.path(), 3);
+  std::string text = test::slurp(logs[1]);
+  const std::size_t row = text.find("0.10,");
+  text.insert(row, text.substr(row, text.find('\n', row) + 1 - row));  // a row stands twice
+  test::write_file(logs[1], text);
+  const FleetPlan plan = test::planned(logs);
+  std::size_t warned = 0;
+  for (const FleetUnit& unit : plan.units) warned += !run_unit(unit, folder / "F").warnings.empty();
+  CHECK(warned == 1);
   const auto records = merged_records(plan, folder / "F");
-  REQUIRE(records.size() == 2);
-  REQUIRE(records[0].temperature_c);
-  CHECK(*records[0].temperature_c == Approx(23).margin(0.01));
-  CHECK(records[1].temperature_c == 60.0);
-  const RecordedValue* found = records[0].channels[0].find(DeviceQuantity::temperature_coefficient);
-  REQUIRE(found);
-  CHECK(found->value == Approx(0.1).epsilon(0.2));
+  CHECK(records[0].warnings.empty());
+  REQUIRE(records[1].warnings.size() == 1);
+  const FleetLot lot = fleet_lot(records);
+  REQUIRE(!lot.notes.empty());
+  CHECK_THAT(lot.notes.back(),
+             Contains("1 of 3 recordings read with warnings") &&
+                 Contains("of d1: " + records[1].warnings[0]));
 }

@@ -52,7 +52,9 @@ Characterization recording() {
   effect.coefficient[0] = -0.012;
   effect.ci95 = {-0.013, -0.011};
   out.channels.push_back(c);
+  out.log.warnings.add("gap", "a gap", "line 7", 2);
   ChannelResult none;
+  none.quality.mean = std::numeric_limits<double>::quiet_NaN();
   none.channel = {"x\"\n\x01", ""};
   none.problems = {"it is constant", "µ"};
   out.channels.push_back(none);
@@ -98,8 +100,37 @@ TEST_CASE("a device record holds what a lot looks at") {
   CHECK(value(DeviceQuantity::temperature_coefficient).sd ==
         Approx(0.001 / 1.959964).epsilon(1e-6));
   CHECK_FALSE(r.channels[1].fitted);
+  CHECK(gyro.mean == 0.1 + 0.2);
+  CHECK(std::isnan(r.channels[1].mean));
+  CHECK(r.warnings == std::vector<std::string>{"2 × a gap (first: line 7)"});
   CHECK(record_of(recording(), SampleKind::phase).channels[0].find(DeviceQuantity::turn_on_bias) ==
         nullptr);
+}
+
+TEST_CASE("the one channel in °C beside others is a thermometer") {
+  Characterization result = recording();
+  for (ChannelResult& c : result.channels)
+    if (c.fit) c.fit->temperature.reset();
+  ChannelResult thermometer = result.channels[0];
+  thermometer.channel = {"temp", "degC"};
+  thermometer.quality.mean = 41.5;
+  result.channels.push_back(thermometer);
+  const DeviceRecord one = record_of(result);
+  CHECK(one.temperature_c == 41.5);
+  CHECK(one.channels[0].find(DeviceQuantity::turn_on_bias) != nullptr);
+  CHECK(one.channels[2].find(DeviceQuantity::turn_on_bias) == nullptr);
+  CHECK(one.channels[2].find(DeviceQuantity::white_noise) != nullptr);
+  // One of two may be anywhere.
+  result.channels.push_back(thermometer);
+  result.channels.back().channel.name = "temp2";
+  const DeviceRecord two = record_of(result);
+  CHECK_FALSE(two.temperature_c);
+  CHECK(two.channels[2].find(DeviceQuantity::turn_on_bias) != nullptr);
+  // Alone it is the sensor.
+  result.channels = {thermometer};
+  const DeviceRecord alone = record_of(result);
+  CHECK_FALSE(alone.temperature_c);
+  CHECK(alone.channels[0].find(DeviceQuantity::turn_on_bias) != nullptr);
 }
 
 TEST_CASE("a temperature that does nothing is not detected") {

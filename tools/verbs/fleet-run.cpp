@@ -57,6 +57,7 @@ void add_work(const std::string& input, std::vector<Work>& work, Counts& counts)
 void run_one(Session& session, const Work& one, Counts& counts) {
   try {
     const UnitRun run = run_unit(one.unit, one.folder, session.terminal);
+    report_warnings(session, run.warnings, one.unit.log);
     if (run.outcome == UnitOutcome::done) ++counts.done;
     if (run.outcome == UnitOutcome::already_there) ++counts.there;
     if (run.outcome != UnitOutcome::no_result) return;

@@ -116,7 +116,7 @@ bool scan_values(Scanner& in, std::vector<RecordedValue>& out) {
   return in.word("}");
 }
 
-bool scan_problems(Scanner& in, std::vector<std::string>& out) {
+bool scan_texts(Scanner& in, std::vector<std::string>& out) {
   do {
     if (!in.text(out.emplace_back())) return false;
   } while (in.word(","));
@@ -128,6 +128,7 @@ bool scan_channel(Scanner& in, RecordedChannel& out) {
       !in.text(out.unit) || !in.word(",\"samples\":") || !in.count(out.samples) ||
       !in.word(",\"missing\":") || !in.count(out.missing))
     return false;
+  if (in.word(",\"mean\":") && !in.number(out.mean)) return false;
   out.fitted = in.word(",\"rate_hz\":");
   if (out.fitted) {
     out.values.reserve(4);
@@ -136,7 +137,7 @@ bool scan_channel(Scanner& in, RecordedChannel& out) {
         !scan_values(in, out.values))
       return false;
   }
-  if (in.word(",\"problems\":[") && !scan_problems(in, out.problems)) return false;
+  if (in.word(",\"problems\":[") && !scan_texts(in, out.problems)) return false;
   return in.word("}");
 }
 
@@ -173,7 +174,7 @@ bool scan_head(Scanner& in, DeviceRecord& out) {
                                   std::pair(",\"limits\":", &out.limits),
                                   std::pair(",\"problem\":", &out.problem)})
     if (in.word(key) && !in.text(*text)) return false;
-  return true;
+  return !in.word(",\"warnings\":[") || scan_texts(in, out.warnings);
 }
 
 }  // namespace
