@@ -352,6 +352,7 @@ FleetPlan plan_fleet(const Manifest& manifest,
                             one.temperature_c,
                             logs[d].problem});
     if (!logs[d].problem.empty()) continue;
+    if (!logs[d].head.warnings.empty()) plan.warned.emplace_back(one.log, logs[d].head.warnings);
     FleetUnit unit;
     unit.device = d;
     unit.log = one.log;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libchar/core/progress.hpp"
+#include "libchar/core/warnings.hpp"
 #include "libchar/fleet/manifest.hpp"
 #include "libchar/fleet/unit.hpp"
 
@@ -40,6 +41,8 @@ struct FleetPlan {
   std::vector<FleetUnit> units;  ///< of the devices in their order; a join behind its stretches
   /// Why logs above `split_bytes` are not divided, and whose; not in the file.
   std::map<std::string, std::set<std::size_t>> undivided;
+  /// Logs that have warnings in front of their samples (an option that fits none of their channels); not in the file.
+  std::vector<std::pair<std::string, Warnings>> warned;
 };
 
 /// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, for

@@ -281,6 +281,8 @@ LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
   LogInfo info = open_rows(format_of(path, options), path, options)->info();
   name_channels(info.channels, options);
   scale_channels(info.channels, options, nullptr);
+  warn_of_unused(info.channels, options, info.warnings);
+  warn_of_units(options, info.warnings);
   return info;
 }
 

@@ -172,3 +172,15 @@ TEST_CASE("a log without a sampling rate is told before the work") {
     CHECK(plan_fleet(manifest_of_logs({log}, given), {}).units.size() == 1);
   }
 }
+
+TEST_CASE("an option that fits no channel of a log is told when planning") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 2);
+  CharacterizeOptions options;
+  options.reading.channel_unit = {"gz=deg/s"};
+  const FleetPlan plan = plan_fleet(manifest_of_logs(logs, options), {});
+  REQUIRE(plan.warned.size() == 2);
+  CHECK(plan.warned[0].first == logs[0]);
+  CHECK(plan.warned[0].second.find("unused_option") != nullptr);
+  CHECK(test::planned(logs).warned.empty());
+}

@@ -48,6 +48,8 @@ void run_plan(Session& session, PlanVerb verb) {
   verb.plan.reports = !verb.no_reports;
   const Manifest manifest = manifest_of(verb, options, session.terminal);
   const FleetPlan plan = plan_fleet(manifest, verb.plan, session.terminal);
+  for (const auto& [log, warnings] : plan.warned) report_warnings(session, warnings, log);
+  if (session.strict && !plan.warned.empty()) return;  // nothing is written
   write_plan(plan, verb.folder);
   session.wrote = true;
   const FleetStatus status = fleet_status(plan, verb.folder, session.terminal);

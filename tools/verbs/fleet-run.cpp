@@ -135,6 +135,9 @@ std::function<void()> run_options(VerbOptions& options, Session& session) {
                     "threads at most (default: one a core); results never depend on it",
                     1,
                     1024);
+  options.add_flag("--strict",
+                   session.strict,
+                   "a warning about a log ends the run with exit code 3, once all units are done");
   options.add_flag("--json", verb->json, "print what was done as JSON");
   return [&session, verb] { run_run(session, *verb); };
 }
