@@ -478,9 +478,11 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
     result.trace_unit = channel.unit;
   }
   if (rate_hz <= 0) {
-    result.problems.push_back(
-        "no curves and no fit: the sampling rate is not known (a log without time stamps needs "
-        "`rate_hz`)");
+    const std::string why =
+        found_.samples < 2
+            ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
+            : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
+    result.problems.push_back("no curves and no fit: " + why);
     return result;
   }
   // Else the quality says so.
