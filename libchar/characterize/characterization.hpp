@@ -143,4 +143,8 @@ Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
+/// Which channel `wanted` (a name that it has in the end, a place c0, c1…, a pattern) makes the temperature; none: no channel. Throws
+/// Error(usage) for a pattern that several match.
+std::optional<std::size_t> temperature_channel(const LogInfo& log, const std::string& wanted);
+
 }  // namespace libchar

@@ -138,7 +138,7 @@ void refuse_common_logs(const std::vector<PlannedFleet>& fleets) {
   std::unordered_map<const CharacterizeOptions*, std::string> settings;
   const auto settings_of_unit = [&](const FleetUnit& unit) {
     std::string& id = settings[unit.options.get()];
-    if (id.empty()) id = settings_id(*unit.options);
+    if (id.empty()) id = settings_id(unit);
     return id;
   };
   for (std::size_t f = 0; f < fleets.size(); ++f)

@@ -41,6 +41,7 @@ constexpr const char* kPlanFile = "plan.jsonl";
 
 struct LookedAt {
   LogInfo head;
+  std::vector<std::string> in_log;  ///< what the log calls the channels, where they are to be units
   std::string sha256, problem;
 };
 
@@ -50,10 +51,11 @@ bool is_without_rate(const LogInfo& head, const ReadOptions& options) {
   return tells_in_head && head.time.column.empty() && !options.rate_hz;
 }
 
-LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options) {
+LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, bool by_channel) {
   LookedAt out;
   try {
     out.head = read_log_head(device.log, options.reading);
+    if (by_channel) out.in_log = names_in_log(device.log, options.reading);
     if (is_without_rate(out.head, options.reading)) known_rate_hz(out.head);
     out.sha256 = device.sha256.empty() ? digest_of_log(device.log) : device.sha256;
   } catch (const Error& error) {
@@ -66,7 +68,7 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options) 
   return out;
 }
 
-std::vector<LookedAt> look_at_all(const Manifest& manifest, Progress& progress) {
+std::vector<LookedAt> look_at_all(const Manifest& manifest, bool by_channel, Progress& progress) {
   constexpr std::size_t kAtOnce = 64;
   std::vector<LookedAt> out(manifest.devices.size());
   for (std::size_t first = 0; first < out.size(); first += kAtOnce) {
@@ -74,7 +76,7 @@ std::vector<LookedAt> look_at_all(const Manifest& manifest, Progress& progress) 
                     "looking into the logs");
     tbb::parallel_for(first, std::min(out.size(), first + kAtOnce), [&](std::size_t d) {
       const FleetDevice& device = manifest.devices[d];
-      out[d] = look_at(device, manifest.options[device.options]);
+      out[d] = look_at(device, manifest.options[device.options], by_channel);
     });
   }
   return out;
@@ -133,18 +135,52 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
   }
 }
 
+/// Of lists for each channel a unit of one channel has its own entry; the thermometer's would stand nowhere.
+void check_by_channel(const Manifest& manifest) {
+  for (const CharacterizeOptions& one : manifest.options)
+    if (!one.temperature.empty() && (!one.reading.names.empty() || one.reading.units.size() > 1))
+      throw Error({ErrorKind::usage,
+                   "E0702",
+                   "",
+                   "with `temperature` and lists of `names` or `units` no unit can be of one "
+                   "channel",
+                   one.temperature,
+                   "leave `by_channel` out, or give units by name with `channel_unit`"});
+}
+
+/// Which channels are a unit: each alone; the thermometer, which all of them read, with the one beside it, so that it is there once.
+std::vector<std::vector<std::size_t>> channel_groups(std::size_t channels,
+                                                     std::optional<std::size_t> thermometer) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const bool with_last = !groups.empty() && (c == thermometer || (c == 1 && thermometer == 0U));
+    if (with_last)
+      groups.back().push_back(c);
+    else
+      groups.push_back({c});
+  }
+  return groups;
+}
+
 class UnitMaker {
  public:
   UnitMaker(const FleetPlanOptions& options, const CostModel& cost, FleetPlan& plan)
       : options_(options), cost_(cost), plan_(plan) {}
 
   void add(const LookedAt& log, FleetUnit unit) {
-    if (!options_.by_channel || log.head.channels.size() < 2) return add_log(log, unit);
-    for (const Channel& channel : log.head.channels) {
+    const std::vector<Channel>& channels = log.head.channels;
+    const std::string& wanted = unit.options->temperature;
+    const auto thermometer = wanted.empty() ? std::nullopt : temperature_channel(log.head, wanted);
+    const auto groups = channel_groups(channels.size(), thermometer);
+    if (!options_.by_channel || groups.size() < 2) return add_log(log, unit);
+    const std::string settings = settings_id(*unit.options);
+    for (const std::vector<std::size_t>& group : groups) {
       FleetUnit one = unit;
-      CharacterizeOptions of_channel = *unit.options;
-      of_channel.reading.channels = {channel.name};
-      one.options = shared_.of(of_channel);
+      CharacterizeOptions of_group = *unit.options;
+      of_group.reading = options_of_channels(of_group.reading, channels, log.in_log, group);
+      if (thermometer) of_group.temperature = channels[*thermometer].name;  // a place is another
+      one.options = shared_.of(of_group);
+      if (settings_id(of_group) != settings) one.settings = settings;
       add_log(log, one);
     }
   }
@@ -331,7 +367,8 @@ FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress) {
   check_limits(manifest);
-  const std::vector<LookedAt> logs = look_at_all(manifest, progress);
+  if (options.by_channel) check_by_channel(manifest);
+  const std::vector<LookedAt> logs = look_at_all(manifest, options.by_channel, progress);
   if (!options.skip_unreadable) refuse_unreadable(manifest, logs);
   refuse_same_logs(manifest, logs);
   progress.update(-1, "measuring this machine");

@@ -186,7 +186,7 @@ DeviceRecord record_in(const FleetUnit& unit, const fs::path& folder, Attempt fo
     record.problem = one_line(found.problem);
     record.program = version();
   }
-  record.settings = settings_id(*unit.options);
+  record.settings = settings_id(unit);
   record.log = unit.log;
   record.sha256 = unit.sha256;
   return record;

@@ -27,6 +27,7 @@ Json content_of(const FleetUnit& unit) {
               {"sha256", unit.sha256},
               {"config", json_of(settings_of(*unit.options))},
               {"reports", unit.reports}};
+  if (!unit.settings.empty()) out["settings"] = unit.settings;
   if (unit.kind == UnitKind::stretch)
     out["leaves"] = {unit.stretch.first_leaf, unit.stretch.end_leaf};
   if (unit.kind == UnitKind::join) out["parts"] = unit.parts;
@@ -79,6 +80,10 @@ std::string settings_id(const CharacterizeOptions& options) {
   return id_of("settings 1\n", json_of(settings_of(alike)));
 }
 
+std::string settings_id(const FleetUnit& unit) {
+  return unit.settings.empty() ? settings_id(*unit.options) : unit.settings;
+}
+
 std::string unit_text(const FleetUnit& unit) {
   Json out = {{"format", kTaskFormat}, {"version", 1}, {"id", unit.id}, {"log", unit.log}};
   out["bytes"] = unit.bytes;
@@ -120,6 +125,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTabl
                       "parts",
                       "reports",
                       "config",
+                      "settings",
                       "cost"});
   FleetUnit unit;
   unit.id = at.text("id");
@@ -135,6 +141,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTabl
   CharacterizeOptions options;
   read_fields(characterize_fields(), at.map("config", keys_of(characterize_fields())), options);
   unit.options = shared.of(options);
+  unit.settings = at.text_or("settings", "");
   const MapReader cost = at.map("cost", {"seconds", "memory_bytes"});
   unit.cost = {cost.number("seconds", kNotNegative), cost.count("memory_bytes")};
   if (at.text("version_of_program") != version())

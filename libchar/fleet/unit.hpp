@@ -50,7 +50,8 @@ struct FleetUnit {
   bool stated = false;     ///< the digest is a claim of the manifest's: the plan did not take it
   std::uint64_t bytes = 0;
   SharedOptions options = std::make_shared<const CharacterizeOptions>();
-  StretchRange stretch;            ///< of a stretch
+  std::string settings;  ///< settings_id of the whole log, where lists of its channels were divided
+  StretchRange stretch;  ///< of a stretch
   std::vector<std::string> parts;  ///< of a join: the ids of its stretches
   bool reports = true;  ///< report.html, report.json, curves.csv and models besides the record
   UnitCost cost;
@@ -61,6 +62,8 @@ std::string unit_id(const FleetUnit& unit);
 
 /// SHA-256 over the settings, as short: whether two recordings were characterized alike.
 std::string settings_id(const CharacterizeOptions& options);
+/// The same of a unit: those of the whole log, also where it is of one channel.
+std::string settings_id(const FleetUnit& unit);
 
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).
 std::string unit_text(const FleetUnit& unit);

@@ -38,6 +38,43 @@ std::vector<std::string> chosen_by(const std::string& word,
 
 }  // namespace
 
+std::vector<std::string> names_in_log(const std::string& path, const ReadOptions& options) {
+  ReadOptions plain = options;
+  plain.names.clear();
+  plain.units.clear();
+  plain.channel_scale.clear();
+  plain.channel_unit.clear();
+  return names_in_head(path, plain);
+}
+
+ReadOptions options_of_channels(const ReadOptions& options,
+                                const std::vector<Channel>& all,
+                                const std::vector<std::string>& in_log,
+                                const std::vector<std::size_t>& some) {
+  ReadOptions out = options;
+  const auto fits = [&](const std::string& word, std::size_t c) {
+    return matches(word.substr(0, word.rfind('=')), all[c].name);
+  };
+  // A word that fits no channel at all stays, and is told as a slip.
+  const auto is_of_others = [&](const std::string& word) {
+    bool any = false;
+    for (std::size_t c = 0; c < all.size(); ++c) any |= fits(word, c);
+    return any &&
+           std::none_of(some.begin(), some.end(), [&](std::size_t c) { return fits(word, c); });
+  };
+  std::erase_if(out.channel_scale, is_of_others);
+  std::erase_if(out.channel_unit, is_of_others);
+  const auto pick = [&](const std::vector<std::string>& list) {
+    std::vector<std::string> picked;
+    for (const std::size_t c : some) picked.push_back(list[c]);
+    return picked;
+  };
+  out.channels = pick(in_log);
+  if (!options.names.empty()) out.names = pick(options.names);
+  if (options.units.size() > 1) out.units = pick(options.units);
+  return out;
+}
+
 std::vector<std::vector<std::string>> channel_names(const std::string& path,
                                                     const ReadOptions& options,
                                                     const std::vector<std::string>& words,

@@ -37,6 +37,26 @@ inline std::vector<std::string> write_logs(const std::filesystem::path& folder,
   return logs;
 }
 
+/// Rows of channels c0, c1… of float64 in numpy's format; noise, another one in each channel.
+inline std::string write_rows(const std::filesystem::path& path,
+                              std::size_t channels,
+                              std::size_t rows) {
+  std::string head = fmt::format(
+      "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, channels);
+  head.resize(117, ' ');
+  head += '\n';
+  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+  bytes += head;
+  Gaussian gauss(channels);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < rows; ++k)
+    for (std::size_t c = 0; c < channels; ++c)
+      values.push_back(static_cast<double>(c + 1) * gauss());
+  bytes.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
+  write_file(path, bytes);
+  return path.string();
+}
+
 /// One channel of float64 in numpy's format: a log that is divided.
 inline std::string write_long_log(const std::filesystem::path& path,
                                   std::uint64_t seed,

@@ -2,6 +2,7 @@
 
 #include "libchar/fleet/run_unit.hpp"
 
+#include <fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -73,6 +74,115 @@ TEST_CASE(
   const auto parts = merged_records(channels, folder / "C");
   REQUIRE(parts.size() == whole.size());
   for (std::size_t d = 0; d < whole.size(); ++d) CHECK(parts[d].channels == whole[d].channels);
+}
+
+TEST_CASE("channels that are units of their own are what the whole log says of them") {
+  const test::TemporaryFolder folder;
+  Manifest manifest;
+  const auto check = [&](const char* name, const std::vector<std::size_t>& units_of_devices) {
+    INFO(name);
+    FleetPlanOptions options;
+    options.reports = false;
+    const FleetPlan whole = plan_fleet(manifest, options);
+    options.by_channel = true;
+    const FleetPlan parts = plan_fleet(manifest, options);
+    std::vector<std::size_t> units(parts.devices.size());
+    for (const FleetUnit& unit : parts.units) ++units[unit.device];
+    CHECK(units == units_of_devices);
+    test::run_all(whole, folder / "W");
+    test::run_all(parts, folder / "P");
+    const auto expected = merged_records(whole, folder / "W"),
+               found = merged_records(parts, folder / "P");
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t d = 0; d < found.size(); ++d) {
+      REQUIRE(found[d].problem.empty());
+      CHECK(found[d].channels == expected[d].channels);
+      CHECK(found[d].temperature_c == expected[d].temperature_c);
+      CHECK(found[d].settings == expected[d].settings);
+      CHECK(found[d].warnings == expected[d].warnings);
+    }
+  };
+  // Lists, an entry a channel: a unit has its own, and chooses by what the log says.
+  const std::string rows = test::write_rows(folder / "rows.npy", 3, 4000);
+  manifest = manifest_of_logs({rows});
+  ReadOptions& reading = manifest.options[0].reading;
+  reading.rate_hz = 100;
+  check("plain", {3});
+  reading.units = {"deg/s"};
+  check("a unit for all", {3});
+  reading.units = {"deg/s", "0.5 deg/s", "m/s^2"};
+  check("units", {3});
+  reading.names = {"gx", "c0", "ax"};
+  check("names and units", {3});
+  reading.units.clear();
+  reading.channel_unit = {"*=deg/s", "a*=m/s^2", "b=g"};
+  reading.channel_scale = {"gx=1/16.4"};
+  check("values by name", {3});
+  reading.channels = {"c1", "c2"};
+  reading.names = {"y", "z"};
+  check("of chosen channels", {2});
+  // Stretches.
+  const std::string most = test::write_rows(folder / "most.npy", 2, kLeafSamples + 1000);
+  FleetPlanOptions options;
+  options.split_bytes = 1 << 20U;
+  options.by_channel = true;
+  manifest = manifest_of_logs({most});
+  manifest.options[0].reading.names = {"a", "b"};
+  manifest.options[0].reading.rate_hz = 100;
+  const FleetPlan stretches = plan_fleet(manifest, options);
+  REQUIRE(stretches.units.size() == 4);
+  test::run_all(stretches, folder / "S");
+  const auto joined = merged_records(stretches, folder / "S");
+  REQUIRE(joined[0].problem.empty());
+  REQUIRE(joined[0].channels.size() == 2);
+  CHECK(joined[0].channels[1].name == "b");
+}
+
+TEST_CASE("a thermometer is read with each channel that is a unit, and is there once") {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> logs;
+  for (const std::size_t place : {0, 1, 2}) {
+    test::Gaussian gauss(place + 1);
+    std::vector<std::string> heads = {"gx[deg/s]", "gy[deg/s]"};
+    heads.insert(heads.begin() + static_cast<std::ptrdiff_t>(place), "temp[degC]");
+    std::string text = fmt::format("t[s],{}\n", fmt::join(heads, ","));
+    for (std::size_t k = 0; k < 2000; ++k) {
+      const double degrees = 20 + 1e-2 * static_cast<double>(k);
+      std::vector<double> values = {gauss() + degrees, gauss() - degrees};
+      values.insert(values.begin() + static_cast<std::ptrdiff_t>(place), degrees);
+      text += fmt::format("{:.2f},{:.6f}\n", 1e-2 * static_cast<double>(k), fmt::join(values, ","));
+    }
+    logs.push_back((folder / fmt::format("d{}.csv", place)).string());
+    test::write_file(logs.back(), text);
+  }
+  Manifest manifest = manifest_of_logs(logs);
+  manifest.options[0].temperature = "temp";
+  FleetPlanOptions options;
+  const FleetPlan whole = plan_fleet(manifest, options);
+  options.by_channel = true;
+  const FleetPlan parts = plan_fleet(manifest, options);
+  CHECK(parts.units.size() == 6);
+  test::run_all(whole, folder / "W");
+  test::run_all(parts, folder / "P");
+  const auto expected = merged_records(whole, folder / "W"),
+             found = merged_records(parts, folder / "P");
+  for (std::size_t d = 0; d < 3; ++d) {
+    REQUIRE(found[d].problem.empty());
+    REQUIRE(found[d].channels.size() == 3);
+    CHECK(found[d].channels == expected[d].channels);
+    CHECK(found[d].temperature_c == expected[d].temperature_c);
+    CHECK(found[d].settings == expected[d].settings);
+  }
+  manifest.options[0].reading.names = {"x", "y", "temp"};
+  CHECK_THROWS_WITH(plan_fleet(manifest, options),
+                    Contains("E0702") && Contains("no unit can be of one channel"));
+  // A place is one among the channels that are read.
+  manifest.options[0].reading.names.clear();
+  manifest.options[0].temperature = "c2";
+  manifest.devices.erase(manifest.devices.begin(), manifest.devices.begin() + 2);
+  const FleetPlan by_place = plan_fleet(manifest, options);
+  test::run_all(by_place, folder / "Q");
+  CHECK(merged_records(by_place, folder / "Q")[0].channels == expected[2].channels);
 }
 
 TEST_CASE("a damaged result counts as none, is named, and is computed again") {

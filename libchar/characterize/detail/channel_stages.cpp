@@ -81,13 +81,10 @@ void ChannelStages::block(const SampleBlock& samples) {
   });
 }
 
-// By the name that the channel has in the end, or by its place.
-void ChannelStages::find_temperature(const LogInfo& so_far) {
-  const auto& channels = so_far.channels;
-  const std::string& wanted = options_.temperature;
+std::optional<std::size_t> temperature_channel(const LogInfo& log, const std::string& wanted) {
   std::vector<std::string> names;
-  names.reserve(channels.size());
-  for (const Channel& channel : channels) names.push_back(channel.name);
+  names.reserve(log.channels.size());
+  for (const Channel& channel : log.channels) names.push_back(channel.name);
   auto found = std::find(names.begin(), names.end(), wanted);
   for (std::size_t c = 0; found == names.end() && c < names.size(); ++c)
     if (wanted == fmt::format("c{}", c)) found = names.begin() + static_cast<std::ptrdiff_t>(c);
@@ -97,12 +94,22 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
     if (found != names.end() && std::any_of(found + 1, names.end(), means_it))
       throw Error({ErrorKind::usage,
                    "E0702",
-                   so_far.file,
+                   log.file,
                    "several channels match this pattern, and one is the `temperature`",
                    wanted,
                    "`temperature` " + *found + " is the first of them"});
   }
-  if (found == names.end()) {
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void ChannelStages::find_temperature(const LogInfo& so_far) {
+  const auto& channels = so_far.channels;
+  const std::string& wanted = options_.temperature;
+  const auto found = temperature_channel(so_far, wanted);
+  if (!found) {
+    std::vector<std::string> names;
+    for (const Channel& channel : channels) names.push_back(channel.name);
     const auto near = nearest(wanted, names);
     throw Error({ErrorKind::usage,
                  "E0702",
@@ -111,14 +118,15 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
                  wanted,
                  did_you_mean(near, "it has " + first_names(names))});
   }
-  temperature_index_ = static_cast<std::size_t>(found - names.begin());
+  temperature_index_ = *found;
+  const std::string& name = channels[temperature_index_].name;
   const std::string& unit = channels[temperature_index_].unit;
   const auto known = find_unit(unit);
   if (known && known->quantity != Quantity::temperature)
     throw Error({ErrorKind::usage,
                  "E0702",
                  so_far.file,
-                 fmt::format("the channel {} is in {}, which is no temperature", *found, unit),
+                 fmt::format("the channel {} is in {}, which is no temperature", name, unit),
                  "",
                  "choose a channel in degC, K or degF, or one without a unit, which is taken for "
                  "degC"});
@@ -126,7 +134,7 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
     throw Error({ErrorKind::usage,
                  "E0702",
                  so_far.file,
-                 fmt::format("{} is the only channel: there is none that it could move", *found),
+                 fmt::format("{} is the only channel: there is none that it could move", name),
                  "",
                  ""});
   temperature_options_ = options_;
