@@ -134,7 +134,7 @@ Interval parse_range(std::string_view text, RangeOf what) {
 }
 
 std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {
-  std::string expected = "a size such as 4096, 64KiB, 4MiB or 2GB";
+  std::string expected = "a size such as 4096, 64KiB, 500kB, 4MiB or 2GB";
   if (lowest > 0) expected += fmt::format(", not below {} bytes", lowest);
   const double value = with_unit(text,
                                  {{"", 1},
@@ -147,6 +147,7 @@ std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {
                                   {"MiB", 1048576},
                                   {"GiB", 1073741824},
                                   {"kB", 1e3},
+                                  {"KB", 1e3},
                                   {"MB", 1e6},
                                   {"GB", 1e9}},
                                  expected);

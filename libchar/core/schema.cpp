@@ -42,13 +42,20 @@ std::string kind_name(Document::Kind kind) {
 }
 
 // What a text that should have been a number might have meant.
-std::string number_hint(const std::string& text) {
+std::string number_hint(std::string_view key, const std::string& text) {
   if (text.find(',') != std::string::npos) return "write the decimal mark as a point";
   if (text == ".inf" || text == ".nan" || text == "-.inf") return "it must be finite";
   if (!text.empty() && text[0] == '0') return "write it in decimal, without leading zeros";
   if (text.starts_with('.') || text.starts_with('+')) return "write a digit first, as in 0.5";
-  if (text.find(' ') != std::string::npos) return "the unit has a key of its own";
-  return "";
+  constexpr std::string_view kDigits = "0123456789";
+  const bool with_unit = !text.empty() && kDigits.find(text.back()) == std::string_view::npos &&
+                         kDigits.find(text[text[0] == '-' ? 1 : 0]) != std::string_view::npos;
+  if (!with_unit) return "";
+  constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+      {"_c", "°C"}, {"_hz", "Hz"}, {"_s", "s"}, {"_bytes", "bytes"}};
+  for (const auto& [ending, unit] : kUnits)
+    if (key.ends_with(ending)) return fmt::format("write the number alone: it is in {}", unit);
+  return "write the number alone: the unit has a key of its own";
 }
 
 template <class T>
@@ -115,7 +122,7 @@ double MapReader::checked(std::string_view key, const Document& value, NumberRan
          where(value),
          fmt::format("{}: expected a number, found {}", path_of(key), kind_name(value.kind)),
          value.text,
-         number_hint(value.text));
+         number_hint(key, value.text));
   const bool inside = value.number <= range.highest &&
                       (range.open_low ? value.number > range.lowest : value.number >= range.lowest);
   if (inside) return value.number;

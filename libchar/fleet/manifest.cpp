@@ -13,7 +13,10 @@
 #include "libchar/core/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file_text.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/schema.hpp"
+#include "libchar/core/spelling.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/core/utf8.hpp"
 #include "libchar/fleet/detail/manifest_path.hpp"
 #include "libchar/fleet/detail/table_text.hpp"
@@ -109,6 +112,28 @@ Manifest parse_tree(std::string_view text,
   return manifest;
 }
 
+/// Heads are keys, and wrong where they stand.
+void check_heads(const TableText& table, const std::string& path) {
+  if (table.heads.empty()) return;
+  Document head;
+  head.kind = Document::Kind::map;
+  head.line = table.head_line;
+  head.column = 1;
+  for (const std::string& one : table.heads) {
+    if (std::count(table.heads.begin(), table.heads.end(), one) > 1)
+      throw Error({ErrorKind::input,
+                   "E0781",
+                   fmt::format("{}:{}:1", path, table.head_line),
+                   "a column stands twice",
+                   one,
+                   ""});
+    Document value;
+    value.kind = Document::Kind::text;
+    head.map.push_back({one, head.line, 1, value});
+  }
+  MapReader(head, path, "columns", kDeviceKeys).require("log");
+}
+
 /// A cell of a table as a key of a document: what is empty is absent.
 Document cell_document(const std::string& key, const std::string& cell, int line, int column) {
   Document value;
@@ -128,6 +153,7 @@ Manifest parse_table(std::string_view text,
                      const std::string& path,
                      const CharacterizeOptions& options) {
   const TableText table = parse_table_text(text, path);
+  check_heads(table, path);
   const fs::path folder = folder_of_file(path);
   Manifest manifest;
   manifest.options.push_back(options);
@@ -153,11 +179,43 @@ Manifest parse_table(std::string_view text,
   return manifest;
 }
 
-bool is_table(const std::string& path) {
-  return fs::path(path).extension() == ".csv";
+std::string ending_of(const std::string& path) {
+  return ascii_lower(fs::path(path).extension().string());
 }
 
-/// A column `log`, and no other than those of a manifest unless there is a `device` beside it: then a slip is refused by its name.
+bool is_table(const std::string& path) {
+  return ending_of(path) == ".csv" || ending_of(path) == ".tsv";
+}
+
+/// No log is YAML, but what rosbag2 says of its own.
+bool is_yaml(const std::string& path) {
+  return (ending_of(path) == ".yaml" || ending_of(path) == ".yml") && !is_rosbag2(path);
+}
+
+/// In any case, and as slips are: that such a table is a manifest must not hang on a letter. "log" is too short for slips: lat, lon.
+bool is_head_of_log(const std::string& head) {
+  return head == "log" || head == "logs" || head == "logfile" || head == "log_file" ||
+         head == "log file";
+}
+
+bool is_head(const std::string& head, std::string_view key) {
+  return edit_distance(head, key) <= key.size() / 3;
+}
+
+/// Samples, and no paths.
+bool has_numbers_only(const std::string& text, const std::string& path) {
+  try {
+    const TableText table = parse_table_text(text, path, 1);
+    return !table.rows.empty() &&
+           std::all_of(table.rows[0].cells.begin(),
+                       table.rows[0].cells.end(),
+                       [](const std::string& cell) { return parse_double(cell).has_value(); });
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// A column of logs and one of devices; or one of them, and half of all heads are those of a manifest.
 bool has_manifest_heads(const std::string& text, const std::string& path) {
   std::vector<std::string> heads;
   try {
@@ -165,17 +223,21 @@ bool has_manifest_heads(const std::string& text, const std::string& path) {
   } catch (const Error&) {
     return false;
   }
-  const auto has = [&](const std::string& head) {
-    return std::find(heads.begin(), heads.end(), head) != heads.end();
-  };
-  const auto known = [](const std::string& head) {
-    return std::find(kDeviceKeys.begin(), kDeviceKeys.end(), head) != kDeviceKeys.end();
-  };
-  return has("log") && (has("device") || std::all_of(heads.begin(), heads.end(), known));
+  std::size_t logs = 0, devices = 0, known = 0;
+  for (const std::string& head : heads) {
+    const std::string one = ascii_lower(head);
+    logs += is_head_of_log(one);
+    devices += is_head(one, "device");
+    known += is_head_of_log(one) ||
+             std::any_of(kDeviceKeys.begin(), kDeviceKeys.end(), [&](const std::string& key) {
+               return key != "log" && is_head(one, key);
+             });
+  }
+  if (logs > 0 && devices > 0) return true;
+  return logs + devices > 0 && 2 * known >= heads.size() && !has_numbers_only(text, path);
 }
 
-/// What a pattern stands for, in order: a shell has no room for a hundred thousand names. A name of a file, and a pattern without any, are
-/// themselves.
+/// What a pattern stands for, in order: a shell has no room for a hundred thousand names. A name of a file is itself.
 std::vector<std::string> files_of_pattern(const std::string& word) {
   std::error_code ignored;
   if (word.find_first_of("*?[") == std::string::npos || fs::exists(word, ignored)) return {word};
@@ -184,7 +246,25 @@ std::vector<std::string> files_of_pattern(const std::string& word) {
   if (::glob(word.c_str(), 0, nullptr, &found) == 0)
     out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   ::globfree(&found);
-  return out.empty() ? std::vector<std::string>{word} : out;
+  if (out.empty())
+    throw Error({ErrorKind::input,
+                 "E0780",
+                 "",
+                 "no file matches this pattern",
+                 word,
+                 "patterns are relative to the folder that you are in"});
+  return out;
+}
+
+void refuse_manifest_among(const std::vector<std::string>& logs) {
+  const auto manifest = std::find_if(logs.begin(), logs.end(), is_manifest);
+  if (manifest == logs.end()) return;
+  throw Error({ErrorKind::usage,
+               "E0205",
+               *manifest,
+               "this is a manifest, and stands among logs",
+               "",
+               "name one manifest, or logs"});
 }
 
 void check_devices(const Manifest& manifest, const std::string& path) {
@@ -217,6 +297,7 @@ Manifest parse_manifest(std::string_view text,
                         const CharacterizeOptions& options) {
   Manifest manifest =
       is_table(path) ? parse_table(text, path, options) : parse_tree(text, path, options);
+  manifest.file = path;
   check_devices(manifest, path);
   return manifest;
 }
@@ -232,6 +313,7 @@ Manifest manifest_of_logs(const std::vector<std::string>& words,
     const std::vector<std::string> found = files_of_pattern(word);
     logs.insert(logs.end(), found.begin(), found.end());
   }
+  refuse_manifest_among(logs);
   Manifest manifest;
   manifest.options.push_back(options);
   std::map<std::string, int> names;
@@ -249,7 +331,9 @@ Manifest manifest_of_logs(const std::vector<std::string>& words,
 
 bool is_manifest(const std::string& path) {
   std::error_code ignored;
+  if (!fs::exists(path, ignored)) return is_yaml(path);  // and is refused as one
   if (!fs::is_regular_file(path, ignored)) return false;
+  if (is_yaml(path)) return true;
   const std::string head = file_text(path, 4096);
   return is_table(path) ? has_manifest_heads(head, path)
                         : head.find(kManifestFormat) != std::string::npos;

@@ -23,6 +23,7 @@ struct FleetDevice {
 };
 
 struct Manifest {
+  std::string file;                          ///< "": there is none, logs were named
   std::vector<FleetDevice> devices;          ///< in the order of the file
   std::vector<CharacterizeOptions> options;  ///< as many as differ
 };
@@ -31,17 +32,18 @@ struct Manifest {
 /// nearest valid key.
 Manifest read_manifest(const std::string& path, const CharacterizeOptions& options = {});
 
-/// The same from text that stands for a file at `path`; CSV where the path ends in .csv.
+/// The same from text that stands for a file at `path`; a table where the path ends in .csv or .tsv.
 Manifest parse_manifest(std::string_view text,
                         const std::string& path,
                         const CharacterizeOptions& options = {});
 
 /// Each log is a device of its own, called as its file is; by their folders too where two are alike. A word with * ? [ that is no file stands
-/// for the files that match.
+/// for the files that match. Throws Error(input) where none does, Error(usage) for a manifest among them.
 Manifest manifest_of_logs(const std::vector<std::string>& words,
                           const CharacterizeOptions& options = {});
 
-/// Does this file say `format: fleet-manifest`, or is it a table with a column `log`?
+/// What is meant as a manifest, right or not: YAML, a file that says `fleet-manifest`, a table with a column `log` or `device` in any case
+/// and spelling nearby that holds no samples.
 bool is_manifest(const std::string& path);
 
 }  // namespace libchar

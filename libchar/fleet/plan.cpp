@@ -54,6 +54,13 @@ bool is_without_rate(const LogInfo& head, const ReadOptions& options) {
 LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, bool by_channel) {
   LookedAt out;
   try {
+    if (read_once(device.log))
+      throw Error({ErrorKind::input,
+                   "E0103",
+                   device.log,
+                   "is not a regular file; logs of a fleet are read by workers, and again",
+                   "",
+                   "copy it to a file first"});
     out.head = read_log_head(device.log, options.reading);
     if (by_channel) out.in_log = names_in_log(device.log, options.reading);
     if (is_without_rate(out.head, options.reading)) known_rate_hz(out.head);
@@ -82,34 +89,85 @@ std::vector<LookedAt> look_at_all(const Manifest& manifest, bool by_channel, Pro
   return out;
 }
 
-void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& logs) {
+std::string hint_of_unreadable(const Manifest& manifest, bool any_left) {
+  const std::string mend =
+      manifest.file.empty() ? "name logs that can be read" : "mend the manifest";
+  return any_left ? mend + ", or plan the others with `skip_unreadable`" : mend;
+}
+
+/// All of them are refused even where they may be skipped: nothing would be left.
+void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& logs, bool skip) {
   constexpr std::size_t kNamed = 5;
   std::vector<std::string> said;
   std::size_t count = 0;
-  std::string where;
   for (std::size_t d = 0; d < logs.size(); ++d) {
     if (logs[d].problem.empty()) continue;
-    if (count++ == 0) where = manifest.devices[d].where;
-    if (said.size() < kNamed) said.push_back(logs[d].problem);
+    if (count++ >= kNamed) continue;
+    const std::string& where = manifest.devices[d].where;
+    said.push_back(manifest.file.empty() ? logs[d].problem
+                                         : fmt::format("{}: {}", where, logs[d].problem));
   }
-  if (count == 0) return;
+  const bool any_left = count < logs.size();
+  if (count == 0 || (skip && any_left)) return;
   throw Error({ErrorKind::input,
                "E0782",
-               where,
+               manifest.file,
                fmt::format("{} of {} logs cannot be read: {}{}",
                            count,
                            logs.size(),
                            fmt::join(said, "; "),
                            count > kNamed ? "; …" : ""),
                "",
-               "mend the manifest, or plan the others with `skip_unreadable`"});
+               hint_of_unreadable(manifest, any_left)});
 }
 
-/// Before hours of work, not behind them.
-void check_limits(const Manifest& manifest) {
-  std::set<std::string> files;
-  for (const FleetDevice& one : manifest.devices)
-    if (!one.limits.empty() && files.insert(one.limits).second) read_limits_file(one.limits);
+/// What a file of limits refuses, with the entry that names it.
+[[noreturn]] void refuse_limits(const FleetDevice& device, Problem problem) {
+  const std::string hint = std::exchange(problem.hint, "");
+  throw Error({problem.kind, problem.code, device.where, "limits: " + one_line(problem), "", hint});
+}
+
+/// Before hours of work, not behind them. By path.
+std::map<std::string, NoiseLimits> read_limits(const Manifest& manifest) {
+  std::map<std::string, NoiseLimits> files;
+  for (const FleetDevice& one : manifest.devices) {
+    if (one.limits.empty() || files.contains(one.limits)) continue;
+    try {
+      files.emplace(one.limits, read_limits_file(one.limits));
+    } catch (const Error& error) {
+      refuse_limits(one, error.problem());
+    }
+  }
+  return files;
+}
+
+/// Limits are those of a type, and name channels that any of its devices may have: as they are held against the lot in the end.
+void check_limits(const Manifest& manifest,
+                  const std::vector<LookedAt>& logs,
+                  const std::map<std::string, NoiseLimits>& limits) {
+  std::map<std::string, std::vector<NamedChannel>> channels;
+  std::map<std::string, std::size_t> first;  // entry that names the limits of a type
+  std::set<std::pair<std::string, std::string>> known;
+  std::set<std::string> unsure;
+  for (std::size_t d = 0; d < logs.size(); ++d) {
+    const FleetDevice& one = manifest.devices[d];
+    if (!one.limits.empty()) first.emplace(one.type, d);
+    // Of increments and phases the values have other units than the samples.
+    if (!logs[d].problem.empty() || manifest.options[one.options].data != SampleKind::rate)
+      unsure.insert(one.type);
+    for (const Channel& channel : logs[d].head.channels)
+      if (known.emplace(one.type, channel.name).second)
+        channels[one.type].push_back({channel.name, channel.unit});
+  }
+  for (const auto& [type, d] : first) {
+    if (unsure.contains(type)) continue;
+    const FleetDevice& one = manifest.devices[d];
+    try {
+      limits_for(limits.at(one.limits), channels[type]);
+    } catch (const Error& error) {
+      refuse_limits(one, error.problem());
+    }
+  }
 }
 
 /// Nothing is counted twice.
@@ -309,13 +367,21 @@ class PlanReader {
 
  private:
   void take_head(std::string_view line) {
-    const Document head = parse_json_document(line, path_);
+    const Document head = parsed_head(line);
     check_format(head, path_, kPlanFormat, 1);
     const MapReader at(head, path_, "", {"format", "version", "devices", "units", "sha256"});
     sha256_ = at.text("sha256");
     devices_ = at.count("devices");
     units_ = at.count("units");
     head_ = true;
+  }
+
+  Document parsed_head(std::string_view line) const {
+    try {
+      return parse_json_document(line, path_);
+    } catch (const Error&) {
+      refuse_plan(file_, "its first line is cut, or that of no plan");
+    }
   }
 
   void take_entry(std::string_view line) {
@@ -366,10 +432,11 @@ std::optional<FleetUnit> unit_of_plan(const std::string& file) {
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress) {
-  check_limits(manifest);
+  const auto limits = read_limits(manifest);
   if (options.by_channel) check_by_channel(manifest);
   const std::vector<LookedAt> logs = look_at_all(manifest, options.by_channel, progress);
-  if (!options.skip_unreadable) refuse_unreadable(manifest, logs);
+  refuse_unreadable(manifest, logs, options.skip_unreadable);
+  check_limits(manifest, logs, limits);
   refuse_same_logs(manifest, logs);
   progress.update(-1, "measuring this machine");
   const CostModel cost = measured_cost();
@@ -407,7 +474,42 @@ std::string task_file(std::size_t unit) {
   return fmt::format("tasks/{:06}.json", unit + 1);
 }
 
+std::optional<ReplacedPlan> plan_in(const fs::path& folder) {
+  const fs::path file = folder / kPlanFile;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  constexpr std::size_t kMostHead = 4096;
+  const std::string text = file_text(file.string(), kMostHead);
+  // Damaged ones are replaced as others are; beside tasks it was one.
+  const std::string begin = fmt::format(R"({{"format":"{}")", kPlanFormat);
+  if (!text.starts_with(begin) && !fs::exists(folder / task_file(0), ignored))
+    throw Error({ErrorKind::input,
+                 "E0784",
+                 file.string(),
+                 "this file is no plan of a fleet, and would be overwritten",
+                 "",
+                 "move it away, or plan into another folder"});
+  ReplacedPlan out;
+  try {
+    const Document head = parse_json_document(text.substr(0, text.find('\n')), file.string());
+    if (const DocumentEntry* devices = head.find("devices"))
+      out.devices = static_cast<std::uint64_t>(devices->value.number);
+  } catch (const Error&) {
+    out.damaged = true;
+  }
+  return out;
+}
+
+std::size_t results_of_others(const FleetPlan& plan, const fs::path& folder) {
+  std::set<std::string_view> ids;
+  for (const FleetUnit& unit : plan.units) ids.insert(unit.id);
+  const std::vector<std::string> there = published(folder);
+  return static_cast<std::size_t>(std::count_if(
+      there.begin(), there.end(), [&](const std::string& id) { return !ids.contains(id); }));
+}
+
 void write_plan(const FleetPlan& plan, const fs::path& folder) {
+  plan_in(folder);  // refuses what is none
   make_fleet_folder(folder / "tasks");
   std::string text;
   for (const PlannedDevice& one : plan.devices)

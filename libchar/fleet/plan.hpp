@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -50,6 +51,18 @@ struct FleetPlan {
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress = no_progress());
+
+/// What a new plan in a folder takes the place of.
+struct ReplacedPlan {
+  std::uint64_t devices = 0;
+  bool damaged = false;
+};
+
+/// None: there is no plan. Throws Error(input) for a plan.jsonl that is no plan of a fleet, which would be lost.
+std::optional<ReplacedPlan> plan_in(const std::filesystem::path& folder);
+
+/// Results in the folder that are of no unit of the plan.
+std::size_t results_of_others(const FleetPlan& plan, const std::filesystem::path& folder);
 
 /// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that stands there is replaced; results stay, and
 /// those of units that are still the same are used. Throws Error(output).

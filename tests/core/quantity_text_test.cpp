@@ -112,6 +112,7 @@ TEST_CASE("typed durations, rates and sizes have their units") {
   CHECK(parse_bytes("64k") == 65536);
   CHECK(parse_bytes("64KiB") == 65536);
   CHECK(parse_bytes("64kB") == 64000);
+  CHECK(parse_bytes("64KB") == 64000);
   CHECK(parse_bytes("4MiB") == 4194304);
   CHECK(parse_bytes("4M") == 4194304);
   CHECK(parse_bytes("4MB") == 4000000);

@@ -64,6 +64,30 @@ TEST_CASE("a table is a manifest too: commas or semicolons, quotes, empty cells,
   CHECK(m.devices[1].batch.empty());
 }
 
+TEST_CASE("tables are separated by tabs too, and their quotation marks are doubled") {
+  const Manifest m = parse_manifest(
+      "device\tlog\ttype\nA, 1\ta.csv\t\n \"A \"\"1\"\", x\" \t\"C:\\b.csv\"\t5\" gauge\n",
+      "/fleet/line7.tsv");
+  REQUIRE(m.devices.size() == 2);
+  CHECK(m.devices[0].device == "A, 1");
+  CHECK(m.devices[1].device == "A \"1\", x");
+  CHECK(m.devices[1].log == "/fleet/C:\\b.csv");
+  CHECK(m.devices[1].type == "5\" gauge");
+  const Manifest commas =
+      parse_manifest("\"device\",log\n\"A \"\"1\"\", x\",a.csv\n\"\"\"\",b.csv\n", "/t.CSV");
+  CHECK(commas.devices[0].device == "A \"1\", x");
+  CHECK(commas.devices[1].device == "\"");
+}
+
+TEST_CASE("heads of a table are refused where they stand") {
+  CHECK_THAT(refusal("# line 7\nDevice,Log\nA,a.csv\n", "t.csv"),
+             Contains("t.csv:2:1") && Contains("Device") && Contains("did you mean device?"));
+  CHECK_THAT(refusal("device\tfile\nA\ta.csv\n", "t.tsv"),
+             Contains("t.tsv:1:1") && Contains("file") && Contains("device, log, type"));
+  CHECK_THAT(refusal("device,batch\nA,b\n", "t.csv"),
+             Contains("t.csv:1:1") && Contains("columns.log is missing"));
+}
+
 TEST_CASE("what is wrong with a manifest is said with its place") {
   CHECK_THAT(refusal("format: scene\nversion: 1\n"), Contains("fleet-manifest"));
   CHECK_THAT(refusal(kHead + "devices:\n  - {device: A, lgo: a.csv}\n"),
@@ -76,10 +100,15 @@ TEST_CASE("what is wrong with a manifest is said with its place") {
              Contains("rate"));
   CHECK_THAT(refusal("device,log\nA,a.csv,3\n", "t.csv"),
              Contains("t.csv:2:1: error E0781: 3 cells under 2 heads"));
-  CHECK_THAT(refusal("device,log,log\n", "t.csv"), Contains("stands twice"));
+  CHECK_THAT(refusal("device,log,log\n", "t.csv"),
+             Contains("t.csv:1:1") && Contains("stands twice"));
   CHECK_THAT(refusal("device,log\nA,\xE4.csv\n", "t.csv"),
              Contains("UTF-8") && Contains("t.csv:2"));
   CHECK_THAT(refusal("device,log\n\"A,a.csv\n", "t.csv"), Contains("not closed"));
+  CHECK_THAT(refusal("device,log,temperature_c\nA,a.csv,25 °C\n", "t.csv"),
+             Contains("write the number alone: it is in °C"));
+  CHECK_THAT(refusal("- {device: A, log: a.csv}\n"),
+             Contains("a fleet-manifest file begins with \"format: fleet-manifest\""));
   CHECK_THAT(refusal("device,log,temperature_c\nA,a.csv,warm\n", "t.csv"), Contains("t.csv:2"));
 }
 
@@ -97,7 +126,11 @@ TEST_CASE("a pattern that no shell has taken apart stands for its files, in orde
   const Manifest m = manifest_of_logs({pattern});
   REQUIRE(m.devices.size() == 3);
   for (std::size_t k = 0; k < 3; ++k) CHECK(m.devices[k].log == logs[k]);
-  CHECK(manifest_of_logs({(folder / "e*.csv").string()}).devices.size() == 1);
+  CHECK_THROWS_WITH(manifest_of_logs({logs[0], (folder / "e*.csv").string()}),
+                    Contains("no file matches this pattern") && Contains("e*.csv"));
+  test::write_file(folder / "m.yaml", kHead + "devices: [{log: d0.csv}]\n");
+  CHECK_THROWS_WITH(manifest_of_logs({logs[0], (folder / "m.yaml").string()}),
+                    Contains("E0205") && Contains("m.yaml") && Contains("one manifest, or logs"));
 }
 
 TEST_CASE("which tables are manifests, and which are logs") {
@@ -109,8 +142,26 @@ TEST_CASE("which tables are manifests, and which are logs") {
   CHECK(is("log\na.csv\n"));
   CHECK(is("device;log;batch\nA;a.csv;b\n"));
   CHECK(is("# line 7\n\"device\",\"log\",temprature\nA,a.csv,3\n"));
+  CHECK(is("Device,Log\nA,a.csv\n"));
+  CHECK(is("device,file\nA,a.csv\n"));
+  CHECK(is("DEVICE\tLOGS\tBatch\nA\ta.csv\tb\n"));
+  CHECK(is("device,log,log\nA,a.csv,b.csv\n"));
+  CHECK(is("device,lgo\nA,a.csv\n"));
+  CHECK(is("devices,log,type\nA,a.csv\n"));
+  CHECK_FALSE(is("t,log\n0,1\n"));
+  CHECK_FALSE(is("time,lat,lon\n2026-11-25T10:00:00,48.1,11.6\n"));
+  CHECK_FALSE(is("timestamp,device,x,y,z\n0,phone,1,2,3\n"));
   CHECK_FALSE(is("t,logger\n0,1\n"));
   CHECK_FALSE(is("t,x,log\n0,1,2\n"));
   CHECK_FALSE(is("0.1,0.2\n0.3,0.4\n"));
   CHECK_FALSE(is(""));
+  const auto named = [&](const std::string& name, const std::string& text) {
+    test::write_file(folder / name, text);
+    return is_manifest((folder / name).string());
+  };
+  CHECK(named("list.yaml", "- {device: A, log: a.csv}\n"));
+  CHECK(named("empty.YML", ""));
+  CHECK(is_manifest((folder / "absent.yaml").string()));
+  CHECK(named("line.tsv", "device\tlog\nA\ta.csv\n"));
+  CHECK_FALSE(named("metadata.yaml", "rosbag2_bagfile_information:\n  version: 4\n"));
 }

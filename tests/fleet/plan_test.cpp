@@ -2,6 +2,8 @@
 
 #include "libchar/fleet/plan.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
@@ -132,7 +134,87 @@ TEST_CASE("limits that cannot be read are told before the work") {
   const test::TemporaryFolder folder;
   Manifest manifest = manifest_of_logs(test::write_logs(folder.path(), 2));
   manifest.devices[1].limits = (folder / "sheet.yaml").string();
-  CHECK_THROWS_WITH(plan_fleet(manifest, {}), Contains("sheet.yaml"));
+  manifest.devices[1].where = "line7.yaml:7:5";
+  CHECK_THROWS_WITH(plan_fleet(manifest, {}), Contains("sheet.yaml") && Contains("line7.yaml:7:5"));
+}
+
+TEST_CASE("limits that fit no channel are told before the work, with the entry of the manifest") {
+  const test::TemporaryFolder folder;
+  Manifest manifest = manifest_of_logs(test::write_logs(folder.path(), 2));
+  const auto planned_with = [&](const std::string& block) {
+    test::write_file(folder / "sheet.yaml",
+                     "format: noise-limits\nversion: 1\nlimits:\n  - " + block + "\n");
+    manifest.devices[1].limits = (folder / "sheet.yaml").string();
+    manifest.devices[1].where = "line7.yaml:7:5";
+    return plan_fleet(manifest, {});
+  };
+  CHECK_NOTHROW(planned_with("{channels: [gy], white_noise: {value: 5, unit: deg/√h}}"));
+  CHECK_THROWS_WITH(planned_with("{channels: [gq], white_noise: {value: 5, unit: deg/√h}}"),
+                    Contains("line7.yaml:7:5") && Contains("sheet.yaml:4") && Contains("gq"));
+  CHECK_THROWS_WITH(planned_with("{channels: [gy], white_noise: {value: 5, unit: m/s/√h}}"),
+                    Contains("line7.yaml:7:5") && Contains("m/s/√h"));
+  CHECK_THROWS_WITH(planned_with("{kind: acceleration, white_noise: {value: 5, unit: m/s/√h}}"),
+                    Contains("acceleration"));
+  // A channel that only the other device of its type has.
+  test::write_file(folder / "d0.csv", "t[s],ax[m/s^2]\n0,1\n0.01,2\n0.02,3\n");
+  CHECK_NOTHROW(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"));
+  manifest.devices[0].type = "other";
+  CHECK_THROWS_WITH(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"),
+                    Contains("ax"));
+  // Angles: their rates are known once they are read.
+  manifest.options[0].data = SampleKind::phase;
+  CHECK_NOTHROW(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"));
+}
+
+TEST_CASE("what a plan replaces is known, and what is no plan is not overwritten") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 3);
+  CHECK_FALSE(plan_in(folder / "F"));
+  const FleetPlan plan = test::planned(logs);
+  write_plan(plan, folder / "F");
+  REQUIRE(plan_in(folder / "F"));
+  CHECK(plan_in(folder / "F")->devices == 3);
+  test::run_all(plan, folder / "F");
+  CHECK(results_of_others(plan, folder / "F") == 0);
+  CHECK(results_of_others(test::planned({logs[1]}), folder / "F") == 2);
+  const std::string file = (folder / "F" / "plan.jsonl").string();
+  const std::string text = test::slurp(file);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{60}}) {
+    test::write_file(file, text.substr(0, size));
+    CHECK(plan_in(folder / "F")->damaged);
+    CHECK_THROWS_WITH(read_plan(folder / "F"), Contains("E0784") && Contains("fleet plan"));
+    CHECK_NOTHROW(write_plan(plan, folder / "F"));
+  }
+  std::filesystem::create_directory(folder / "G");
+  test::write_file(folder / "G" / "plan.jsonl", "{\"project\": 1}\n");
+  CHECK_THROWS_WITH(
+      write_plan(plan, folder / "G"),
+      Contains("E0784") && Contains("no plan of a fleet") && Contains("move it away"));
+  CHECK(test::slurp(folder / "G" / "plan.jsonl") == "{\"project\": 1}\n");
+  CHECK_FALSE(std::filesystem::exists(folder / "G" / "tasks"));
+}
+
+TEST_CASE("logs that cannot be read are named with their entries, and no fleet is left of none") {
+  const test::TemporaryFolder folder;
+  test::write_logs(folder.path(), 1);
+  std::string text = "device,log\nA,d0.csv\n";
+  for (int k = 1; k < 8; ++k) text += fmt::format("D{},gone{}.csv\n", k, k);
+  test::write_file(folder / "m.csv", text);
+  const std::string path = (folder / "m.csv").string();
+  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), {}),
+                    Contains("7 of 8 logs") && Contains("m.csv:3:1: ") && Contains("m.csv:7:1: ") &&
+                        !Contains("m.csv:8:1: ") && Contains("mend the manifest, or plan"));
+  FleetPlanOptions skip;
+  skip.skip_unreadable = true;
+  CHECK(plan_fleet(read_manifest(path), skip).units.size() == 1);
+  test::write_file(folder / "m.csv", "device,log\nA,gone.csv\n");
+  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), skip),
+                    Contains("1 of 1 logs") && !Contains("skip_unreadable"));
+  CHECK_THROWS_WITH(test::planned({(folder / "gone.csv").string()}),
+                    Contains("name logs that can be read") && !Contains("manifest"));
+  REQUIRE(::mkfifo((folder / "pipe.csv").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(test::planned({(folder / "pipe.csv").string()}),
+                    Contains("is not a regular file"));
 }
 
 TEST_CASE("a plan that is cut, or is none, is refused") {

@@ -43,25 +43,64 @@ Manifest manifest_of(const PlanVerb& verb, const CharacterizeOptions& options, T
   return manifest;
 }
 
+/// Of logs that are skipped: the first few, each with its entry.
+std::string unreadable_text(const Manifest& manifest, const FleetPlan& plan) {
+  constexpr std::size_t kNamed = 5;
+  std::string lines;
+  std::size_t count = 0;
+  for (std::size_t d = 0; d < plan.devices.size(); ++d) {
+    const std::string& problem = plan.devices[d].problem;
+    if (problem.empty() || count++ >= kNamed) continue;
+    lines += fmt::format("  {}{}\n",
+                         manifest.file.empty() ? "" : printable(manifest.devices[d].where) + ": ",
+                         printable(problem));
+  }
+  if (count == 0) return "";
+  return fmt::format("{} cannot be read; the report says why:\n", plural(count, "log")) + lines +
+         (count > kNamed ? fmt::format("  and {} more\n", count - kNamed) : "");
+}
+
+Json unreadable_json(const Manifest& manifest, const FleetPlan& plan) {
+  Json out = Json::array();
+  for (std::size_t d = 0; d < plan.devices.size(); ++d)
+    if (!plan.devices[d].problem.empty())
+      out.push_back({{"where", manifest.devices[d].where},
+                     {"log", plan.devices[d].log},
+                     {"problem", plan.devices[d].problem}});
+  return out;
+}
+
+/// A plan of something else in a folder that was named by mistake is noticed.
+std::string replaced_text(const ReplacedPlan& replaced, std::size_t others) {
+  std::string text = replaced.damaged ? std::string("replaces a plan that is damaged")
+                                      : "replaces a plan of " + plural(replaced.devices, "device");
+  if (others > 0)
+    text += fmt::format("; {} there {} of no unit of this one",
+                        plural(others, "result"),
+                        others == 1 ? "is" : "are");
+  return text + "\n";
+}
+
 void run_plan(Session& session, PlanVerb verb) {
   const CharacterizeOptions options = finish(verb.analysis);
   verb.plan.reports = !verb.no_reports;
+  const auto replaced = plan_in(verb.folder);
   const Manifest manifest = manifest_of(verb, options, session.terminal);
   const FleetPlan plan = plan_fleet(manifest, verb.plan, session.terminal);
   for (const auto& [log, warnings] : plan.warned) report_warnings(session, warnings, log);
   if (session.strict && !plan.warned.empty()) return;  // nothing is written
+  const std::size_t others = replaced ? results_of_others(plan, verb.folder) : 0;
   write_plan(plan, verb.folder);
   session.wrote = true;
   const FleetStatus status = fleet_status(plan, verb.folder, session.terminal);
   session.terminal.clear();
-  std::size_t skipped = 0, stated = 0;
+  std::size_t stated = 0;
   for (const FleetDevice& one : manifest.devices) stated += one.sha256.empty() ? 0 : 1;
-  for (const PlannedDevice& one : plan.devices) skipped += one.problem.empty() ? 0 : 1;
   if (verb.json) {
     Json document = document_head(session, "fleet-planned", {});
     document["folder"] = verb.folder;
     document["devices"] = plan.devices.size();
-    document["unreadable"] = skipped;
+    document["unreadable"] = unreadable_json(manifest, plan);
     document["stated"] = stated;
     document["units"] = plan.units.size();
     document["undivided"] = Json::array();
@@ -69,6 +108,8 @@ void run_plan(Session& session, PlanVerb verb) {
       document["undivided"].push_back({{"why", why}, {"devices", devices.size()}});
     document["done"] = status.done;
     document["seconds"] = status.seconds_left;
+    if (replaced)
+      document["replaces"] = {{"devices", replaced->devices}, {"other_results", others}};
     return print(dump_json(document));
   }
   std::string text = fmt::format(
@@ -81,8 +122,8 @@ void run_plan(Session& session, PlanVerb verb) {
   if (stated > 0)
     text +=
         fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
-  if (skipped > 0)
-    text += fmt::format("{} cannot be read; the report says why\n", plural(skipped, "log"));
+  text += unreadable_text(manifest, plan);
+  if (replaced) text += replaced_text(*replaced, others);
   for (const auto& [why, devices] : plan.undivided)
     text +=
         fmt::format("{} larger than {} stays one unit: {}\n",

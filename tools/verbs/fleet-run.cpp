@@ -49,7 +49,9 @@ void add_fleet(const std::string& folder, std::vector<Work>& work, Counts& count
 }
 
 void add_work(const std::string& input, std::vector<Work>& work, Counts& counts) {
-  if (fs::is_directory(input)) return add_fleet(input, work, counts);
+  // What is not there is no task either, but by its name.
+  const bool task = fs::exists(input) || fs::path(input).extension() == ".json";
+  if (fs::is_directory(input) || !task) return add_fleet(input, work, counts);
   FleetUnit unit = read_task(input);
   work.push_back({std::move(unit), fleet_of_task(input)});
 }

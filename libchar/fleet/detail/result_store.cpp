@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <functional>
 #include <system_error>
 
 #include "libchar/characterize/stretches.hpp"
@@ -89,6 +90,18 @@ std::string checked_text(const fs::path& file, std::size_t most) {
   text.erase(0, kDigits + 1);
   if (digest_of(text) != digest) damaged(file, "its content is not that of its digest");
   return text;
+}
+
+std::vector<std::string> folders_of_results(
+    const fs::path& fleet, const std::function<bool(const std::string& name)>& wanted) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  for (const auto& group : fs::directory_iterator(fleet / "results", ignored))
+    for (const auto& entry : fs::directory_iterator(group.path(), ignored))
+      if (std::string name = entry.path().filename().string(); wanted(name))
+        out.push_back(std::move(name));
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 }  // namespace
@@ -181,15 +194,13 @@ bool has_result(const fs::path& fleet, const std::string& id, bool of_stretch) {
   }
 }
 
+std::vector<std::string> published(const fs::path& fleet) {
+  return folders_of_results(fleet, [](const std::string& name) { return name[0] != '.'; });
+}
+
 std::vector<std::string> unpublished(const fs::path& fleet) {
-  std::vector<std::string> out;
-  std::error_code ignored;
-  for (const auto& group : fs::directory_iterator(fleet / "results", ignored))
-    for (const auto& entry : fs::directory_iterator(group.path(), ignored))
-      if (entry.path().filename().string().starts_with(kWorking))
-        out.push_back(entry.path().filename().string());
-  std::sort(out.begin(), out.end());
-  return out;
+  return folders_of_results(fleet,
+                            [](const std::string& name) { return name.starts_with(kWorking); });
 }
 
 }  // namespace libchar

@@ -55,6 +55,9 @@ std::vector<std::string> stored_states(const std::filesystem::path& fleet, const
 /// Whether there is a whole result; a damaged one is none.
 bool has_result(const std::filesystem::path& fleet, const std::string& id, bool of_stretch);
 
+/// The units that have a folder of results, whole or damaged.
+std::vector<std::string> published(const std::filesystem::path& fleet);
+
 /// Folders that workers are filling, or were when they were killed.
 std::vector<std::string> unpublished(const std::filesystem::path& fleet);
 

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/tokenizer.hpp>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 
 namespace libchar {
 namespace {
-
-using Separator = boost::escaped_list_separator<char>;
 
 std::string trimmed(const std::string& cell) {
   const std::size_t first = cell.find_first_not_of(" \t");
@@ -22,18 +20,37 @@ std::string trimmed(const std::string& cell) {
   throw Error({ErrorKind::input, "E0781", fmt::format("{}:{}:1", path, line), what, "", ""});
 }
 
+/// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC 4180). No other character escapes: a path
+/// may hold backslashes.
 std::vector<std::string> cells_of(const std::string& line,
                                   char separator,
                                   const std::string& path,
                                   int number) {
-  if (std::count(line.begin(), line.end(), '"') % 2 != 0)
-    refuse(path, number, "a quotation mark is not closed in its line");
   std::vector<std::string> cells;
-  // No escape character: a path may hold backslashes.
-  for (const std::string& cell :
-       boost::tokenizer<Separator>(line, Separator("", std::string(1, separator), "\"")))
-    cells.push_back(trimmed(cell));
+  std::string cell;
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool mark = line[i] == '"';
+    if (quoted && mark && i + 1 < line.size() && line[i + 1] == '"')
+      cell += line[i++];
+    else if (quoted && mark)
+      quoted = false;
+    else if (!quoted && mark && trimmed(cell).empty())
+      quoted = true;
+    else if (!quoted && line[i] == separator)
+      cells.push_back(trimmed(std::exchange(cell, "")));
+    else
+      cell += line[i];
+  }
+  if (quoted) refuse(path, number, "a quotation mark is not closed in its line");
+  cells.push_back(trimmed(cell));
   return cells;
+}
+
+char separator_of(const std::string& head) {
+  for (const char separator : {',', ';', '\t'})
+    if (head.find(separator) != std::string::npos) return separator;
+  return ',';
 }
 
 }  // namespace
@@ -50,15 +67,11 @@ TableText parse_table_text(std::string_view text, const std::string& path, std::
     ++number;
     if (line.ends_with('\r')) line.pop_back();
     if (line.find_first_not_of(" \t,;") == std::string::npos || line[0] == '#') continue;
-    if (table.heads.empty() && line.find(',') == std::string::npos &&
-        line.find(';') != std::string::npos)
-      separator = ';';
+    if (table.heads.empty()) separator = separator_of(line);
     std::vector<std::string> cells = cells_of(line, separator, path, number);
     if (table.heads.empty()) {
       table.heads = std::move(cells);
-      for (const std::string& head : table.heads)
-        if (std::count(table.heads.begin(), table.heads.end(), head) > 1)
-          refuse(path, number, fmt::format("the column {} stands twice", head));
+      table.head_line = number;
       continue;
     }
     if (cells.size() != table.heads.size())

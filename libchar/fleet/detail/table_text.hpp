@@ -16,11 +16,12 @@ struct TableRow {
 
 struct TableText {
   std::vector<std::string> heads;
+  int head_line = 0;
   std::vector<TableRow> rows;
 };
 
-/// Separated by commas, or by semicolons where the first line has no comma; cells may be quoted; empty lines and those that begin with #
-/// are left out. Throws Error(input) for a row of another number of cells, a head that stands twice, a quote that is never closed.
+/// Separated by commas, or where the head has none by semicolons, or by tabs; cells may be quoted; empty lines and those that begin with #
+/// are left out. Throws Error(input) for a row of another number of cells, a quote that is never closed.
 /// Nothing behind `most_rows` rows is looked at.
 TableText parse_table_text(std::string_view text,
                            const std::string& path,
