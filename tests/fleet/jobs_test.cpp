@@ -3,7 +3,9 @@
 #include "libchar/fleet/jobs.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "tests/fleet/fleet_folder.hpp"
@@ -38,6 +40,17 @@ FleetStatus nothing_done(const FleetPlan& plan) {
   return status;
 }
 
+/// A program that writes down what it was called with.
+void write_program(const fs::path& path, const fs::path& calls) {
+  fs::create_directories(path.parent_path());
+  test::write_file(path, fmt::format("#!/bin/sh\necho \"$@\" >> '{}'\n", calls.string()));
+  fs::permissions(path, fs::perms::owner_all);
+}
+
+bool is_there(const std::string& command) {
+  return std::system(fmt::format("command -v {} > /dev/null 2>&1", command).c_str()) == 0;
+}
+
 }  // namespace
 
 TEST_CASE("every missing unit is in one job, joins come behind the jobs of their stretches") {
@@ -68,7 +81,6 @@ TEST_CASE("an export has a list of tasks for each job, and the engine's own file
   const FleetPlan plan = made_plan();
   JobOptions options;
   options.job_s = 5;
-  options.program = "/opt/sensor tools/sensorchar";
   const auto jobs = jobs_of(plan, nothing_done(plan), options);
   for (const Engine& engine : engines()) {
     export_jobs(jobs, engine, folder.path(), options);
@@ -86,6 +98,47 @@ TEST_CASE("an export has a list of tasks for each job, and the engine's own file
   const std::string slurm = test::slurp(folder / "fleet.slurm.sh");
   CHECK_THAT(slurm, Contains("--mem=151M") && Contains("--dependency=\"afterany$before\""));
   CHECK_THAT(test::slurp(folder / "fleet.slurm.element.sh"),
-             Contains("'/opt/sensor tools/sensorchar' fleet run --quiet --threads 1"));
+             Contains("sensorchar fleet run --quiet --threads 1"));
   CHECK_THAT(test::slurp(folder / "Snakefile"), Contains("\"mem_mb\": 151"));
+}
+
+TEST_CASE("workers call the program by a path with any letters, or by a command line") {
+  const test::TemporaryFolder folder;
+  const fs::path fleet = folder / "the fleet", calls = folder / "calls";
+  fs::create_directories(fleet / "tasks");
+  const FleetPlan plan = made_plan();
+  JobOptions options;
+  options.job_s = 100;
+  FleetStatus status;
+  status.missing = {5, 6};
+  const auto jobs = jobs_of(plan, status, options);
+  REQUIRE(jobs.size() == 1);
+  const std::string expected =
+      fmt::format("fleet run --quiet --threads 1 {} {}\n", task_file(5), task_file(6));
+  const fs::path program = folder / "my {} 'bin' $x" / "sensor{char}";
+  write_program(program, calls);
+  write_program(folder / "plain" / "sensorchar", calls);
+  const std::string line = fmt::format("env A=1 '{}'", (folder / "plain" / "sensorchar").string());
+  const std::string slurm =
+      fmt::format("cd '{}' && SLURM_ARRAY_TASK_ID=1 sh fleet.slurm.element.sh jobs/array-1.txt",
+                  fleet.string());
+  const std::map<std::string, std::string> starts = {
+      {"slurm", slurm},
+      {"parallel", fmt::format("sh '{}/fleet.parallel.sh' 2> /dev/null", fleet.string())},
+      {"snakemake",
+       fmt::format("cd '{}' && snakemake --cores 1 > log 2>&1 || cat log jobs/*.log",
+                   fleet.string())}};
+  for (const Engine& engine : engines()) {
+    if (engine.name != "slurm" && !is_there(engine.name)) continue;
+    for (const std::string& one : {program.string(), line}) {
+      INFO(engine.name << " " << one);
+      options.program = one;
+      export_jobs(jobs, engine, fleet, options);
+      fs::remove(calls);
+      CHECK(std::system(starts.at(engine.name).c_str()) == 0);
+      CHECK(test::slurp(calls) == expected);
+    }
+  }
+  options.program = "sensorchar\nrm";
+  CHECK_THROWS_WITH(export_jobs(jobs, engines()[0], fleet, options), Contains("of one line"));
 }

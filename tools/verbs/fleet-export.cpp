@@ -84,9 +84,11 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
       1,
       1000);
   options
-      .add_text("--program",
-                verb->jobs.program,
-                "the program as workers are to call it (default: sensorchar)")
+      .add_text(
+          "--program",
+          verb->jobs.program,
+          "the program on the workers: the path of one that is there, or a command line for a "
+          "shell (default: sensorchar)")
       .value_name("COMMAND");
   return [&session, verb] { run_export(session, *verb); };
 }

@@ -18,6 +18,16 @@ std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
                                        const std::filesystem::path& folder,
                                        const JobOptions& options);
 
+/// `options.program` as a shell takes it: the path of a program that is there is one word, whatever is in it, and leads there from any folder;
+/// all else is a command line ("apptainer exec x.sif sensorchar"). Throws Error(usage) for one of several lines.
+std::string command_of(const JobOptions& options);
+
+/// "sensorchar fleet run …" of the tasks in jobs/NAME.txt; `job`: NAME as the shell takes it.
+std::string run_job(const JobOptions& options, const std::string& job);
+
+/// A script that runs one job, by its name: what an engine would read in a command (braces, quotes) it does not see.
+OutputFile job_script(const std::filesystem::path& file, const JobOptions& options);
+
 /// Largest memory of jobs in MB, and the time limit of the longest in minutes, with what a worker may be slower.
 struct JobLimits {
   std::uint64_t memory_mb = 0, minutes = 0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "libchar/core/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
@@ -37,15 +36,14 @@ std::string element_script(const JobOptions& options) {
 # One element of an array: the jobs of a list, by the element's number. A job that fails (a worker killed, a full disk, exit code 75)
 # is put into the queue again, {0} times at most.
 job=$(sed -n "${{SLURM_ARRAY_TASK_ID}}p" "$1")
-{1} fleet run --quiet --threads 1 $(cat "jobs/$job.txt")
-code=$?
+{1}code=$?
 if [ "$code" -ne 0 ] && [ "$code" -ne 3 ] && [ "${{SLURM_RESTART_COUNT:-0}}" -lt {0} ]; then
   scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}" && sleep 60
 fi
 exit "$code"
 )",
       options.retries,
-      shell_word(options.program));
+      run_job(options, "$job"));
 }
 
 /// "id=$(sbatch …)" of an array, behind those in `after`.

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
-#include "libchar/core/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
 namespace {
+
+constexpr const char* kSnakemakeJob = "fleet.snakemake.job.sh";
 
 std::string python_list(const std::vector<std::string>& words) {
   std::string out = "[";
@@ -56,11 +57,11 @@ rule job:
         mem_mb=lambda wildcards: JOBS[wildcards.job]["mem_mb"],
         runtime=lambda wildcards: JOBS[wildcards.job]["runtime"],
     shell:
-        "{1} fleet run --quiet --threads 1 $(cat {{input.tasks}}) > {{log}} 2>&1"
+        "sh {1} {{wildcards.job}} > {{log}} 2>&1"
 )",
                       options.retries,
-                      shell_word(options.program));
-  return {{(folder / "Snakefile").string(), text}};
+                      kSnakemakeJob);
+  return {job_script(folder / kSnakemakeJob, options), {(folder / "Snakefile").string(), text}};
 }
 
 }  // namespace libchar

@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/shell_word.hpp"
+#include "libchar/fleet/engines/engine_files.hpp"
+
+namespace libchar {
+
+namespace fs = std::filesystem;
+
+std::string command_of(const JobOptions& options) {
+  const std::string& program = options.program;
+  const bool one_line = std::none_of(
+      program.begin(), program.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
+  if (program.find_first_not_of(" \t") == std::string::npos || !one_line)
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "`program`",
+                 "expected a program or a command of one line",
+                 program,
+                 ""});
+  std::error_code ignored;
+  // Without a slash a shell seeks it in its PATH, not here.
+  const bool path = program.find('/') != std::string::npos;
+  if (!path || !fs::is_regular_file(program, ignored)) return program;
+  return shell_word(fs::absolute(program).lexically_normal().string());
+}
+
+std::string run_job(const JobOptions& options, const std::string& job) {
+  return fmt::format(
+      "{} fleet run --quiet --threads 1 $(cat \"jobs/{}.txt\")\n", command_of(options), job);
+}
+
+OutputFile job_script(const fs::path& file, const JobOptions& options) {
+  return {file.string(),
+          "#!/bin/sh\n# Runs the units of one job, by its name.\n" + run_job(options, "$1")};
+}
+
+}  // namespace libchar
