@@ -32,7 +32,7 @@ const CLI::App& chosen(const CLI::App& app) {
 
 std::string full_name(const CLI::App& app) {
   const CLI::App& verb = chosen(app);
-  return &verb == &app ? app.get_name() : app.get_name() + " " + verb.get_name();
+  return &verb == &app ? app.get_name() : app.get_name() + " " + typed(verb.get_name());
 }
 
 std::vector<std::string> option_names(const CLI::App& verb) {
@@ -347,9 +347,10 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
   const bool is_verb = std::find(verbs.begin(), verbs.end(), command[at]) != verbs.end();
   if (seconds.empty() || is_verb) return command;
   const std::string second = command.size() > at + 1 ? command[at + 1] : "";
-  // The page of the whole program lists them.
-  if (second == "--help" || second == "-h" || (at == 2 && second.empty()))
-    return {command[0], "--help"};
+  const bool help = second == "--help" || second == "-h" || second == "help";
+  if (at == 1 && second == "help" && command.size() > 3)  // fleet help plan
+    return with_joined_verb({command[0], "help", command[1], command[3]}, verbs);
+  if (help || (at == 2 && second.empty())) return {command[0], "help", command[at]};
   if (std::find(seconds.begin(), seconds.end(), second) == seconds.end()) {
     const auto near = libchar::nearest(second, seconds);
     throw Error({ErrorKind::usage,
@@ -358,7 +359,7 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
                  fmt::format("which one? one of {}", fmt::join(seconds, ", ")),
                  second,
                  near ? fmt::format("did you mean {} {}?", command[at], *near)
-                      : fmt::format("sensorchar {} {} --help", command[at], seconds[0])});
+                      : fmt::format("sensorchar help {}", command[at])});
   }
   std::vector<std::string> joined = command;
   joined[at] = first + second;
@@ -432,7 +433,10 @@ std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv
     throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
   };
   try {
-    const std::vector<std::string> command = with_verb(*app_, argv);
+    std::vector<std::string> verbs;
+    for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
+      verbs.push_back(verb->get_name());
+    const std::vector<std::string> command = with_verb(*app_, with_joined_verb(argv, verbs));
     check_verb(*app_, command);
     std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
     app_->parse(last_first);

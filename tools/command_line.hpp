@@ -125,7 +125,7 @@ class VerbOptions {
 };
 
 /// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A first word alone, and one with a second
-/// that makes no verb, is refused with those that do; help of a first word is that of the program.
+/// that makes no verb, is refused with those that do; all that asks for help of a first word becomes "help fleet".
 std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
                                           const std::vector<std::string>& verbs);
 

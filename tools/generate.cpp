@@ -129,7 +129,8 @@ std::optional<std::string> generated(const ProgramUsage& program,
     if (command.size() == 2 || asked) return program_help(program, width);
     if (command.size() > 3)
       throw Error({ErrorKind::usage, "E0204", "help", "one argument too many", command[3], ""});
-    return verb_help(program, named_verb(program, command[2]), width);
+    std::string group = group_help(program, command[2], width);
+    return group.empty() ? verb_help(program, named_verb(program, command[2]), width) : group;
   }
   if (first == "--help" || first == "-h") return program_help(program, width);
   if (!asked) return std::nullopt;

@@ -80,13 +80,23 @@ std::string program_help(const ProgramUsage& program, std::size_t width) {
   std::string text = libchar::wrapped(program.what, width) + "\n\n";
   text += fmt::format("Usage: {} VERB [OPTION…] …\n\nVerbs:\n", program.name);
   std::vector<HelpRow> rows;
-  for (const VerbUsage& verb : program.verbs) rows.push_back({verb.name, verb.what});
+  for (const VerbUsage& verb : program.verbs) rows.push_back({typed(verb.name), verb.what});
   rows.push_back({"help VERB", "what a verb does, its options with units and defaults, examples"});
   text += help_rows(rows, width) + "\nOptions:\n";
   rows.clear();
   for (const OptionUsage& option : program.options)
     rows.push_back({flags_and_value(option), option_text(option)});
   return text + help_rows(rows, width) + "\n" + program.footer + "\n";
+}
+
+std::string group_help(const ProgramUsage& program, const std::string& first, std::size_t width) {
+  std::vector<HelpRow> rows;
+  for (const VerbUsage& verb : program.verbs)
+    if (verb.name.starts_with(first + "-")) rows.push_back({typed(verb.name), verb.what});
+  if (rows.empty()) return "";
+  return fmt::format("Usage: {} {} VERB [OPTION…] …\n\nVerbs:\n", program.name, first) +
+         help_rows(rows, std::max(width, kNarrowest)) +
+         fmt::format("\nOptions and examples of a verb: {} help {}\n", program.name, rows[0].left);
 }
 
 std::string verb_help(const ProgramUsage& program, const VerbUsage& verb, std::size_t width) {

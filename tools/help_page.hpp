@@ -8,6 +8,8 @@
 namespace sensorchar {
 
 std::string program_help(const ProgramUsage& program, std::size_t width);
+/// Of verbs of two words, those with this first one ("fleet"); "" where there are none.
+std::string group_help(const ProgramUsage& program, const std::string& first, std::size_t width);
 std::string verb_help(const ProgramUsage& program, const VerbUsage& verb, std::size_t width);
 
 }  // namespace sensorchar

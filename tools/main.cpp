@@ -42,14 +42,13 @@ int main(int argc, char** argv) {
       line.add(verb, call.session);
       names.push_back(verb.name);
     }
-    call.session.command = with_joined_verb(call.session.command, names);
+    const std::vector<std::string> command = with_joined_verb(call.session.command, names);
     ProgramUsage usage = line.usage();
     usage.released = SENSORCHAR_RELEASED;
-    const auto page =
-        generated(usage, call.session.command, columns_of_stdout().value_or(kPageColumns));
+    const auto page = generated(usage, command, columns_of_stdout().value_or(kPageColumns));
     if (page) return print(*page);
     for (const VerbUsage& verb : usage.verbs)
-      if (call.session.command.size() > 1 && verb.name == call.session.command[1])
+      if (command.size() > 1 && verb.name == command[1])
         for (const OptionUsage& option : verb.options)
           call.session.flags.insert(option.flags.begin(), option.flags.end());
     set_memory_hint(call.session);

@@ -113,7 +113,7 @@ std::string program_man_page(const ProgramUsage& program) {
       "and what to do.");
   page += ".SH VERBS\n";
   for (const VerbUsage& verb : program.verbs)
-    page += tagged("\\fB" + roff(verb.name) + "\\fP",
+    page += tagged("\\fB" + roff(typed(verb.name)) + "\\fP",
                    roff(verb.what) + "; see " + bold(program.name + "-" + verb.name) + "(1)");
   page += ".SH OPTIONS\n";
   for (const OptionUsage& option : program.options) page += option_entry(option);
@@ -134,8 +134,8 @@ std::string program_man_page(const ProgramUsage& program) {
 
 std::string verb_man_page(const ProgramUsage& program, const VerbUsage& verb) {
   std::string page = head(program, program.name + "-" + verb.name, verb.what);
-  page +=
-      ".SH SYNOPSIS\n" + bold(program.name + " " + verb.name) + " [" + italic("OPTION") + "]...";
+  page += ".SH SYNOPSIS\n" + bold(program.name + " " + typed(verb.name)) + " [" + italic("OPTION") +
+          "]...";
   for (const OptionUsage& argument : verb.arguments) {
     std::string word = italic(argument.name);
     if (argument.repeatable && !argument.name.ends_with("…")) word += "...";

@@ -6,8 +6,14 @@
 
 namespace sensorchar {
 
+std::string typed(const std::string& verb) {
+  std::string words = verb;
+  if (const std::size_t hyphen = words.find('-'); hyphen != std::string::npos) words[hyphen] = ' ';
+  return words;
+}
+
 std::string synopsis(const ProgramUsage& program, const VerbUsage& verb) {
-  std::string line = fmt::format("{} {} [OPTION…]", program.name, verb.name);
+  std::string line = fmt::format("{} {} [OPTION…]", program.name, typed(verb.name));
   for (const OptionUsage& argument : verb.arguments) {
     std::string word = argument.name;
     if (argument.repeatable && !word.ends_with("…")) word += "…";

@@ -35,6 +35,9 @@ struct ProgramUsage {
   std::vector<VerbUsage> verbs;
 };
 
+/// As it is typed: "fleet plan" for the verb "fleet-plan".
+std::string typed(const std::string& verb);
+
 /// "sensorchar fit [OPTION…] LOG|CURVE"
 std::string synopsis(const ProgramUsage& program, const VerbUsage& verb);
 

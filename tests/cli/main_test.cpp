@@ -175,9 +175,25 @@ TEST_CASE("a verb of two words: joined, listed where the second is missing, with
   CHECK_THAT(alone.err, Catch::Contains("plan, run, status, merge, export, compare"));
   CHECK_THAT(test::run({"fleet", "pln"}).err, Catch::Contains("did you mean fleet plan?"));
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"fleet", "--help"}, {"help", "fleet"}}) {
+       {std::vector<std::string>{"fleet", "--help"}, {"help", "fleet"}, {"fleet", "help"}}) {
     const test::Ran page = test::run(words);
     CHECK(page.code == 0);
-    CHECK_THAT(page.out, Catch::Contains("fleet-merge"));
+    CHECK_THAT(page.out,
+               Catch::Contains("Usage: sensorchar fleet VERB") && Catch::Contains("fleet merge") &&
+                   !Catch::Contains("inspect"));
   }
+  CHECK(test::run({"fleet", "help", "run"}).out == test::run({"fleet", "run", "--help"}).out);
+  // As it is typed: in usage, in hints, in documents.
+  CHECK_THAT(test::run({"--help"}).out, Catch::Contains("fleet merge"));
+  CHECK_THAT(test::run({"fleet", "run", "--help"}).out,
+             Catch::Contains("Usage: sensorchar fleet run ["));
+  CHECK_THAT(test::run({"fleet", "run"}).err,
+             Catch::Contains("sensorchar fleet run: error E0205") &&
+                 Catch::Contains("hint: sensorchar fleet run --help"));
+  const test::TemporaryFolder folder;
+  const std::string fleet = (folder / "F").string(), log = (folder / "a.csv").string();
+  std::ofstream(log) << "t[s],x\n0,1\n1,2\n2,1\n";
+  const test::Ran planned = test::run({"fleet", "plan", log, "-o", fleet, "--json"});
+  CHECK(planned.code == 0);
+  CHECK_THAT(planned.out, Catch::Contains("\"fleet\",\n    \"plan\","));
 }

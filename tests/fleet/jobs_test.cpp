@@ -139,6 +139,21 @@ TEST_CASE("workers call the program by a path with any letters, or by a command 
       CHECK(test::slurp(calls) == expected);
     }
   }
+  if (is_there("parallel")) {  // another machine begins in another folder
+    test::write_file(folder / "ssh",
+                     fmt::format("#!/bin/bash\nshift\n[ \"$1\" = -- ] && shift\ncd '{}'\nexec bash "
+                                 "-c \"$*\"\n",
+                                 folder.path().string()));
+    fs::permissions(folder / "ssh", fs::perms::owner_all);
+    export_jobs(jobs, engines()[2], fleet, options);
+    fs::remove(calls);
+    CHECK(std::system(fmt::format("PARALLEL_SSH='{}' sh '{}/fleet.parallel.sh' --sshlogin 1/worker "
+                                  "2> /dev/null",
+                                  (folder / "ssh").string(),
+                                  fleet.string())
+                          .c_str()) == 0);
+    CHECK(test::slurp(calls) == expected);
+  }
   options.program = "sensorchar\nrm";
   CHECK_THROWS_WITH(export_jobs(jobs, engines()[0], fleet, options), Contains("of one line"));
 }

@@ -72,6 +72,8 @@ struct Validator {
                      (keyword == "minItems" ? value.size() >= rule : value.size() <= rule)
                  ? ""
                  : at + ": has " + std::to_string(value.size()) + " items";
+    if (keyword == "minimum")
+      return !value.is_number() || value >= rule ? "" : at + ": is below " + rule.dump();
     if (keyword == "allOf") return all_fault(rule, value, at);
     if (keyword == "anyOf") return any_fault(rule, value, at);
     static const std::vector<std::string> kWords = {
