@@ -50,6 +50,9 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
     if (!records[r].problem.empty()) out.failed.push_back(r);
   out.types = fleet.types;
   out.batches = fleet.batches;
+  out.batch_of.resize(records.size());
+  for (const std::size_t r : out.order)
+    out.batch_of[r] = fleet.batch_of[fleet.sorted.device_of[r]];
   std::vector<Statistic> statistics = statistics_of(fleet);
   search_outliers(fleet, options.outlier_probability, statistics);
   mark_devices(fleet, statistics, out);
@@ -61,10 +64,6 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.verdict = fleet_verdict(out);
   return out;
-}
-
-std::string batch_title(const std::string& batch) {
-  return batch.empty() ? "no batch" : "batch " + batch;
 }
 
 }  // namespace libchar

@@ -18,6 +18,7 @@
 #include "libchar/characterize/lot_figures.hpp"
 #include "libchar/lot/capability.hpp"
 #include "libchar/lot/control_chart.hpp"
+#include "libchar/lot/device_batches.hpp"
 #include "libchar/lot/device_record.hpp"
 #include "libchar/lot/histogram.hpp"
 #include "libchar/lot/left_out.hpp"
@@ -147,6 +148,7 @@ struct FleetLot {
       order;  ///< recordings by type, batch, device and log; copies of one log are left out
   std::vector<std::size_t> failed;          ///< of these, those that could not be characterized
   std::vector<std::string> types, batches;  ///< in natural order
+  std::vector<std::size_t> batch_of;        ///< of each record, that of its device
   std::vector<QuantityLot> quantities;      ///< kinds first, channel by channel then
   std::vector<WorstDevice> worst;           ///< the worst first, at most as many as asked for
   std::size_t outlying = 0;                 ///< devices that stand out
@@ -156,10 +158,12 @@ struct FleetLot {
   std::string verdict;                             ///< a paragraph
 };
 
+/// Of a record, that of its device.
+inline const std::string& batch_of(const FleetLot& lot, std::size_t record) {
+  return lot.batches[lot.batch_of[record]];
+}
+
 /// Throws Error(usage) without any record, and as limits_for does.
 FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options = {});
-
-/// "batch 7", "no batch".
-std::string batch_title(const std::string& batch);
 
 }  // namespace libchar

@@ -129,7 +129,7 @@ void note_only(const Side& here, const Side& there, const std::string& name, Fle
       out.not_compared.push_back(
           fmt::format("{} in {}: only in {}.",
                       channel_title(std::get<1>(key), std::get<0>(key)),
-                      std::get<2>(key).empty() ? "no unit" : std::get<2>(key),
+                      unit_title(std::get<2>(key)),
                       name));
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 struct TableRow {
   const DeviceRecord* record = nullptr;
+  const std::string* batch = nullptr;  ///< of its device
   const RecordedChannel* channel = nullptr;
 };
 
@@ -51,11 +52,16 @@ TableColumn number_of(DeviceQuantity quantity,
   });
 }
 
-std::vector<TableRow> table_rows(std::span<const DeviceRecord> records,
-                                 std::span<const std::size_t> order) {
+/// In the unit of the value: the record has that of the logarithm where the quantity is compared as one.
+double absolute_sd(const RecordedValue& v) {
+  return in_logarithm(v.quantity) ? v.value * v.sd : v.sd;
+}
+
+std::vector<TableRow> table_rows(std::span<const DeviceRecord> records, const FleetLot& lot) {
   std::vector<TableRow> out;
-  for (const std::size_t r : order)
-    for (const RecordedChannel& c : records[r].channels) out.push_back({&records[r], &c});
+  for (const std::size_t r : lot.order)
+    for (const RecordedChannel& c : records[r].channels)
+      out.push_back({&records[r], &batch_of(lot, r), &c});
   return out;
 }
 
@@ -68,7 +74,7 @@ bool any_has(const std::vector<TableRow>& rows, DeviceQuantity quantity) {
 std::vector<TableColumn> table_columns(const std::vector<TableRow>& rows) {
   std::vector<TableColumn> out = {
       text("type", [](const TableRow& r) -> const std::string& { return r.record->type; }),
-      text("batch", [](const TableRow& r) -> const std::string& { return r.record->batch; }),
+      text("batch", [](const TableRow& r) -> const std::string& { return *r.batch; }),
       text("device", [](const TableRow& r) -> const std::string& { return r.record->device; }),
       text("log", [](const TableRow& r) -> const std::string& { return r.record->log; }),
       text("channel", [](const TableRow& r) -> const std::string& { return r.channel->name; }),
@@ -90,7 +96,7 @@ std::vector<TableColumn> table_columns(const std::vector<TableRow>& rows) {
     out.push_back(number_of(quantity, "_low95", [](const RecordedValue& v) { return v.ci95.low; }));
     out.push_back(
         number_of(quantity, "_high95", [](const RecordedValue& v) { return v.ci95.high; }));
-    out.push_back(number_of(quantity, "_sd", [](const RecordedValue& v) { return v.sd; }));
+    out.push_back(number_of(quantity, "_sd", absolute_sd));
     out.push_back(
         number_of(quantity, "_upper95", [](const RecordedValue& v) { return v.upper95; }));
   }
@@ -148,9 +154,9 @@ constexpr std::size_t kPiece = std::size_t{1} << 20U;
 }  // namespace
 
 void write_coefficients_csv(std::span<const DeviceRecord> records,
-                            std::span<const std::size_t> order,
+                            const FleetLot& lot,
                             const TakeBytes& take) {
-  const std::vector<TableRow> rows = table_rows(records, order);
+  const std::vector<TableRow> rows = table_rows(records, lot);
   const std::vector<TableColumn> columns = table_columns(rows);
   std::string piece;
   for (const TableColumn& c : columns) piece += (piece.empty() ? "" : ",") + c.name;
@@ -169,9 +175,9 @@ void write_coefficients_csv(std::span<const DeviceRecord> records,
 }
 
 void write_coefficients_npz(std::span<const DeviceRecord> records,
-                            std::span<const std::size_t> order,
+                            const FleetLot& lot,
                             const TakeBytes& take) {
-  const std::vector<TableRow> rows = table_rows(records, order);
+  const std::vector<TableRow> rows = table_rows(records, lot);
   NpzWriter out(take);
   for (const TableColumn& column : table_columns(rows))
     std::visit(NpzArrayOf{out, column.name, rows}, column.of);

@@ -6,21 +6,21 @@
 #include <span>
 #include <string_view>
 
-#include "libchar/lot/device_record.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 
 /// Gets a file piece by piece.
 using TakeBytes = std::function<void(std::string_view)>;
 
-/// `order`: which records, and in which order (FleetLot::order). What is not known is an empty cell.
+/// In the order of the lot. What is not known is an empty cell.
 void write_coefficients_csv(std::span<const DeviceRecord> records,
-                            std::span<const std::size_t> order,
+                            const FleetLot& lot,
                             const TakeBytes& take);
 
 /// The same columns; what is not known is NaN. The status of a quantity is a place in the array `status_words`.
 void write_coefficients_npz(std::span<const DeviceRecord> records,
-                            std::span<const std::size_t> order,
+                            const FleetLot& lot,
                             const TakeBytes& take);
 
 }  // namespace libchar

@@ -28,11 +28,12 @@ void add_figures(Json& out, const std::optional<LotFigures>& f) {
   out["spread_ci95"] = f ? interval_json(f->spread_ci95) : Json(nullptr);
 }
 
-Json device_json(const DeviceRecord& r) {
+Json device_json(const FleetReport& report, std::size_t recording) {
+  const DeviceRecord& r = report.records[recording];
   return {
       {"device", json_text(r.device)},
       {"type", json_text(r.type)},
-      {"batch", json_text(r.batch)},
+      {"batch", json_text(batch_of(*report.lot, recording))},
       {"report", r.report.empty() ? Json(nullptr) : Json(json_text(r.report + "/report.html"))}};
 }
 
@@ -205,7 +206,7 @@ Json fleet_json(const FleetReport& report) {
   }
   out["worst"] = Json::array();
   for (const WorstDevice& w : lot.worst) {
-    Json one = device_json(report.records[w.recording]);
+    Json one = device_json(report, w.recording);
     one["p"] = json_number(w.p);
     one["deviation"] = json_number(w.deviation);
     one["reasons"] = texts_json(w.reasons);

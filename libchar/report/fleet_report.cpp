@@ -74,7 +74,7 @@ std::string worst_table(const FleetReport& report, std::size_t first, std::size_
     out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                        device_link(r),
                        html_text(r.type),
-                       html_text(r.batch),
+                       html_text(batch_of(*report.lot, w.recording)),
                        reason_list(w.reasons));
   }
   return out + "</tbody></table></div>\n";
@@ -212,21 +212,17 @@ Json index_json(const FleetReport& report) {
   const auto place = [](const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) - words.begin();
   };
-  // A recording's batch need not be its device's.
-  std::vector<std::string> batches = lot.batches;
   Json device = Json::array(), type = Json::array(), batch = Json::array(), state = Json::array();
   for (const std::size_t r : lot.order) {
     const DeviceRecord& one = report.records[r];
     device.push_back(json_text(one.device));
     type.push_back(place(lot.types, one.type));
-    const auto b = place(batches, one.batch);
-    if (b == static_cast<std::ptrdiff_t>(batches.size())) batches.push_back(one.batch);
-    batch.push_back(b);
+    batch.push_back(lot.batch_of[r]);
     state.push_back((lot.stands_out[r] ? 1 : 0) + (lot.fails[r] ? 2 : 0) +
                     (one.problem.empty() ? 0 : 4));
   }
   return {{"types", texts_json(lot.types)},
-          {"batches", texts_json(batches)},
+          {"batches", texts_json(lot.batches)},
           {"report", reports_json(report.records, lot.order)},
           {"device", std::move(device)},
           {"type", std::move(type)},
@@ -237,11 +233,11 @@ Json index_json(const FleetReport& report) {
 /// A table is too large for memory.
 WrittenFile written_table(const FleetReport& report,
                           void (*write)(std::span<const DeviceRecord>,
-                                        std::span<const std::size_t>,
+                                        const FleetLot&,
                                         const TakeBytes&),
                           WholeFile& file) {
   Sha256 hash;
-  write(report.records, report.lot->order, [&](std::string_view piece) {
+  write(report.records, *report.lot, [&](std::string_view piece) {
     hash.update(piece);
     file.write(piece);
   });

@@ -244,7 +244,48 @@ TEST_CASE("units of one quantity are one channel, unlike ones are not compared")
   const FleetLot lot = fleet_lot(records);
   CHECK(find(lot, "gyro_x", DeviceQuantity::white_noise).counts.members == 199);
   REQUIRE(lot.notes.size() == 1);
-  CHECK_THAT(lot.notes[0], Contains("gyro_x of mems has 2 units"));
+  CHECK(lot.notes[0] ==
+        "gyro_x of mems has 2 units, deg/s (imu1, imu3, imu4 and 196 more), rad/s (imu2): compared "
+        "within each.");
+}
+
+TEST_CASE("channels without a unit are no kind of their own") {
+  auto records = test::made_lot({}, 14);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (RecordedChannel& c : records[i].channels) c.unit = "";
+  const FleetLot lot = fleet_lot(records);
+  for (const QuantityLot& q : lot.quantities)
+    CHECK((!q.of_kind || q.group == "angular_rate in deg/s"));
+  CHECK(find(lot, "angular_rate in deg/s", DeviceQuantity::white_noise).counts.members == 392);
+  REQUIRE(lot.notes.size() == 2);
+  CHECK(lot.notes[0] ==
+        "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
+        "and 193 more): compared within each.");
+}
+
+TEST_CASE("a device with recordings in two batches is of the first, and said so by name") {
+  auto records = test::made_lot({}, 18);
+  for (std::size_t i : {3, 11}) {
+    records.push_back(records[i]);
+    records.back().sha256 += "again";
+    records.back().log = "a/again.csv";  // before the others, if the batch did not count
+    records.back().batch = i == 3 ? "2" : "10";
+  }
+  for (std::size_t i = 20; i < 40; ++i) records[i].batch = "2";
+  records[5].batch = "";
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.devices == 200);
+  CHECK(lot.batches == std::vector<std::string>{"", "1", "2"});
+  CHECK(batch_of(lot, 200) == "1");
+  CHECK(batch_of(lot, 201) == "1");
+  CHECK(find(lot, "gyro_x", DeviceQuantity::white_noise).batches[1].counts.members == 179);
+  REQUIRE(lot.notes.size() == 1);
+  CHECK(lot.notes[0] ==
+        "2 devices have recordings in several batches, and count in the first of them: imu4 (batch "
+        "1, batch 2), imu12 (batch 1, batch 10).");
+  // What one recording does not state, another may.
+  records[11].batch = "";
+  CHECK(device_batches(records).batch[11] == "10");
 }
 
 TEST_CASE("devices are held against limits, and the lot's capability is that of its distribution") {

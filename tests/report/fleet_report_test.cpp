@@ -44,14 +44,14 @@ std::vector<DeviceRecord> two_batches(std::size_t each = 100) {
 std::string csv_of(const std::vector<DeviceRecord>& records) {
   std::string out;
   write_coefficients_csv(
-      records, fleet_lot(records).order, [&](std::string_view piece) { out += piece; });
+      records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
   return out;
 }
 
 std::string npz_of(const std::vector<DeviceRecord>& records) {
   std::string out;
   write_coefficients_npz(
-      records, fleet_lot(records).order, [&](std::string_view piece) { out += piece; });
+      records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
   return out;
 }
 
@@ -248,6 +248,30 @@ TEST_CASE("the table of coefficients holds every number to its last digit") {
           CHECK(row[status] == "detected");
         }
   CHECK(found == 78);
+}
+
+TEST_CASE("the tables give deviations in the unit of the value, and the batch of the device") {
+  auto records = two_batches(20);
+  DeviceRecord again = records[2];
+  again.log = "again.csv";
+  again.sha256 = "again";
+  again.batch = "2";
+  records.push_back(again);
+  const auto rows = cells_of(csv_of(records));
+  const std::size_t device = column_of(rows[0], "device"), batch = column_of(rows[0], "batch"),
+                    channel = column_of(rows[0], "channel"),
+                    white = column_of(rows[0], "white_noise_sd"),
+                    bias = column_of(rows[0], "turn_on_bias_sd");
+  std::size_t found = 0;
+  for (const auto& row : rows) {
+    if (row[device] != "imu3" || row[channel] != "gyro_x") continue;
+    ++found;
+    const auto& values = records[2].channels[0].values;
+    CHECK(parse_double(row[white]).value() == values[0].value * values[0].sd);
+    CHECK(parse_double(row[bias]).value() == values[3].sd);
+    CHECK(row[batch] == "1");
+  }
+  CHECK(found == 2);
 }
 
 TEST_CASE("what a name of a device would be in a spreadsheet is no formula") {

@@ -25,15 +25,13 @@ Fleet fleet_of(std::span<const DeviceRecord> records, const FleetLotOptions& opt
   out.sorted = sorted_records(records);
   out.groups = lot_groups(records, out.sorted);
   std::set<std::string> types, batches;
-  for (const std::size_t r : out.sorted.first) {
-    types.insert(records[r].type);
-    batches.insert(records[r].batch);
-  }
+  for (const std::size_t r : out.sorted.first) types.insert(records[r].type);
+  batches.insert(out.sorted.batch.begin(), out.sorted.batch.end());
   out.types = in_natural_order(types);
   out.batches = in_natural_order(batches);
   std::unordered_map<std::string, std::size_t> index;
   for (std::size_t b = 0; b < out.batches.size(); ++b) index[out.batches[b]] = b;
-  for (const std::size_t r : out.sorted.first) out.batch_of.push_back(index[records[r].batch]);
+  for (const std::string& batch : out.sorted.batch) out.batch_of.push_back(index[batch]);
   out.limits = group_limits(out.groups, out.types, options.limits);
   return out;
 }

@@ -12,6 +12,7 @@
 #include "libchar/core/pattern.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/lot/device_batches.hpp"
 
 namespace libchar {
 namespace {
@@ -24,10 +25,14 @@ int compared(const std::string& a, const std::string& b) {
   return comes_before(a, b) ? -1 : 1;
 }
 
-bool stands_before(const DeviceRecord& a, const DeviceRecord& b) {
-  for (const auto member : {&DeviceRecord::type,
+bool stands_before(const DeviceRecord& a,
+                   const std::string& batch_a,
+                   const DeviceRecord& b,
+                   const std::string& batch_b) {
+  if (const int way = compared(a.type, b.type); way != 0) return way < 0;
+  if (const int way = compared(batch_a, batch_b); way != 0) return way < 0;
+  for (const auto member : {&DeviceRecord::device,
                             &DeviceRecord::batch,
-                            &DeviceRecord::device,
                             &DeviceRecord::log,
                             &DeviceRecord::sha256,
                             &DeviceRecord::settings})
@@ -35,14 +40,14 @@ bool stands_before(const DeviceRecord& a, const DeviceRecord& b) {
   return false;
 }
 
-/// Canonical unit and kind of a unit as it is written.
+/// Canonical unit and kind of a unit as it is written. Without a unit nobody knows what two channels have in common: no kind.
 struct KnownUnit {
   std::string symbol, kind;
 };
 
 KnownUnit known_unit(const std::string& text) {
   const auto unit = find_unit(text);
-  if (!unit) return {text, text.empty() ? "no unit" : "in " + text};
+  if (!unit) return {text, text.empty() ? "" : "in " + text};
   return {unit->symbol, fmt::format("{} in {}", name_of(unit->quantity), unit->symbol)};
 }
 
@@ -98,6 +103,19 @@ class GroupTable {
   std::vector<LotGroup> groups_;
 };
 
+/// " (A01, A02, A03 and 9 more)"
+std::string named_devices(Records records, const SortedRecords& sorted, const LotGroup& group) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < std::min(kNamed, group.devices.size()); ++m)
+    names.push_back(records[sorted.first[group.devices[m]]].device);
+  return fmt::format(
+      " ({}{})",
+      fmt::join(names, ", "),
+      group.devices.size() > kNamed ? fmt::format(" and {} more", group.devices.size() - kNamed)
+                                    : "");
+}
+
 bool several_names(Records records, const LotGroup& kind) {
   const auto name = [&](const LotPlace& p) -> const std::string& {
     return records[p.recording].channels[p.channel].name;
@@ -116,26 +134,38 @@ std::string copies_note(std::size_t copies) {
 
 }  // namespace
 
+std::string unit_title(const std::string& channel_unit) {
+  return channel_unit.empty() ? "no unit" : channel_unit;
+}
+
 SortedRecords sorted_records(Records records) {
   SortedRecords out;
+  const DeviceBatches found = device_batches(records);
+  const auto batch = [&](std::size_t r) -> const std::string& {
+    return found.batch[found.device_of[r]];
+  };
   out.order.resize(records.size());
   std::iota(out.order.begin(), out.order.end(), std::size_t{0});
   std::stable_sort(out.order.begin(), out.order.end(), [&](std::size_t a, std::size_t b) {
-    return stands_before(records[a], records[b]);
+    return stands_before(records[a], batch(a), records[b], batch(b));
   });
   out.device_of.assign(records.size(), kNoDevice);
-  std::unordered_map<std::string, std::size_t> devices;
+  std::vector<std::size_t> number(found.batch.size(), kNoDevice);
   std::set<std::tuple<std::size_t, std::string, std::string>> logs;
   std::vector<std::size_t> kept;
   for (const std::size_t r : out.order) {
     const DeviceRecord& one = records[r];
-    const std::size_t device =
-        devices.try_emplace(one.type + '\0' + one.device, devices.size()).first->second;
+    std::size_t& device = number[found.device_of[r]];
+    if (device == kNoDevice) {
+      device = out.first.size();
+      out.first.push_back(r);
+      out.batch.push_back(batch(r));
+    }
     if (!one.sha256.empty() && !logs.emplace(device, one.sha256, one.settings).second) continue;
     out.device_of[r] = device;
-    if (device == out.first.size()) out.first.push_back(r);
     kept.push_back(r);
   }
+  if (!found.note.empty()) out.notes.push_back(found.note);
   if (kept.size() < out.order.size())
     out.notes.push_back(copies_note(out.order.size() - kept.size()));
   out.order = std::move(kept);
@@ -152,7 +182,8 @@ std::vector<LotGroup> lot_groups(Records records, const SortedRecords& sorted) {
       if (unit == units.end()) unit = units.emplace(channel.unit, known_unit(channel.unit)).first;
       const LotPlace place{static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c)};
       names.of(records[r].type, channel.name, unit->second.symbol).places.push_back(place);
-      kinds.of(records[r].type, unit->second.kind, unit->second.symbol).places.push_back(place);
+      if (!unit->second.kind.empty())
+        kinds.of(records[r].type, unit->second.kind, unit->second.symbol).places.push_back(place);
     }
   std::vector<LotGroup> out;
   for (LotGroup& kind : kinds.take())
@@ -169,16 +200,21 @@ std::vector<std::string> unlike_records(Records records,
                                         const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups) {
   std::vector<std::string> out;
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> units;
+  std::map<std::pair<std::string, std::string>, std::map<std::string, std::string>> units;
   for (const LotGroup& group : groups)
-    if (!group.of_kind) units[{group.type, group.name}].insert(group.channel_unit);
-  for (const auto& [channel, found] : units)
-    if (found.size() > 1)
-      out.push_back(fmt::format("{}{} has {} units ({}): compared within each.",
-                                channel.second,
-                                channel.first.empty() ? "" : " of " + channel.first,
-                                found.size(),
-                                fmt::join(found, ", ")));
+    if (!group.of_kind)
+      units[{group.type, group.name}][group.channel_unit] =
+          unit_title(group.channel_unit) + named_devices(records, sorted, group);
+  for (const auto& [channel, found] : units) {
+    if (found.size() < 2) continue;
+    std::vector<std::string> each;
+    for (const auto& [unit, text] : found) each.push_back(text);
+    out.push_back(fmt::format("{}{} has {} units, {}: compared within each.",
+                              channel.second,
+                              channel.first.empty() ? "" : " of " + channel.first,
+                              found.size(),
+                              fmt::join(each, ", ")));
+  }
   std::set<std::string> settings, programs;
   for (const std::size_t r : sorted.order) {
     if (!records[r].problem.empty()) continue;  // characterized with none

@@ -28,11 +28,15 @@ struct SortedRecords {
   std::vector<std::size_t> order;      ///< by type, batch, device, log, without copies
   std::vector<std::size_t> device_of;  ///< of each record; kNoDevice: a copy
   std::vector<std::size_t> first;      ///< recording of each device
+  std::vector<std::string> batch;      ///< of each device
   std::vector<std::string> notes;
 };
 inline constexpr std::size_t kNoDevice = static_cast<std::size_t>(-1);
 
 SortedRecords sorted_records(std::span<const DeviceRecord> records);
+
+/// The unit, or "no unit".
+std::string unit_title(const std::string& channel_unit);
 
 /// Channels of one type, name and unit; and, where a type has several of one kind and unit, all of them. Kinds first.
 std::vector<LotGroup> lot_groups(std::span<const DeviceRecord> records,

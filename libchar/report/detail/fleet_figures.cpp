@@ -97,8 +97,9 @@ std::string chart_of(const FleetReport& report, const QuantityLot& q, const std:
   }
   std::vector<ChartBound> bounds;
   for (std::size_t i = 1; i < q.charted.size(); ++i) {
-    const std::string& batch = report.records[q.charted[i]].batch;
-    if (batch != report.records[q.charted[i - 1]].batch) bounds.push_back({i, batch_title(batch)});
+    const std::size_t batch = report.lot->batch_of[q.charted[i]];
+    if (batch != report.lot->batch_of[q.charted[i - 1]])
+      bounds.push_back({i, batch_title(report.lot->batches[batch])});
   }
   // Of very many batches the bounds would be all that is seen.
   if (bounds.size() > 60) bounds.clear();
