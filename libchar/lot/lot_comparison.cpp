@@ -102,6 +102,14 @@ std::string channel_title(const std::string& channel, const std::string& type) {
   return type.empty() ? channel : channel + " of " + type;
 }
 
+/// "2 of 20 devices of march": of all that have the channel, whatever the quantity is found of.
+std::string known_text(const QuantityValues& values,
+                       const LotGroup& group,
+                       const std::string& name) {
+  return fmt::format(
+      "{} of {} devices of {}", values.counts.counted, group.devices.size(), name);
+}
+
 /// Counted in one and hardly in the other: no means to compare, which is a difference in itself.
 void note_detection(const Side& a,
                     std::size_t ga,
@@ -109,18 +117,18 @@ void note_detection(const Side& a,
                     std::size_t gb,
                     DeviceQuantity quantity,
                     FleetComparison& out) {
-  const LotCounts ca = values_of(a, ga, quantity).counts, cb = values_of(b, gb, quantity).counts;
-  if (ca.counted + cb.counted == 0) return;
-  out.not_compared.push_back(fmt::format(
-      "{} of {}: known of {} of {} devices of {} and of {} of {} devices of {}: too few for means.",
-      title_of(quantity),
-      channel_title(a.groups[ga].name, a.groups[ga].type),
-      ca.counted,
-      ca.members,
-      out.name_a,
-      cb.counted,
-      cb.members,
-      out.name_b));
+  const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
+  if (va.counts.counted + vb.counts.counted == 0) return;
+  const bool only_a = !effects_of(va) && effects_of(vb), only_b = effects_of(va) && !effects_of(vb);
+  out.not_compared.push_back(
+      fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
+                  title_of(quantity),
+                  channel_title(a.groups[ga].name, a.groups[ga].type),
+                  known_text(va, a.groups[ga], out.name_a),
+                  known_text(vb, b.groups[gb], out.name_b),
+                  only_a   ? " of " + out.name_a
+                  : only_b ? " of " + out.name_b
+                           : ""));
 }
 
 void note_only(const Side& here, const Side& there, const std::string& name, FleetComparison& out) {

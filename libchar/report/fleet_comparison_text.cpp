@@ -64,6 +64,14 @@ std::vector<std::string> comparison_row(const LotDifference& d) {
           differs};
 }
 
+/// Why a change whose interval leaves zero out need not differ.
+std::string corrected_note(const FleetComparison& c) {
+  return fmt::format(
+      "In brackets the 95 % interval of that change alone. Of {} some leave out zero by chance: "
+      "what differs is told by all of them together (Holm).",
+      plural(c.tests, "test"));
+}
+
 }  // namespace
 
 Json fleet_comparison_json(const FleetComparison& c,
@@ -83,6 +91,7 @@ Json fleet_comparison_json(const FleetComparison& c,
   out["not_compared"] = Json::array();
   for (const std::string& sentence : c.not_compared)
     out["not_compared"].push_back(json_text(sentence));
+  out["notes"] = texts_json(c.notes);
   return out;
 }
 
@@ -102,7 +111,9 @@ std::string fleet_comparison_text(const FleetComparison& c, std::size_t width) {
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
   if (rows.size() > 1) out += "\n" + text_table(rows, "  ", true, width);
-  if (!c.not_compared.empty()) out += "\n";
+  if (rows.size() > 1) out += "  " + corrected_note(c) + "\n";
+  if (!c.not_compared.empty() || !c.notes.empty()) out += "\n";
+  for (const std::string& sentence : c.notes) out += "  " + printable(sentence) + "\n";
   for (const std::string& sentence : c.not_compared) out += "  " + printable(sentence) + "\n";
   return out;
 }

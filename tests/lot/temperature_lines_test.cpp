@@ -156,3 +156,15 @@ TEST_CASE("two lots are compared by their slopes over temperature too") {
   CHECK(tc->mean_differs);
   CHECK(contains(tc->change_ci95, 2e-3));
 }
+
+TEST_CASE("devices without a slope are devices of their lot too, where slopes are too few") {
+  auto a = test::made_temperature_lot(of_devices(10), {}, 1).records;
+  test::MadeLot others = of_devices(10);
+  others.prefix = "other";
+  test::append(a, test::made_lot(others, 3));
+  const FleetComparison c = compare_lots(a, test::made_lot(of_devices(20), 2));
+  REQUIRE(!c.not_compared.empty());
+  CHECK_THAT(
+      c.not_compared[0],
+      Contains("known of 10 of 20 devices of A and of 0 of 20 devices of B: too few of B for means"));
+}

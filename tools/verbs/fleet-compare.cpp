@@ -10,6 +10,7 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
+#include "libchar/lot/device_batches.hpp"
 #include "libchar/report/fleet_comparison_text.hpp"
 #include "verb.hpp"
 
@@ -26,54 +27,101 @@ struct CompareFleetsVerb {
   bool json = false, force = false;
 };
 
-std::vector<DeviceRecord> records_of(const std::string& fleet, Session& session) {
-  return merged_records(read_plan(fleet), fleet, {true, {}}, session.terminal);
+[[noreturn]] void refuse_sides() {
+  throw Error({ErrorKind::usage,
+               "E0205",
+               "fleet compare",
+               "two fleets are compared, or two batches of one",
+               "",
+               "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW "
+               "(where a name has a comma: --batches OLD --batches NEW)"});
+}
+
+/// "OLD,NEW", or one a word.
+std::vector<std::string> batches_of(const std::vector<std::string>& words) {
+  if (words.size() != 1) return words;
+  std::vector<std::string> out(1);
+  for (const char c : words[0])
+    if (c == ',')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
+
+/// What is compared: records of both, and what is to be said of them.
+struct Sides {
+  std::vector<DeviceRecord> a, b;
+  CompareLotsOptions options;
+  std::vector<std::string> notes;
+};
+
+std::vector<DeviceRecord> records_of(const PlannedFleet& fleet, Session& session) {
+  return merged_records(fleet.plan, fleet.folder, {true, {}}, session.terminal);
+}
+
+Sides sides_of_fleets(Session& session, const std::vector<std::string>& folders) {
+  const std::vector<PlannedFleet> fleets = read_fleets(folders);
+  refuse_common_logs(fleets);
+  const bool in_order = fleets[0].folder == folders[0];
+  Sides out;
+  out.a = records_of(fleets[in_order ? 0 : 1], session);
+  out.b = records_of(fleets[in_order ? 1 : 0], session);
+  out.options.name_a = folders[0];
+  out.options.name_b = folders[1];
+  return out;
 }
 
 std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records,
+                                   const DeviceBatches& batches,
                                    const std::string& batch,
                                    const std::string& fleet) {
   std::vector<DeviceRecord> out;
-  std::set<std::string> batches;
-  for (const DeviceRecord& record : records) {
-    batches.insert(batch_title(record.batch));
-    if (record.batch == batch) out.push_back(record);
-  }
+  for (std::size_t r = 0; r < records.size(); ++r)
+    if (batches.batch[batches.device_of[r]] == batch) out.push_back(records[r]);
+  std::set<std::string> titles;
+  for (const std::string& one : batches.batch) titles.insert(batch_title(one));
   if (out.empty())
     throw Error({ErrorKind::usage,
                  "E0205",
                  fleet,
                  "no device is of this batch",
                  batch,
-                 fmt::format("it has {}", fmt::join(batches, ", "))});
+                 fmt::format("it has {}", fmt::join(titles, ", "))});
+  return out;
+}
+
+Sides sides_of_batches(Session& session,
+                       const std::string& folder,
+                       const std::vector<std::string>& names) {
+  if (names[0] == names[1])
+    throw Error({ErrorKind::usage,
+                 "E0205",
+                 "--batches",
+                 "a batch is compared with another one",
+                 names[0],
+                 "name two: its devices would count twice"});
+  const std::vector<DeviceRecord> records = records_of({folder, read_plan(folder)}, session);
+  const DeviceBatches batches = device_batches(records);
+  Sides out;
+  out.a = of_batch(records, batches, names[0], folder);
+  out.b = of_batch(records, batches, names[1], folder);
+  out.options.name_a = names[0];
+  out.options.name_b = names[1];
+  if (!batches.note.empty()) out.notes.push_back(batches.note);
   return out;
 }
 
 void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
+  const std::vector<std::string> batches = batches_of(verb.batches);
   const bool two = verb.fleets.size() == 2;
-  if (verb.fleets.size() > 2 || (two ? !verb.batches.empty() : verb.batches.size() != 2))
-    throw Error(
-        {ErrorKind::usage,
-         "E0205",
-         "fleet compare",
-         "two fleets are compared, or two batches of one",
-         "",
-         "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW"});
+  if (verb.fleets.size() > 2 || (two ? !batches.empty() : batches.size() != 2)) refuse_sides();
   foresee_output(verb.output, {}, verb.force);
-  std::vector<DeviceRecord> a = records_of(verb.fleets[0], session), b;
-  CompareLotsOptions options;
-  if (verb.false_alarm) options.false_alarm = *verb.false_alarm;
-  if (two) {
-    b = records_of(verb.fleets[1], session);
-    options.name_a = verb.fleets[0];
-    options.name_b = verb.fleets[1];
-  } else {
-    b = of_batch(a, verb.batches[1], verb.fleets[0]);
-    a = of_batch(a, verb.batches[0], verb.fleets[0]);
-    options.name_a = verb.batches[0];
-    options.name_b = verb.batches[1];
-  }
-  const FleetComparison comparison = compare_lots(a, b, options);
+  Sides sides = two ? sides_of_fleets(session, verb.fleets)
+                    : sides_of_batches(session, verb.fleets[0], batches);
+  if (verb.false_alarm) sides.options.false_alarm = *verb.false_alarm;
+  FleetComparison comparison = compare_lots(sides.a, sides.b, sides.options);
+  comparison.notes = std::move(sides.notes);
   session.terminal.clear();
   const std::string text = verb.json ? dump_json(fleet_comparison_json(comparison, session.command))
                                      : fleet_comparison_text(comparison, table_width());
@@ -85,8 +133,10 @@ std::function<void()> fleet_compare_options(VerbOptions& options, Session& sessi
   auto verb = std::make_shared<CompareFleetsVerb>();
   options.add_texts("DIR", verb->fleets, "folders of two fleets, or of one with --batches")
       .required();
-  options.add_texts("--batches", verb->batches, "two batches of one fleet (OLD,NEW)")
-      .separated_by_commas()
+  options
+      .add_texts("--batches",
+                 verb->batches,
+                 "two batches of one fleet (OLD,NEW; given twice where a name has a comma)")
       .one_value_each();
   options.add_number(
       "--false-alarm",
