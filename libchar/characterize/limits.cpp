@@ -42,13 +42,11 @@ std::string reason_of(const LimitJudgement& j) {
 std::string sentence_of(const LimitJudgement& j) {
   const std::string own = term_unit(kTermNames[static_cast<std::size_t>(j.term)].key, j.unit);
   const bool known = j.measured.value || j.measured.upper95;
-  return fmt::format("{} of {}: {}, allowed {} ({} {}): {}.",
+  return fmt::format("{} of {}: {}, allowed {}: {}.",
                      term_title(j.term),
                      j.channel,
                      known ? coefficient_text(j.measured) + " " + own : "no value",
-                     j.text,
-                     number_text(j.most),
-                     own,
+                     limit_text(j.text, j.most, own),
                      reason_of(j));
 }
 
@@ -88,6 +86,10 @@ std::string limits_verdict(const LimitReport& report) {
 }
 
 }  // namespace
+
+std::string limit_text(const std::string& text, double most, const std::string& unit) {
+  return fmt::format("{} ({} {})", text, number_text(most), unit);
+}
 
 std::size_t LimitReport::count(LimitStatus status) const {
   return static_cast<std::size_t>(

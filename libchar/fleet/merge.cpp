@@ -63,13 +63,31 @@ std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::p
                                    .string();
 }
 
+/// An id of each options that a plan has: units share them.
+class OptionIds {
+ public:
+  explicit OptionIds(std::string (*id)(const FleetUnit&)) : id_(id) {}
+  const std::string& of(const FleetUnit& unit) {
+    std::string& known = known_[unit.options.get()];
+    if (known.empty()) known = id_(unit);
+    return known;
+  }
+
+ private:
+  std::string (*id_)(const FleetUnit&);
+  std::unordered_map<const CharacterizeOptions*, std::string> known_;
+};
+
 /// Channels of one log that were units of their own stand together again.
 void add_result(const PlannedDevice& planned, const DeviceRecord& found, DeviceRecord& record) {
   // What a thermometer in the log says counts where the plan says nothing.
   if (!planned.temperature_c && found.temperature_c) record.temperature_c = found.temperature_c;
   record.program = found.program;
   record.settings = found.settings;
-  if (record.problem.empty()) record.problem = found.problem;
+  if (!found.problem.empty() && (record.problem.empty() || record.awaited)) {
+    record.problem = found.problem;
+    record.awaited = false;
+  }
   for (const std::string& warning : found.warnings)
     if (std::find(record.warnings.begin(), record.warnings.end(), warning) == record.warnings.end())
       record.warnings.push_back(warning);
@@ -135,17 +153,12 @@ std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders) {
 void refuse_common_logs(const std::vector<PlannedFleet>& fleets) {
   if (fleets.size() < 2) return;
   std::unordered_multimap<std::string, LogPart> known;
-  std::unordered_map<const CharacterizeOptions*, std::string> settings;
-  const auto settings_of_unit = [&](const FleetUnit& unit) {
-    std::string& id = settings[unit.options.get()];
-    if (id.empty()) id = settings_id(unit);
-    return id;
-  };
+  OptionIds settings(settings_id);
   for (std::size_t f = 0; f < fleets.size(); ++f)
     for (const FleetUnit& unit : fleets[f].plan.units) {
       if (unit.kind == UnitKind::stretch) continue;
       const LogPart part{f, unit.device, unit.options->reading.channels};
-      const std::string key = unit.sha256 + settings_of_unit(unit);
+      const std::string key = unit.sha256 + settings.of(unit);
       const auto [begin, end] = known.equal_range(key);
       for (auto at = begin; at != end; ++at)
         if (at->second.fleet != f && overlap(at->second.channels, part.channels))
@@ -164,6 +177,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     name_device(plan.devices[d], out[d]);
   }
   Missing missing;
+  OptionIds analyses(analysis_id);
   for (std::size_t k = 0; k < plan.units.size(); ++k) {
     const FleetUnit& unit = plan.units[k];
     if (unit.kind == UnitKind::stretch) continue;
@@ -179,12 +193,16 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     }
     if (!found) {
       missing.units.push_back(k);
-      if (record.problem.empty()) record.problem = kNotThere;
+      if (record.problem.empty()) {
+        record.problem = kNotThere;
+        record.awaited = true;
+      }
       continue;
     }
     if (record.channels.empty() && found->problem.empty())
       record.report = report_of(unit, folder, options.relative_to);
     add_result(plan.devices[unit.device], *found, record);
+    record.analysis = analyses.of(unit);
   }
   if (!options.partial) refuse_missing(plan, missing, folder);
   for (DeviceRecord& record : out) {

@@ -84,6 +84,13 @@ std::string settings_id(const FleetUnit& unit) {
   return unit.settings.empty() ? settings_id(*unit.options) : unit.settings;
 }
 
+std::string analysis_id(const FleetUnit& unit) {
+  CharacterizeOptions alike = *unit.options;
+  alike.reading = {};
+  if (!alike.temperature.empty()) alike.temperature = "a thermometer";
+  return id_of("analysis 1\n", json_of(settings_of(alike)));
+}
+
 std::string unit_text(const FleetUnit& unit) {
   Json out = {{"format", kTaskFormat}, {"version", 1}, {"id", unit.id}, {"log", unit.log}};
   out["bytes"] = unit.bytes;

@@ -65,6 +65,10 @@ std::string settings_id(const CharacterizeOptions& options);
 /// The same of a unit: those of the whole log, also where it is of one channel.
 std::string settings_id(const FleetUnit& unit);
 
+/// The same of what can make results differ that come from unlike logs. How a log is read (its names, units, rate, which rows) and which of
+/// its channels is the thermometer says what is in it, and is no way to characterize it.
+std::string analysis_id(const FleetUnit& unit);
+
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).
 std::string unit_text(const FleetUnit& unit);
 FleetUnit parse_unit(std::string_view text, const std::string& path);

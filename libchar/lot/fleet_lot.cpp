@@ -47,7 +47,8 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   out.devices = fleet.sorted.first.size();
   out.order = fleet.sorted.order;
   for (const std::size_t r : out.order)
-    if (!records[r].problem.empty()) out.failed.push_back(r);
+    if (!records[r].problem.empty())
+      (records[r].awaited ? out.awaited : out.failed).push_back(r);
   out.types = fleet.types;
   out.batches = fleet.batches;
   out.batch_of.resize(records.size());

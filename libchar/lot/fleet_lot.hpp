@@ -95,6 +95,7 @@ struct TemperatureRuns {
       0;  ///< devices whose recordings are all as far from it as that, at one temperature
   double repeatability =
       kNone;  ///< of the bias about the lines: the error of the slopes; NaN: no temperature was there twice
+  Interval repeatability_ci95;
   double dof = 0;  ///< by which it is known
   std::size_t in_one_recording =
       0;  ///< devices whose coefficient was found in a recording as well: not mixed in
@@ -147,6 +148,7 @@ struct FleetLot {
   std::vector<std::size_t>
       order;  ///< recordings by type, batch, device and log; copies of one log are left out
   std::vector<std::size_t> failed;          ///< of these, those that could not be characterized
+  std::vector<std::size_t> awaited;         ///< and those whose result is not there yet
   std::vector<std::string> types, batches;  ///< in natural order
   std::vector<std::size_t> batch_of;        ///< of each record, that of its device
   std::vector<QuantityLot> quantities;      ///< kinds first, channel by channel then

@@ -37,6 +37,17 @@ Json device_json(const FleetReport& report, std::size_t recording) {
       {"report", r.report.empty() ? Json(nullptr) : Json(json_text(r.report + "/report.html"))}};
 }
 
+Json problems_json(const FleetReport& report, const std::vector<std::size_t>& recordings) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < std::min(kMostFailed, recordings.size()); ++i) {
+    const DeviceRecord& r = report.records[recordings[i]];
+    out.push_back({{"device", json_text(r.device)},
+                   {"log", json_text(r.log)},
+                   {"problem", json_text(r.problem)}});
+  }
+  return out;
+}
+
 Json batches_json(const QuantityLot& q) {
   Json out = Json::array();
   for (const BatchLot& b : q.batches) {
@@ -100,6 +111,7 @@ Json temperatures_json(const FleetReport& report, const std::optional<Temperatur
           {"reference_c", json_number(t->reference_c)},
           {"elsewhere", t->elsewhere},
           {"repeatability", json_number(t->repeatability)},
+          {"repeatability_ci95", interval_json(t->repeatability_ci95)},
           {"degrees_of_freedom", t->dof},
           {"in_one_recording", t->in_one_recording},
           {"slopes", std::move(slopes)}};
@@ -197,13 +209,9 @@ Json fleet_json(const FleetReport& report) {
   out["outlying"] = lot.outlying;
   out["limits"] = {{"failing", lot.failing}, {"not_decided", lot.open}, {"keeping", lot.keeping}};
   out["failed_count"] = lot.failed.size();
-  out["failed"] = Json::array();
-  for (std::size_t i = 0; i < std::min(kMostFailed, lot.failed.size()); ++i) {
-    const DeviceRecord& r = report.records[lot.failed[i]];
-    out["failed"].push_back({{"device", json_text(r.device)},
-                             {"log", json_text(r.log)},
-                             {"problem", json_text(r.problem)}});
-  }
+  out["failed"] = problems_json(report, lot.failed);
+  out["awaited_count"] = lot.awaited.size();
+  out["awaited"] = problems_json(report, lot.awaited);
   out["worst"] = Json::array();
   for (const WorstDevice& w : lot.worst) {
     Json one = device_json(report, w.recording);

@@ -1,12 +1,13 @@
 // The list of all devices of a fleet: found by words, a page of a hundred at a time. What it shows comes from the data of the page: columns
-// of names, types, batches, states and folders of reports.
+// of names, what tells a device's recordings apart (null: one each), types, batches, states and folders of reports.
 reportPage.start({}, () => 320);
 (function () {
   "use strict";
   const data = reportPage.report, rows = document.querySelector("#devices tbody"), PAGE = 100;
   const search = document.getElementById("device-search"), chosen = document.getElementById("device-state"), place = document.getElementById("device-place");
-  const STATES = [[4, "not characterized"], [2, "fails a limit"], [1, "stands out"]];
-  const words = data.device.map((name, i) => (name + " " + data.types[data.type[i]] + " " + data.batches[data.batch[i]]).toLowerCase());
+  const STATES = [[4, "not characterized"], [8, "without a result yet"], [2, "fails a limit"], [1, "stands out"]];
+  const recording = (i) => (data.recording === null ? "" : data.recording[i]);
+  const words = data.device.map((name, i) => (name + " " + recording(i) + " " + data.types[data.type[i]] + " " + data.batches[data.batch[i]]).toLowerCase());
   let found = [], page = 0;
 
   // A relative address: no part of a folder's name is a scheme, a host, a query or a fragment.
@@ -31,6 +32,7 @@ reportPage.start({}, () => 320);
         link.textContent = data.device[i];
         first.append(link);
       } else first.textContent = data.device[i];
+      cell(row, recording(i));
       cell(row, data.types[data.type[i]]);
       cell(row, data.batches[data.batch[i]]);
       const state = STATES.filter(([bit]) => data.state[i] & bit).map(([, word]) => word).join(", ");

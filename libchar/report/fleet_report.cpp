@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/readable.hpp"
@@ -37,23 +38,32 @@ std::string facts(const FleetReport& report) {
          bullet_list(lot.notes, "cautions");
 }
 
-std::string failed_part(const FleetReport& report) {
-  const FleetLot& lot = *report.lot;
-  if (lot.failed.empty()) return "";
+std::string recordings_part(const FleetReport& report,
+                            const std::vector<std::size_t>& recordings,
+                            const std::string& title) {
+  if (recordings.empty()) return "";
   std::string rows =
       "<div class=\"wide\"><table class=\"many\">\n" + table_head({"Device", "Log", "Why"});
-  for (std::size_t i = 0; i < std::min(kFailedOnPage, lot.failed.size()); ++i) {
-    const DeviceRecord& r = report.records[lot.failed[i]];
+  for (std::size_t i = 0; i < std::min(kFailedOnPage, recordings.size()); ++i) {
+    const DeviceRecord& r = report.records[recordings[i]];
     rows += table_row({r.device, r.log, r.problem});
   }
   rows += "</tbody></table></div>\n";
-  if (lot.failed.size() > kFailedOnPage)
+  if (recordings.size() > kFailedOnPage)
     rows +=
         fmt::format("<p class=\"note\">And {} more: the list of devices below shows them.</p>\n",
-                    count_text(lot.failed.size() - kFailedOnPage));
-  return folded(fmt::format("{} could not be characterized",
-                            html_text(plural(lot.failed.size(), "recording"))),
-                rows);
+                    count_text(recordings.size() - kFailedOnPage));
+  return folded(html_text(title), rows);
+}
+
+std::string failed_part(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  return recordings_part(report,
+                         lot.failed,
+                         plural(lot.failed.size(), "recording") + " could not be characterized") +
+         recordings_part(report,
+                         lot.awaited,
+                         plural(lot.awaited.size(), "recording") + " without a result yet");
 }
 
 std::string reason_list(const std::vector<std::string>& reasons) {
@@ -155,17 +165,18 @@ std::string figures_part(const FleetReport& report) {
 
 std::string devices_part() {
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
-         "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, type, "
+         "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
          "batch\"></label>\n"
          "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option "
          "value=\"1\">that stand "
          "out</option><option value=\"2\">that fail a limit</option><option value=\"4\">not "
-         "characterized</option></select></label>\n<button type=\"button\" id=\"device-before\">‹ "
+         "characterized</option><option value=\"8\">without a result "
+         "yet</option></select></label>\n<button type=\"button\" id=\"device-before\">‹ "
          "before</button>"
          "<button type=\"button\" id=\"device-next\">next ›</button>\n<span id=\"device-place\" "
          "class=\"dim\"></span>\n"
          "</div>\n<div class=\"wide\"><table class=\"devices\" id=\"devices\">\n" +
-         table_head({"Device", "Type", "Batch", "What is the matter"}) +
+         table_head({"Device", "Recording", "Type", "Batch", "What is the matter"}) +
          "</tbody></table></div>\n<p class=\"note\">Every coefficient of every device stands in "
          "coefficients.csv and "
          "coefficients.npz beside this page.</p>\n</section>\n";
@@ -206,6 +217,26 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
   return out;
 }
 
+/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one.
+Json recordings_json(const FleetReport& report) {
+  const FleetLot& lot = *report.lot;
+  if (lot.order.size() == lot.devices) return nullptr;
+  std::map<std::pair<std::string_view, std::string_view>, std::size_t> count;
+  const auto device = [&](std::size_t r) -> std::size_t& {
+    return count[{report.records[r].type, report.records[r].device}];
+  };
+  for (const std::size_t r : lot.order) ++device(r);
+  Json out = Json::array();
+  for (const std::size_t r : lot.order) {
+    const DeviceRecord& one = report.records[r];
+    std::string text;
+    if (device(r) > 1) text = std::filesystem::path(one.log).filename().string();
+    if (device(r) > 1 && one.temperature_c) text += ", " + celsius_text(*one.temperature_c);
+    out.push_back(json_text(text));
+  }
+  return out;
+}
+
 /// What the list of devices shows: columns, types and batches by number.
 Json index_json(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
@@ -219,12 +250,13 @@ Json index_json(const FleetReport& report) {
     type.push_back(place(lot.types, one.type));
     batch.push_back(lot.batch_of[r]);
     state.push_back((lot.stands_out[r] ? 1 : 0) + (lot.fails[r] ? 2 : 0) +
-                    (one.problem.empty() ? 0 : 4));
+                    (one.problem.empty() ? 0 : one.awaited ? 8 : 4));
   }
   return {{"types", texts_json(lot.types)},
           {"batches", texts_json(lot.batches)},
           {"report", reports_json(report.records, lot.order)},
           {"device", std::move(device)},
+          {"recording", recordings_json(report)},
           {"type", std::move(type)},
           {"batch", std::move(batch)},
           {"state", std::move(state)}};
@@ -242,6 +274,20 @@ WrittenFile written_table(const FleetReport& report,
     file.write(piece);
   });
   return {file.path(), hash.finish()};
+}
+
+/// The first of those that could not be characterized, and why.
+std::string failed_text(const FleetReport& report) {
+  constexpr std::size_t kNamed = 5;
+  const std::vector<std::size_t>& failed = report.lot->failed;
+  if (failed.empty()) return "";
+  std::string out = "\ncould not be characterized:\n";
+  for (std::size_t i = 0; i < std::min(kNamed, failed.size()); ++i) {
+    const DeviceRecord& r = report.records[failed[i]];
+    out += "  " + printable(r.device) + "  " + printable(r.problem) + "\n";
+  }
+  if (failed.size() > kNamed) out += fmt::format("  and {} more\n", failed.size() - kNamed);
+  return out;
 }
 
 }  // namespace
@@ -265,6 +311,7 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   const FleetLot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
+  out += failed_text(report);
   std::vector<std::vector<std::string>> rows = {{}};
   for (const std::string& head : quantity_heads(lot, false)) rows[0].push_back(ascii_lower(head));
   for (const QuantityLot& q : lot.quantities) {

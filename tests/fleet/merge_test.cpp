@@ -183,3 +183,28 @@ TEST_CASE("what was mended in a log is told by the worker, in the record, and in
              Contains("1 of 3 recordings read with warnings") &&
                  Contains("of d1: " + records[1].warnings[0]));
 }
+
+TEST_CASE("what a log's channels are called is no way to characterize it, what is fitted is one") {
+  const test::TemporaryFolder folder;
+  const auto logs = test::write_logs(folder.path(), 2);
+  const auto notes_of = [&](const std::string& name, void (*change)(CharacterizeOptions&)) {
+    Manifest manifest = manifest_of_logs(logs);
+    manifest.options.push_back(manifest.options[0]);
+    change(manifest.options[1]);
+    manifest.devices[1].options = 1;
+    FleetPlanOptions options;
+    options.reports = false;
+    const FleetPlan plan = plan_fleet(manifest, options);
+    test::run_all(plan, folder / name);
+    const auto records = merged_records(plan, folder / name);
+    CHECK(records[0].settings != records[1].settings);
+    CHECK(records[1].problem == "");
+    return fleet_lot(records).notes;
+  };
+  CHECK(notes_of("read", [](CharacterizeOptions& o) {
+          o.reading.units = {"deg/s", "deg/s"};
+        }).empty());
+  const auto notes = notes_of("fitted", [](CharacterizeOptions& o) { o.spectrum.overlap = 0.25; });
+  REQUIRE(notes.size() == 1);
+  CHECK_THAT(notes[0], Contains("characterized with 2 settings"));
+}

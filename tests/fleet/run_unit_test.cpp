@@ -330,6 +330,8 @@ TEST_CASE("merging what there is names what there is not") {
   options.partial = true;
   const auto records = merged_records(plan, folder / "F", options);
   CHECK_THAT(records[0].problem, Contains("not there yet"));
+  CHECK(records[0].awaited);
+  CHECK_FALSE(records[1].awaited);
   CHECK(records[1].channels.size() == 2);
   CHECK(records[1].device == "d1");
 }

@@ -306,7 +306,7 @@ TEST_CASE("devices are held against limits, and the lot's capability is that of 
   CHECK(lot.failing == c.fail);
   CHECK(lot.open == c.not_decided);
   CHECK(lot.worst.size() == c.fail);
-  CHECK_THAT(lot.worst[0].reasons[0], Contains("allowed 3e-3 deg/s"));
+  CHECK_THAT(lot.worst[0].reasons[0], Contains("allowed 3e-3 deg/s (0.003000 deg/s)"));
   CHECK_FALSE(find(lot, "gyro_y", DeviceQuantity::bias_instability).capability);
   CHECK_THAT(
       lot.verdict,
@@ -328,4 +328,21 @@ TEST_CASE("one device is a fleet without statistics") {
   const FleetLot lot = fleet_lot(test::made_lot(made, 17));
   CHECK_FALSE(find(lot, "gyro_x", DeviceQuantity::white_noise).figures);
   CHECK(lot.verdict == "1 device. No device stands out from its kind.");
+}
+
+TEST_CASE("a result that is not there yet is no failure, and where there is none nobody is judged") {
+  auto records = test::made_lot({}, 19);
+  records.resize(4);
+  for (DeviceRecord& r : records) r.channels.clear();
+  records[0].problem = "is empty";
+  for (std::size_t i = 1; i < 4; ++i) {
+    records[i].problem = "its result is not there yet";
+    records[i].awaited = true;
+  }
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.failed == std::vector<std::size_t>{0});
+  CHECK(lot.awaited == std::vector<std::size_t>{1, 2, 3});
+  CHECK(lot.verdict ==
+        "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
+        "yet. There is no result to judge.");
 }

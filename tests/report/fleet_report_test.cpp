@@ -16,6 +16,7 @@
 #include "libchar/log/read.hpp"
 #include "libchar/report/coefficient_table.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
+#include "libchar/report/detail/svg_lot.hpp"
 #include "libchar/report/fleet_comparison_text.hpp"
 #include "tests/lot/made_fleet.hpp"
 #include "tests/report/written_fleet.hpp"
@@ -388,7 +389,66 @@ TEST_CASE("the text of a fleet has its table and its worst devices") {
   CHECK_THAT(text,
              Contains("1 device stands out") && Contains("gyro_x") &&
                  Contains("the worst first:\n  imu8  gyro_x: Bias instability"));
-  CHECK_THAT(text, Contains("1 recording could not be characterized"));
+  CHECK_THAT(text,
+             Contains("1 recording could not be characterized") &&
+                 Contains("\ncould not be characterized:\n  imu10  is empty\n"));
+}
+
+TEST_CASE("results that are not there yet stand apart from those that cannot be") {
+  auto records = two_batches();
+  for (std::size_t i = 20; i < 23; ++i) {
+    records[i].problem = "its result is not there yet";
+    records[i].awaited = true;
+    records[i].channels.clear();
+  }
+  const FleetLot lot = fleet_lot(records);
+  const FleetReport report{records, &lot, "", {}, {}};
+  const Json document = fleet_json(report);
+  CHECK(test::schema_fault(test::written_fleet(report)[3].text) == "");
+  CHECK(document["failed_count"] == 1);
+  CHECK(document["awaited_count"] == 3);
+  CHECK(document["awaited"][0]["device"] == "imu21");
+  const std::string page = fleet_html(report);
+  CHECK_THAT(page,
+             Contains("1 recording could not be characterized") &&
+                 Contains("3 recordings without a result yet"));
+}
+
+TEST_CASE("the list of devices tells the recordings of one apart") {
+  auto records = two_batches(20);
+  const auto recordings = [&] {
+    const FleetLot lot = fleet_lot(records);
+    const std::string page = fleet_html({records, &lot, "", {}, {}});
+    const std::size_t at = page.find("\"recording\":");
+    return page.substr(at, page.find("\"type\":", at) - at);
+  };
+  CHECK(recordings() == "\"recording\":null,");
+  records.push_back(records[2]);
+  records.back().sha256 = "hot";
+  records.back().log = "logs/imu3-hot.csv";
+  records.back().temperature_c = 60.04;
+  CHECK_THAT(recordings(),
+             Contains("\"\",\"imu3.csv\",\"imu3-hot.csv, 60 °C\",\"\""));
+}
+
+TEST_CASE("the words of a mean and a limit that stand close do not stand on each other") {
+  const Histogram h = histogram_of(std::vector<double>{1, 1.1, 1.2, 1.3, 1.4, 1.5, 2, 2});
+  for (const double limit : {1.39, 1.4, 1.41, 2.05, 9.0, -9.0})
+    for (const double mean : {1.4, 1.99, 1.0}) {
+      const std::string drawing = svg_histogram(h, {false, "x", mean, limit}, "t");
+      const auto place = [&](const std::string& word) {
+        const std::size_t end = drawing.find(word + "</text>");
+        const std::size_t at = drawing.rfind("x=\"", end);
+        return parse_double(drawing.substr(at + 3, drawing.find('"', at + 3) - at - 3)).value();
+      };
+      const double m = place("mean"),
+                   l = place(limit > 5   ? "limit →"
+                             : limit < 0 ? "← limit"
+                                         : "limit");
+      CAPTURE(limit, mean, m, l);
+      CHECK(std::abs(m - l) >= 34);
+      CHECK(std::max(m, l) <= 548 - 12);
+    }
 }
 
 TEST_CASE("a comparison of lots keeps its schema and has a table") {

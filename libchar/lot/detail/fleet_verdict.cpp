@@ -30,6 +30,29 @@ std::string batch_sentence(const FleetLot& lot) {
   return fmt::format(" Batches differ: {}.", list);
 }
 
+/// ": 1 recording could not be characterized, of 3 recordings the result is not there yet"
+std::string without_result(const FleetLot& lot) {
+  std::string out;
+  if (!lot.failed.empty())
+    out += fmt::format(": {} could not be characterized", plural(lot.failed.size(), "recording"));
+  if (!lot.awaited.empty())
+    out += fmt::format("{} of {} the result is not there yet",
+                       out.empty() ? ":" : ",",
+                       plural(lot.awaited.size(), "recording"));
+  return out;
+}
+
+/// That nobody stands out is a finding only where somebody could.
+std::string outlying_sentence(const FleetLot& lot) {
+  if (lot.outlying == 1) return " 1 device stands out from its kind.";
+  if (lot.outlying > 1)
+    return fmt::format(" {} devices stand out from their kind.", lot.outlying);
+  const bool any = std::any_of(lot.quantities.begin(), lot.quantities.end(), [](const auto& q) {
+    return q.counts.counted > 0;
+  });
+  return any ? " No device stands out from its kind." : " There is no result to judge.";
+}
+
 }  // namespace
 
 std::string fleet_verdict(const FleetLot& lot) {
@@ -38,12 +61,7 @@ std::string fleet_verdict(const FleetLot& lot) {
   if (lot.batches.size() > 1) out += fmt::format(" in {} batches", lot.batches.size());
   if (lot.order.size() != lot.devices)
     out += fmt::format(", {}", plural(lot.order.size(), "recording"));
-  out += lot.failed.empty() ? "."
-                            : fmt::format(": {} could not be characterized.",
-                                          plural(lot.failed.size(), "recording"));
-  out += lot.outlying == 0   ? " No device stands out from its kind."
-         : lot.outlying == 1 ? " 1 device stands out from its kind."
-                             : fmt::format(" {} devices stand out from their kind.", lot.outlying);
+  out += without_result(lot) + "." + outlying_sentence(lot);
   const std::size_t held = lot.failing + lot.open + lot.keeping;
   if (held > 0)
     out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.",

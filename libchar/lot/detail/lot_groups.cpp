@@ -218,7 +218,7 @@ std::vector<std::string> unlike_records(Records records,
   std::set<std::string> settings, programs;
   for (const std::size_t r : sorted.order) {
     if (!records[r].problem.empty()) continue;  // characterized with none
-    settings.insert(records[r].settings);
+    settings.insert(records[r].analysis.empty() ? records[r].settings : records[r].analysis);
     programs.insert(records[r].program);
   }
   for (const auto& [what, found] :

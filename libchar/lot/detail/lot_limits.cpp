@@ -43,12 +43,13 @@ LimitFailure failure_of(const RecordedChannel& channel,
   const double sd = value.sd > 0 ? value.sd : std::log(value.value / value.ci95.low) / kNormal95;
   out.deviation = std::log(value.value / limit.most) / std::max(sd, 1e-9);
   out.p = std::erfc(out.deviation / std::sqrt(2.0)) / 2;
+  const std::string unit = unit_of(value.quantity, channel.unit);
   out.sentence = fmt::format("{}: {} {} {}, allowed {}.",
                              channel.name,
                              title_of(value.quantity),
                              coefficient_text(coefficient_of(value)),
-                             unit_of(value.quantity, channel.unit),
-                             limit.text);
+                             unit,
+                             limit_text(limit.text, limit.most, unit));
   return out;
 }
 

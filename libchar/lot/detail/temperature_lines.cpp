@@ -93,6 +93,7 @@ std::optional<TemperatureLines> temperature_lines(const MemberRecordings& biases
   out.lines = grouped_lines(out.recordings.y, out.recordings.v, x, out.recordings.member, sloped);
   out.sloped = std::move(sloped);
   out.runs.repeatability = out.lines.within;
+  out.runs.repeatability_ci95 = out.lines.within_ci95;
   out.runs.dof = out.lines.dof;
   return out;
 }

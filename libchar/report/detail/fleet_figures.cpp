@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/limits.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -13,6 +14,11 @@
 
 namespace libchar {
 namespace {
+
+/// To a tenth of a degree, without zeros behind it.
+std::string celsius(double t) {
+  return fmt::format("{:g}", std::round(10 * t) / 10);
+}
 
 std::string brackets(const Interval& i, double factor = 1, int digits = 3) {
   return fmt::format(
@@ -69,11 +75,11 @@ std::string ppk_text(const Capability& c) {
       ", Ppk {} [{}, {}]", number_text(*c.ppk, 3), end(c.ppk_ci95.low), end(c.ppk_ci95.high));
 }
 
-std::string limit_text(const QuantityLot& q) {
+std::string limit_cell(const QuantityLot& q) {
   if (!q.capability) return "";
   const Capability& c = *q.capability;
   return fmt::format("≤ {}: {} fail, {} not decided{}",
-                     c.text,
+                     limit_text(c.text, c.most, q.unit),
                      count_text(c.fail),
                      count_text(c.not_decided),
                      ppk_text(c));
@@ -131,11 +137,6 @@ std::string batch_table(const QuantityLot& q) {
   return folded(fmt::format("{} batches", q.batches.size()), rows);
 }
 
-/// To a tenth of a degree, without zeros behind it.
-std::string celsius(double t) {
-  return fmt::format("{:g}", std::round(10 * t) / 10);
-}
-
 std::string range_text(const Interval& range_c) {
   return fmt::format("{} to {} °C", celsius(range_c.low), celsius(range_c.high));
 }
@@ -153,7 +154,7 @@ std::string coefficient_sentence(const QuantityLot& q) {
       plural(t.devices, "device"),
       plural(t.recordings, "recording"),
       range_text(t.range_c),
-      number_text(t.repeatability, 3) + " " + channel_unit_text(q),
+      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q)),
       t.dof);
   if (t.in_one_recording > 0)
     out += fmt::format(
@@ -251,7 +252,7 @@ std::string sentences(const QuantityLot& q) {
                     count_text(q.repeats->recordings)));
   if (q.capability) {
     const Capability& c = *q.capability;
-    std::string line = "Limit " + limit_text(q);
+    std::string line = "Limit " + limit_cell(q);
     if (c.cpk) line += fmt::format(", Cpk {}", number_text(*c.cpk, 3));
     if (c.ppk)
       line += fmt::format("; a normal distribution has {} % above", number_text(100 * c.above, 2));
@@ -261,6 +262,10 @@ std::string sentences(const QuantityLot& q) {
 }
 
 }  // namespace
+
+std::string celsius_text(double t) {
+  return celsius(t) + " °C";
+}
 
 std::string group_title(const QuantityLot& q, const FleetLot& lot) {
   return lot.types.size() < 2 ? q.group : q.group + " of " + (q.type.empty() ? "no type" : q.type);
@@ -297,7 +302,7 @@ std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lo
       not_counted(q.counts)};
   const std::size_t columns = quantity_heads(lot, q.of_kind).size();
   if (lot.batches.size() > 1) out.push_back(batches_text(q));
-  if (out.size() < columns) out.push_back(limit_text(q));
+  if (out.size() < columns) out.push_back(limit_cell(q));
   return out;
 }
 

@@ -11,6 +11,9 @@ namespace libchar {
 /// "of mems" behind a channel where there are several types.
 std::string group_title(const QuantityLot& quantity, const FleetLot& lot);
 
+/// "22.5 °C", to a tenth of a degree.
+std::string celsius_text(double t);
+
 /// Heads and texts of a row: group, what, mean, spread, where 95 % lie, counted, not counted, batches, limit.
 std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind);
 std::vector<std::string> quantity_cells(const QuantityLot& quantity, const FleetLot& lot);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "libchar/core/decimal.hpp"
@@ -137,21 +138,56 @@ std::string bars(const Histogram& h, const Scale& x, const Scale& y) {
   return out;
 }
 
-/// The mean and the limit, each with its word; what is beyond the axis stands at its end as an arrow.
+/// A word over a place on the axis; what is beyond the axis stands at its end as an arrow.
+struct Mark {
+  double at = 0;     ///< of the line
+  bool drawn = true;  ///< its line is in the picture
+  const char* css = "";
+  std::string text;
+  double left = 0, right = 0;  ///< of the word
+};
+
+Mark mark_of(double value, const char* word, const Scale& x) {
+  constexpr double kLetter = 6.5;  // of the page's font in the drawing
+  Mark out;
+  out.css = word;
+  const bool beyond = value > x.high, before = value < x.low;
+  out.drawn = !beyond && !before;
+  out.at = std::clamp(x.at(value), kLotLeft, kLotWidth - kLotRight);
+  out.text = beyond   ? std::string(word) + " →"
+             : before ? "← " + std::string(word)
+                      : std::string(word);
+  const double width = kLetter * static_cast<double>(std::strlen(word) + (out.drawn ? 0 : 2));
+  out.left = beyond ? out.at - width : before ? out.at : out.at - width / 2;
+  out.right = out.left + width;
+  return out;
+}
+
+/// Words that would stand on each other stand side by side.
+void move_apart(Mark& a, Mark& b) {
+  constexpr double kGap = 6;
+  Mark &first = a.at <= b.at ? a : b, &second = a.at <= b.at ? b : a;
+  const double overlap = first.right + kGap - second.left;
+  if (overlap <= 0) return;
+  const double room = std::max(0.0, kLotWidth - kLotRight - second.right);
+  const double right = std::min(overlap / 2, room);
+  first.left -= overlap - right;
+  first.right -= overlap - right;
+  second.left += right;
+  second.right += right;
+}
+
+/// The mean and the limit, each with its word.
 std::string marks(const LotAxis& axis, const Scale& x) {
+  std::vector<Mark> all;
+  if (axis.mean) all.push_back(mark_of(*axis.mean, "mean", x));
+  if (axis.limit) all.push_back(mark_of(*axis.limit, "limit", x));
+  if (all.size() == 2) move_apart(all[0], all[1]);
   std::string out;
-  const auto mark = [&](const std::optional<double>& value, const char* css, const char* word) {
-    if (!value) return;
-    const bool right = *value > x.high, left = *value < x.low;
-    const double at = std::clamp(x.at(*value), kLotLeft, kLotWidth - kLotRight);
-    if (!right && !left) out += line(css, at, kLotTop, at, kLotHeight - kLotBottom);
-    const std::string text = right  ? std::string(word) + " →"
-                             : left ? std::string("← ") + word
-                                    : word;
-    out += label(at, kLotTop - 4, right ? "end" : left ? "start" : "middle", text);
-  };
-  mark(axis.mean, "mean", "mean");
-  mark(axis.limit, "limit", "limit");
+  for (const Mark& m : all) {
+    if (m.drawn) out += line(m.css, m.at, kLotTop, m.at, kLotHeight - kLotBottom);
+    out += label((m.left + m.right) / 2, kLotTop - 4, "middle", m.text);
+  }
   return out;
 }
 
