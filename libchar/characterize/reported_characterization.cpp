@@ -34,6 +34,15 @@ std::string format_of(const Document& document) {
   return format != nullptr && format->value.kind == Document::Kind::text ? format->value.text : "";
 }
 
+/// "" where it cannot be read.
+std::string format_in(const std::string& file) {
+  try {
+    return format_of(parse_json_document(read_document_text(file), file));
+  } catch (const Error&) {
+    return "";
+  }
+}
+
 bool is_known(const std::string& format) {
   return std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
 }
@@ -139,12 +148,21 @@ std::string report_file(const std::string& path) {
 }
 
 bool is_characterization_report(const std::string& path) {
-  const std::string file = report_file(path);
-  try {
-    return is_known(format_of(parse_json_document(read_document_text(file), file)));
-  } catch (const Error&) {
-    return false;
-  }
+  return is_known(format_in(report_file(path)));
+}
+
+void refuse_lot_report(const std::string& path, const std::string& instead) {
+  std::error_code ignored;
+  std::string file = report_file(path);
+  if (!std::filesystem::exists(file, ignored))
+    file = (std::filesystem::path(path) / "lot.json").string();
+  if (format_in(file) == "fleet-lot")
+    throw Error({ErrorKind::input,
+                 "E0771",
+                 file,
+                 "this is the report of a lot of devices",
+                 "fleet-lot",
+                 instead});
 }
 
 ReportedCharacterization parse_characterization_report(std::string_view text,

@@ -37,6 +37,9 @@ std::string report_file(const std::string& path);
 /// Whether the document at the path is one that read_characterization_report reads, by its format; no where it cannot be read.
 bool is_characterization_report(const std::string& path);
 
+/// Throws Error(input) for the report of a fleet's lot (lot.json, or its folder): `instead` is what to do with one.
+void refuse_lot_report(const std::string& path, const std::string& instead);
+
 /// Reads report.json of characterize, runs.json of pooled runs, or what `fit` prints as JSON; of a folder, the one in it. Throws
 /// Error(input) with file and key.
 ReportedCharacterization read_characterization_report(const std::string& path);

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
@@ -165,6 +166,17 @@ void refuse_common_logs(const std::vector<PlannedFleet>& fleets) {
           refuse_common(fleets, at->second, part);
       known.emplace(key, part);
     }
+}
+
+std::string merge_command(const std::vector<std::string>& folders) {
+  std::string out = "sensorchar fleet merge";
+  bool here = false;
+  for (const std::string& folder : folders) {
+    std::error_code ignored;
+    here = here || fs::equivalent(folder, ".", ignored);
+    out += " " + shell_word(folder);
+  }
+  return out + (here ? " -o ../report" : " -o report");
 }
 
 std::vector<DeviceRecord> merged_records(const FleetPlan& plan,

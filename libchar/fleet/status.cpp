@@ -47,6 +47,7 @@ FleetStatus fleet_status(const FleetPlan& plan,
       found = joined.contains(unit.id) ? Found::result : look_at(unit, folder);
     } catch (const Error& error) {
       out.damaged.push_back(one_line(error.problem()));
+      out.damaged_units.push_back(k);
     }
     if (found == Found::nothing) {
       out.missing.push_back(k);

@@ -14,12 +14,13 @@ namespace libchar {
 
 struct FleetStatus {
   std::uint64_t devices = 0, units = 0;
-  std::uint64_t done = 0;                ///< units with a result
-  std::uint64_t no_result = 0;           ///< of these: the log could not be characterized
-  std::vector<std::size_t> missing;      ///< units without one
-  std::vector<std::string> damaged;      ///< sentences: results that count as none
-  std::vector<std::string> unpublished;  ///< folders of workers at work, or killed
-  double seconds_left = 0;               ///< of one core, as planned
+  std::uint64_t done = 0;                  ///< units with a result
+  std::uint64_t no_result = 0;             ///< of these: the log could not be characterized
+  std::vector<std::size_t> missing;        ///< units without one
+  std::vector<std::string> damaged;        ///< sentences: results that count as none
+  std::vector<std::size_t> damaged_units;  ///< whose these are
+  std::vector<std::string> unpublished;    ///< folders of workers at work, or killed
+  double seconds_left = 0;                 ///< of one core, as planned
 };
 
 FleetStatus fleet_status(const FleetPlan& plan,

@@ -30,11 +30,12 @@ std::string note_of(const std::map<std::string, Words, NaturalOrder>& several) {
   }
   const std::string more =
       several.size() > kNamed ? fmt::format(" and {} more", several.size() - kNamed) : "";
-  return fmt::format("{} recordings in several batches, and {} in the first of them: {}{}.",
-                     several.size() == 1 ? "1 device has" : fmt::format("{} devices have", several.size()),
-                     several.size() == 1 ? "counts" : "count",
-                     fmt::join(named, ", "),
-                     more);
+  return fmt::format(
+      "{} recordings in several batches, and {} in the first of them: {}{}.",
+      several.size() == 1 ? "1 device has" : fmt::format("{} devices have", several.size()),
+      several.size() == 1 ? "counts" : "count",
+      fmt::join(named, ", "),
+      more);
 }
 
 }  // namespace

@@ -47,13 +47,11 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   out.devices = fleet.sorted.first.size();
   out.order = fleet.sorted.order;
   for (const std::size_t r : out.order)
-    if (!records[r].problem.empty())
-      (records[r].awaited ? out.awaited : out.failed).push_back(r);
+    if (!records[r].problem.empty()) (records[r].awaited ? out.awaited : out.failed).push_back(r);
   out.types = fleet.types;
   out.batches = fleet.batches;
   out.batch_of.resize(records.size());
-  for (const std::size_t r : out.order)
-    out.batch_of[r] = fleet.batch_of[fleet.sorted.device_of[r]];
+  for (const std::size_t r : out.order) out.batch_of[r] = fleet.batch_of[fleet.sorted.device_of[r]];
   std::vector<Statistic> statistics = statistics_of(fleet);
   search_outliers(fleet, options.outlier_probability, statistics);
   mark_devices(fleet, statistics, out);

@@ -106,8 +106,7 @@ std::string channel_title(const std::string& channel, const std::string& type) {
 std::string known_text(const QuantityValues& values,
                        const LotGroup& group,
                        const std::string& name) {
-  return fmt::format(
-      "{} of {} devices of {}", values.counts.counted, group.devices.size(), name);
+  return fmt::format("{} of {} devices of {}", values.counts.counted, group.devices.size(), name);
 }
 
 /// Counted in one and hardly in the other: no means to compare, which is a difference in itself.
@@ -120,25 +119,23 @@ void note_detection(const Side& a,
   const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
   if (va.counts.counted + vb.counts.counted == 0) return;
   const bool only_a = !effects_of(va) && effects_of(vb), only_b = effects_of(va) && !effects_of(vb);
-  out.not_compared.push_back(
-      fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
-                  title_of(quantity),
-                  channel_title(a.groups[ga].name, a.groups[ga].type),
-                  known_text(va, a.groups[ga], out.name_a),
-                  known_text(vb, b.groups[gb], out.name_b),
-                  only_a   ? " of " + out.name_a
-                  : only_b ? " of " + out.name_b
-                           : ""));
+  out.not_compared.push_back(fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
+                                         title_of(quantity),
+                                         channel_title(a.groups[ga].name, a.groups[ga].type),
+                                         known_text(va, a.groups[ga], out.name_a),
+                                         known_text(vb, b.groups[gb], out.name_b),
+                                         only_a   ? " of " + out.name_a
+                                         : only_b ? " of " + out.name_b
+                                                  : ""));
 }
 
 void note_only(const Side& here, const Side& there, const std::string& name, FleetComparison& out) {
   for (const auto& [key, g] : here.index)
     if (there.index.count(key) == 0)
-      out.not_compared.push_back(
-          fmt::format("{} in {}: only in {}.",
-                      channel_title(std::get<1>(key), std::get<0>(key)),
-                      unit_title(std::get<2>(key)),
-                      name));
+      out.not_compared.push_back(fmt::format("{} in {}: only in {}.",
+                                             channel_title(std::get<1>(key), std::get<0>(key)),
+                                             unit_title(std::get<2>(key)),
+                                             name));
 }
 
 void correct_for_all(FleetComparison& out) {

@@ -250,7 +250,9 @@ Json index_json(const FleetReport& report) {
     type.push_back(place(lot.types, one.type));
     batch.push_back(lot.batch_of[r]);
     state.push_back((lot.stands_out[r] ? 1 : 0) + (lot.fails[r] ? 2 : 0) +
-                    (one.problem.empty() ? 0 : one.awaited ? 8 : 4));
+                    (one.problem.empty() ? 0
+                     : one.awaited       ? 8
+                                         : 4));
   }
   return {{"types", texts_json(lot.types)},
           {"batches", texts_json(lot.batches)},

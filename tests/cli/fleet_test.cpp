@@ -46,7 +46,8 @@ struct Fleets {
 };
 
 constexpr const char* kTwoBatches =
-    "log,device,batch\nd0.csv,A1,\"1,x\"\nd1.csv,A2,\"1,x\"\nd2.csv,A1,2\nd3.csv,A3,2\nd4.csv,A4,2\n";
+    "log,device,batch\nd0.csv,A1,\"1,x\"\nd1.csv,A2,\"1,x\"\nd2.csv,A1,2\nd3.csv,A3,2\nd4.csv,A4,"
+    "2\n";
 
 }  // namespace
 
@@ -83,4 +84,52 @@ TEST_CASE("fleet compare: batches by name, with commas too, and a device in one 
              Contains("--batches OLD --batches NEW"));
   CHECK_THAT(fleets.refused({"compare", "f", "--batches", "2,3"}).err,
              Contains("batch 1,x, batch 2"));
+}
+
+TEST_CASE("fleet merge and the verbs for other reports: what a lot's report is") {
+  const Fleets fleets(2);
+  fleets.made("f", {"d0.csv", "d1.csv"});
+  CHECK_THAT(fleets.refused({"merge", "f", "-o", "-"}).err, Contains("name a folder"));
+  CHECK_FALSE(fs::exists(fleets.folder / "-"));
+  REQUIRE(fleets.run({"merge", "f", "-o", "r"}).code == 0);
+  for (const char* report : {"r", "r/lot.json"}) {
+    const std::string path = (fleets.folder / report).string();
+    const test::Ran table = test::run({"report", path}),
+                    compared = test::run({"compare", path, path});
+    CHECK(table.code == 3);
+    CHECK_THAT(table.err, Contains("report of a lot of devices") && Contains("coefficients.csv"));
+    CHECK(compared.code == 3);
+    CHECK_THAT(compared.err, Contains("sensorchar fleet compare A B"));
+  }
+}
+
+TEST_CASE("fleet status and export: what comes next, in which folder") {
+  const Fleets fleets(2);
+  REQUIRE(fleets.run({"plan", "d0.csv", "d1.csv", "-o", "f"}).code == 0);
+  CHECK_THAT(fleets.run({"export", "f", "--to", "parallel"}).out,
+             Contains("2 units left") && Contains("next: cd f && sh fleet.parallel.sh"));
+  REQUIRE(fleets.run({"run", "f"}).code == 0);
+  CHECK_THAT(fleets.run({"status", "f"}).out,
+             Contains("next: sensorchar fleet merge f -o report\n"));
+  CHECK(fleets.run({"export", "f", "--to", "parallel"}).out ==
+        "nothing is left, every unit has a result\nnext: sensorchar fleet merge f -o report\n");
+  test::RunOptions inside;
+  inside.folder = (fleets.folder / "f").string();
+  CHECK_THAT(test::run({"fleet", "status", "."}, inside).out,
+             Contains("next: sensorchar fleet merge . -o ../report\n"));
+}
+
+TEST_CASE("fleet status: whose results are damaged") {
+  const Fleets fleets(2);
+  fleets.made("f", {"d0.csv", "d1.csv"});
+  for (const auto& entry : fs::recursive_directory_iterator(fleets.folder / "f" / "results"))
+    if (entry.path().filename() == "device.record") fs::resize_file(entry.path(), 100);
+  const test::Ran ran = fleets.run({"status", "f", "--json"});
+  const auto document = nlohmann::json::parse(ran.out);
+  REQUIRE(document["damaged_units"].size() == 2);
+  const auto& second = document["damaged_units"][1];
+  CHECK(second["task"] == "tasks/000002.json");
+  CHECK(second["device"] == "d1");
+  CHECK(second["problem"] == document["damaged"][1]);
+  CHECK_THAT(second["problem"].get<std::string>(), Contains(second["id"].get<std::string>()));
 }

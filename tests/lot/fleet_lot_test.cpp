@@ -258,9 +258,10 @@ TEST_CASE("channels without a unit are no kind of their own") {
     CHECK((!q.of_kind || q.group == "angular_rate in deg/s"));
   CHECK(find(lot, "angular_rate in deg/s", DeviceQuantity::white_noise).counts.members == 392);
   REQUIRE(lot.notes.size() == 2);
-  CHECK(lot.notes[0] ==
-        "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
-        "and 193 more): compared within each.");
+  CHECK(
+      lot.notes[0] ==
+      "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
+      "and 193 more): compared within each.");
 }
 
 TEST_CASE("a device with recordings in two batches is of the first, and said so by name") {
@@ -330,7 +331,8 @@ TEST_CASE("one device is a fleet without statistics") {
   CHECK(lot.verdict == "1 device. No device stands out from its kind.");
 }
 
-TEST_CASE("a result that is not there yet is no failure, and where there is none nobody is judged") {
+TEST_CASE(
+    "a result that is not there yet is no failure, and where there is none nobody is judged") {
   auto records = test::made_lot({}, 19);
   records.resize(4);
   for (DeviceRecord& r : records) r.channels.clear();
@@ -342,7 +344,8 @@ TEST_CASE("a result that is not there yet is no failure, and where there is none
   const FleetLot lot = fleet_lot(records);
   CHECK(lot.failed == std::vector<std::size_t>{0});
   CHECK(lot.awaited == std::vector<std::size_t>{1, 2, 3});
-  CHECK(lot.verdict ==
-        "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
-        "yet. There is no result to judge.");
+  CHECK(
+      lot.verdict ==
+      "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
+      "yet. There is no result to judge.");
 }

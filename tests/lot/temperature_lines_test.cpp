@@ -166,5 +166,6 @@ TEST_CASE("devices without a slope are devices of their lot too, where slopes ar
   REQUIRE(!c.not_compared.empty());
   CHECK_THAT(
       c.not_compared[0],
-      Contains("known of 10 of 20 devices of A and of 0 of 20 devices of B: too few of B for means"));
+      Contains(
+          "known of 10 of 20 devices of A and of 0 of 20 devices of B: too few of B for means"));
 }

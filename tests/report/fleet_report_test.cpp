@@ -427,8 +427,7 @@ TEST_CASE("the list of devices tells the recordings of one apart") {
   records.back().sha256 = "hot";
   records.back().log = "logs/imu3-hot.csv";
   records.back().temperature_c = 60.04;
-  CHECK_THAT(recordings(),
-             Contains("\"\",\"imu3.csv\",\"imu3-hot.csv, 60 °C\",\"\""));
+  CHECK_THAT(recordings(), Contains("\"\",\"imu3-hot.csv, 60 \\u00b0C\",\"imu3.csv\",\"\""));
 }
 
 TEST_CASE("the words of a mean and a limit that stand close do not stand on each other") {
@@ -441,10 +440,9 @@ TEST_CASE("the words of a mean and a limit that stand close do not stand on each
         const std::size_t at = drawing.rfind("x=\"", end);
         return parse_double(drawing.substr(at + 3, drawing.find('"', at + 3) - at - 3)).value();
       };
-      const double m = place("mean"),
-                   l = place(limit > 5   ? "limit →"
-                             : limit < 0 ? "← limit"
-                                         : "limit");
+      const double m = place("mean"), l = place(limit > 5   ? "limit →"
+                                                : limit < 0 ? "← limit"
+                                                            : "limit");
       CAPTURE(limit, mean, m, l);
       CHECK(std::abs(m - l) >= 34);
       CHECK(std::max(m, l) <= 548 - 12);

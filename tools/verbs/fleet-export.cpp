@@ -9,6 +9,7 @@
 #include "libchar/core/shell_word.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fleet/jobs.hpp"
+#include "libchar/fleet/merge.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -42,8 +43,11 @@ void run_export(Session& session, ExportVerb verb) {
   export_jobs(jobs, engine, verb.folder, verb.jobs);
   session.wrote = true;
   session.terminal.clear();
-  const std::string start = fmt::format(
-      "cd {} && {}", shell_word(verb.folder), fmt::format(fmt::runtime(engine.start), engine.file));
+  const std::string start = jobs.empty()
+                                ? ""
+                                : fmt::format("cd {} && {}",
+                                              shell_word(verb.folder),
+                                              fmt::format(fmt::runtime(engine.start), engine.file));
   if (verb.json) {
     Json document = document_head(session, "fleet-export", {});
     document["engine"] = engine.name;
@@ -53,6 +57,10 @@ void run_export(Session& session, ExportVerb verb) {
     document["start"] = start;
     return print(dump_json(document));
   }
+  if (jobs.empty())
+    return print_beside(
+        session,
+        "nothing is left, every unit has a result\nnext: " + merge_command({verb.folder}) + "\n");
   print_beside(session,
                fmt::format("{} left in {}, about {} on one core\nnext: {}\n",
                            plural(status.missing.size(), "unit"),

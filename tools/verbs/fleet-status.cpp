@@ -54,6 +54,12 @@ FleetStatus together(const std::vector<OneStatus>& fleets) {
   return out;
 }
 
+Json unit_json(const OneStatus& one, std::size_t k) {
+  return {{"folder", one.folder},
+          {"task", task_file(k)},
+          {"device", one.plan.devices[one.plan.units[k].device].device}};
+}
+
 Json status_json(const Session& session, const std::vector<OneStatus>& fleets) {
   const FleetStatus status = together(fleets);
   Json document = document_head(session, "fleet-status", {});
@@ -64,24 +70,30 @@ Json status_json(const Session& session, const std::vector<OneStatus>& fleets) {
   document["damaged"] = status.damaged;
   document["unpublished"] = status.unpublished;
   document["seconds_left"] = status.seconds_left;
-  Json missing = Json::array();
-  for (const OneStatus& one : fleets)
-    for (const std::size_t k : one.status.missing)
-      missing.push_back({{"folder", one.folder},
-                         {"task", task_file(k)},
-                         {"device", one.plan.devices[one.plan.units[k].device].device}});
+  Json missing = Json::array(), damaged = Json::array();
+  for (const OneStatus& one : fleets) {
+    for (const std::size_t k : one.status.missing) missing.push_back(unit_json(one, k));
+    for (std::size_t i = 0; i < one.status.damaged.size(); ++i) {
+      const std::size_t k = one.status.damaged_units[i];
+      Json unit = unit_json(one, k);
+      unit["id"] = one.plan.units[k].id;
+      unit["problem"] = one.status.damaged[i];
+      damaged.push_back(std::move(unit));
+    }
+  }
+  document["damaged_units"] = damaged;
   document["missing"] = missing;
   return document;
 }
 
 std::string next_command(const std::vector<OneStatus>& fleets) {
-  std::string all, left;
+  std::vector<std::string> all;
+  std::string left;
   for (const OneStatus& one : fleets) {
-    all += " " + shell_word(one.folder);
+    all.push_back(one.folder);
     if (!one.status.missing.empty()) left += " " + shell_word(one.folder);
   }
-  return left.empty() ? "sensorchar fleet merge" + all + " -o report"
-                      : "sensorchar fleet run" + left;
+  return left.empty() ? merge_command(all) : "sensorchar fleet run" + left;
 }
 
 std::string status_text(const std::vector<OneStatus>& fleets) {

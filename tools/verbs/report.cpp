@@ -24,6 +24,9 @@ void run_report(const ReportVerb& verb) {
   const TableFormat format = verb.latex ? TableFormat::latex
                              : verb.csv ? TableFormat::csv
                                         : TableFormat::markdown;
+  refuse_lot_report(verb.file,
+                    "its tables are coefficients.csv and index.html beside it; the report of one "
+                    "device is the report.json in its folder below the fleet's results");
   std::string text;
   if (is_characterization_report(verb.file)) {
     text = coefficient_table(read_characterization_report(verb.file), verb.channels, format);

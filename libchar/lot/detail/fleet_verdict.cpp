@@ -45,8 +45,7 @@ std::string without_result(const FleetLot& lot) {
 /// That nobody stands out is a finding only where somebody could.
 std::string outlying_sentence(const FleetLot& lot) {
   if (lot.outlying == 1) return " 1 device stands out from its kind.";
-  if (lot.outlying > 1)
-    return fmt::format(" {} devices stand out from their kind.", lot.outlying);
+  if (lot.outlying > 1) return fmt::format(" {} devices stand out from their kind.", lot.outlying);
   const bool any = std::any_of(lot.quantities.begin(), lot.quantities.end(), [](const auto& q) {
     return q.counts.counted > 0;
   });

@@ -109,11 +109,11 @@ std::string named_devices(Records records, const SortedRecords& sorted, const Lo
   std::vector<std::string> names;
   for (std::size_t m = 0; m < std::min(kNamed, group.devices.size()); ++m)
     names.push_back(records[sorted.first[group.devices[m]]].device);
-  return fmt::format(
-      " ({}{})",
-      fmt::join(names, ", "),
-      group.devices.size() > kNamed ? fmt::format(" and {} more", group.devices.size() - kNamed)
-                                    : "");
+  return fmt::format(" ({}{})",
+                     fmt::join(names, ", "),
+                     group.devices.size() > kNamed
+                         ? fmt::format(" and {} more", group.devices.size() - kNamed)
+                         : "");
 }
 
 bool several_names(Records records, const LotGroup& kind) {

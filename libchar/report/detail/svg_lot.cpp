@@ -140,7 +140,7 @@ std::string bars(const Histogram& h, const Scale& x, const Scale& y) {
 
 /// A word over a place on the axis; what is beyond the axis stands at its end as an arrow.
 struct Mark {
-  double at = 0;     ///< of the line
+  double at = 0;      ///< of the line
   bool drawn = true;  ///< its line is in the picture
   const char* css = "";
   std::string text;
