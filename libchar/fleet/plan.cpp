@@ -51,6 +51,16 @@ bool is_without_rate(const LogInfo& head, const ReadOptions& options) {
   return tells_in_head && head.time.column.empty() && !options.rate_hz;
 }
 
+/// What the log calls its channels, by which they are chosen; it is asked again only where they have new names.
+std::vector<std::string> own_names(const LogInfo& head,
+                                   const FleetDevice& device,
+                                   const ReadOptions& reading) {
+  if (!reading.names.empty()) return names_in_log(device.log, reading);
+  std::vector<std::string> names;
+  for (const Channel& channel : head.channels) names.push_back(channel.name);
+  return names;
+}
+
 LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, bool by_channel) {
   LookedAt out;
   try {
@@ -62,7 +72,7 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, 
                    "",
                    "copy it to a file first"});
     out.head = read_log_head(device.log, options.reading);
-    if (by_channel) out.in_log = names_in_log(device.log, options.reading);
+    if (by_channel) out.in_log = own_names(out.head, device, options.reading);
     if (is_without_rate(out.head, options.reading)) known_rate_hz(out.head);
     out.sha256 = device.sha256.empty() ? digest_of_log(device.log) : device.sha256;
   } catch (const Error& error) {
@@ -153,17 +163,18 @@ void check_limits(const Manifest& manifest,
     const FleetDevice& one = manifest.devices[d];
     if (!one.limits.empty()) first.emplace(one.type, d);
     // Of increments and phases the values have other units than the samples.
-    if (!logs[d].problem.empty() || manifest.options[one.options].data != SampleKind::rate)
-      unsure.insert(one.type);
+    if (manifest.options[one.options].data != SampleKind::rate) unsure.insert(one.type);
     for (const Channel& channel : logs[d].head.channels)
       if (known.emplace(one.type, channel.name).second)
         channels[one.type].push_back({channel.name, channel.unit});
   }
-  for (const auto& [type, d] : first) {
-    if (unsure.contains(type)) continue;
-    const FleetDevice& one = manifest.devices[d];
+  for (const auto& [type, of_type] : channels) {
+    // Limits of devices without a type are those of all types that have none.
+    const auto at = first.contains(type) ? first.find(type) : first.find("");
+    if (at == first.end() || unsure.contains(type)) continue;
+    const FleetDevice& one = manifest.devices[at->second];
     try {
-      limits_for(limits.at(one.limits), channels[type]);
+      limits_for(limits.at(one.limits), of_type);
     } catch (const Error& error) {
       refuse_limits(one, error.problem());
     }
@@ -226,11 +237,12 @@ class UnitMaker {
       : options_(options), cost_(cost), plan_(plan) {}
 
   void add(const LookedAt& log, FleetUnit unit) {
+    if (!options_.by_channel) return add_log(log, unit);
     const std::vector<Channel>& channels = log.head.channels;
     const std::string& wanted = unit.options->temperature;
     const auto thermometer = wanted.empty() ? std::nullopt : temperature_channel(log.head, wanted);
     const auto groups = channel_groups(channels.size(), thermometer);
-    if (!options_.by_channel || groups.size() < 2) return add_log(log, unit);
+    if (groups.size() < 2) return add_log(log, unit);
     const std::string settings = settings_id(*unit.options);
     for (const std::vector<std::size_t>& group : groups) {
       FleetUnit one = unit;

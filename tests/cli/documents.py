@@ -49,6 +49,7 @@ RUNS = [
     ["fleet", "plan", "first.csv", "second.csv", "-o", "fleet"], ["fleet", "run", "fleet"], ["fleet", "status", "fleet"],
     ["fleet", "export", "fleet", "--to", "slurm"], ["fleet", "merge", "fleet", "-o", "fleet-report"],
     ["fleet", "plan", "first.csv", "second.csv", "--sums", "SHA256SUMS", "-o", "stated"],
+    ["fleet", "plan", "first.csv", "gone.csv", "--skip-unreadable", "-o", "stated"],
     ["fleet", "plan", "fleet.yaml", "-o", "batches"], ["fleet", "run", "batches"], ["fleet", "status", "batches", "fleet"], ["fleet", "compare", "batches", "--batches", "b1,b2"],
     ["bench", "report/gyro_z.sensor.yaml", "scenes/rv-5.1-faults.yaml", "--quick", "--records", "3", "--runs", "2", "--samples", "4096", "--parts",
      "characterization,design,fusion", "--algorithms", "mean,median"],
