@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -64,19 +65,19 @@ std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::p
                                    .string();
 }
 
-/// An id of each options that a plan has: units share them.
+/// An id of each options that a plan has: units share them. Those of one channel may come from unlike lists of whole logs.
 class OptionIds {
  public:
   explicit OptionIds(std::string (*id)(const FleetUnit&)) : id_(id) {}
   const std::string& of(const FleetUnit& unit) {
-    std::string& known = known_[unit.options.get()];
+    std::string& known = known_[{unit.options.get(), unit.settings}];
     if (known.empty()) known = id_(unit);
     return known;
   }
 
  private:
   std::string (*id_)(const FleetUnit&);
-  std::unordered_map<const CharacterizeOptions*, std::string> known_;
+  std::map<std::pair<const CharacterizeOptions*, std::string>, std::string> known_;
 };
 
 /// Channels of one log that were units of their own stand together again.

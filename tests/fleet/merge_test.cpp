@@ -125,6 +125,27 @@ std::vector<std::string> write_warm_logs(const fs::path& folder, const std::vect
 
 }  // namespace
 
+TEST_CASE(
+    "a log in two fleets is refused where one has its channels as units, with names of a list") {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> logs = {test::write_rows(folder / "a.npy", 2, 50),
+                                         test::write_rows(folder / "b.npy", 3, 50)};
+  Manifest both = manifest_of_logs(logs);
+  both.options = {both.options[0], both.options[0]};
+  both.options[0].reading.rate_hz = both.options[1].reading.rate_hz = 100;
+  both.options[0].reading.names = {"gx", "gy"};
+  both.options[1].reading.names = {"gx", "gz", "gw"};
+  both.devices[1].options = 1;
+  FleetPlanOptions options;
+  options.by_channel = true;
+  write_plan(plan_fleet(both, options), folder / "parts");
+  // The unit of the channel that both logs call gx is read alike, and is of unlike settings.
+  both.devices.erase(both.devices.begin());
+  write_plan(plan_fleet(both, {}), folder / "whole");
+  CHECK_THROWS_WITH(refuse_common_logs(read_fleets({folder / "parts", folder / "whole"})),
+                    Contains("E0783") && Contains("b in"));
+}
+
 TEST_CASE("a thermometer in the log tells its temperature where the manifest says nothing") {
   const test::TemporaryFolder folder;
   const auto logs = write_warm_logs(folder.path(), {20, 40});
