@@ -102,13 +102,6 @@ struct TemperatureRuns {
   std::vector<DeviceSlope> slopes;  ///< of a temperature coefficient, in the order of the devices
 };
 
-/// Devices that count, in whose fits another term is not detected: what they have of it counts as this one, whose mean is too large then.
-struct BesideMissing {
-  std::size_t devices = 0;
-  double factor = 1;   ///< by which the mean is off at most
-  Interval mean_ci95;  ///< holds what is possible
-};
-
 struct FleetOutlier {
   std::size_t recording = 0,
               channel = 0;  ///< indices into the records: the device's first recording
@@ -129,7 +122,6 @@ struct QuantityLot {
   std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as lot_effects says
   std::optional<LotFigures> figures;     ///< of those counted
   std::optional<LeftOut> left_out;       ///< what they say of all
-  std::optional<BesideMissing> beside;  ///< where that is more than a fourth of the mean's interval
   std::array<double, kLotQuantiles.size()> quantiles{};  ///< of those counted
   Histogram histogram;                                   ///< of ln(value) or of the value
   std::vector<BatchLot> batches;  ///< in natural order; empty where there is one

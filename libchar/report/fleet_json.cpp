@@ -167,11 +167,6 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
                                 {"factor", json_number(left->factor)},
                                 {"spread_high", json_number(left->spread_high)}}
                          : Json(nullptr);
-  const auto& beside = q.beside;
-  out["beside_missing"] = beside ? Json{{"devices", beside->devices},
-                                        {"factor", json_number(beside->factor)},
-                                        {"mean_ci95", interval_json(beside->mean_ci95)}}
-                                 : Json(nullptr);
   out["spread_is"] = in_logarithm(q.quantity) ? "relative" : "absolute";
   out["quantiles"] = Json::array();
   for (std::size_t k = 0; k < kLotQuantiles.size(); ++k)

@@ -126,7 +126,7 @@ std::string quantities_part(const FleetLot& lot) {
          "their values as they were measured. Only what was detected counts, and no mean is given "
          "where that is under two "
          "thirds; too large by up to: at most that, if those that are not detected or doubtful are "
-         "the smallest, and for what counts of other terms that are not detected.</p>\n";
+         "the smallest.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {

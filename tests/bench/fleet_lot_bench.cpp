@@ -1,9 +1,8 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznk: coverage, batches, differences of two
-// lots, temperatures, zone rules of charts, what is not detected, bias instability beside a random walk that is not detected] [FOLDER]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtzn: coverage, batches, differences of two lots,
+// temperatures, zone rules of charts, what is not detected] [FOLDER]
 // With a folder: a fleet of that many devices with all of its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -362,109 +361,12 @@ void size_of_a_fleet(std::size_t devices) {
   std::filesystem::remove_all(folder);
 }
 
-/// Fits of 1000 s at 50 Hz with N = .005, B = .004 and this K, which is found in some of them.
-std::vector<NoiseFit> neighbour_fits(double walk, std::size_t count) {
-  constexpr std::size_t kSamples = 50000, kChunk = 50;
-  FitOptions options;
-  options.second_opinion = options.remedies = false;
-  std::vector<NoiseFit> out(count);
-  tbb::parallel_for(std::size_t{0}, count / kChunk, [&](std::size_t c) {
-    test::NoiseSource source(kSamples, 50, 815 + c);
-    for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
-      PowerBinner binner(kSamples);
-      binner.push(source.record(5e-3, 4e-3, walk));
-      out[i] = fit_power_bins(binner.finish(50), 50, kSamples, nullptr, options);
-    }
-  });
-  return out;
-}
-
-/// How far ln(value / truth) of one term is off where another is detected, where it is not, and on the mean of all, in per cent.
-void print_shift(const std::vector<NoiseFit>& fits, Term term, double truth) {
-  double sum[2] = {0, 0}, weighted = 0, weights = 0;
-  std::size_t count[2] = {0, 0};
-  for (const NoiseFit& fit : fits) {
-    if (fit[term].status != Status::detected) continue;
-    const bool found = fit[Term::walk].status == Status::detected;
-    sum[found] += std::log(*fit[term].value / truth);
-    ++count[found];
-    const double w = 1 / (fit[term].relative_sd * fit[term].relative_sd);
-    weights += w;
-    weighted += w * std::log(*fit[term].value / truth);
-  }
-  const auto mean = [](double total, std::size_t n) {
-    return n > 0 ? 100 * total / static_cast<double>(n) : 0;
-  };
-  fmt::print(
-      "  {:<24} off by {:+.2f} % where K is found, {:+.2f} % where not, {:+.2f} % of all, {:+.2f} "
-      "% with weights 1/sd²\n",
-      title_of(quantity_of(term)),
-      mean(sum[1], count[1]),
-      mean(sum[0], count[0]),
-      mean(sum[0] + sum[1], count[0] + count[1]),
-      100 * weighted / weights);
-}
-
-/// Lots of equal devices: does the mean of a term hold the truth whose neighbour is not detected in most of them?
-void neighbour_lots(double walk, int lots) {
-  const std::vector<NoiseFit> fits = neighbour_fits(walk, 4000);
-  const auto found = std::count_if(fits.begin(), fits.end(), [](const NoiseFit& fit) {
-    return fit[Term::walk].status == Status::detected;
-  });
-  fmt::print("K = {}: detected in {:.0f} % of records\n",
-             walk,
-             100.0 * static_cast<double>(found) / static_cast<double>(fits.size()));
-  print_shift(fits, Term::white, 5e-3);
-  print_shift(fits, Term::flicker, 4e-3);
-  test::Gaussian gauss(7);
-  for (const std::size_t devices : {20, 60, 200})
-    for (const double spread : {0.0, 0.1}) {
-      std::array<int, 2> held{}, wide{}, all{};
-      int narrow = 0;
-      for (int i = 0; i < lots; ++i) {
-        test::MadeLot made;
-        made.devices = devices;
-        made.channels = {"gyro_x"};
-        std::vector<DeviceRecord> records = test::made_lot(made, 1);
-        for (DeviceRecord& r : records) {
-          const NoiseFit& fit =
-              fits[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(fits.size()))];
-          const double own = std::exp(spread * gauss());
-          r.channels[0].values.clear();
-          for (const Term term : {Term::white, Term::flicker, Term::walk}) {
-            RecordedValue value;
-            value.quantity = quantity_of(term);
-            value.status = fit[term].status;
-            if (fit[term].value) value.value = *fit[term].value * own;
-            value.sd = fit[term].relative_sd;
-            if (fit[term].value) value.ci95 = {fit[term].ci95.low * own, fit[term].ci95.high * own};
-            r.channels[0].values.push_back(value);
-          }
-        }
-        for (const QuantityLot& q : fleet_lot(records).quantities) {
-          const auto t = static_cast<std::size_t>(q.quantity);
-          if (!q.figures || t > 1) continue;
-          ++all[t];
-          held[t] += holds(q.figures->mean_ci95, t == 0 ? 5e-3 : 4e-3);
-          wide[t] +=
-              holds(q.beside ? q.beside->mean_ci95 : q.figures->mean_ci95, t == 0 ? 5e-3 : 4e-3);
-          narrow += t == 1 && holds(q.figures->spread_ci95, spread);
-        }
-      }
-      const std::string what = fmt::format("{} devices, spread {}: ", devices, spread);
-      print_rate(what + "mean of N", held[0], std::max(all[0], 1), "95 %");
-      print_rate(what + "mean of B", held[1], std::max(all[1], 1), "95 %");
-      print_rate(what + "mean of B, what is possible", wide[1], std::max(all[1], 1), "95 %");
-      print_rate(what + "spread of B", narrow, std::max(all[1], 1), "95 %");
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
-  const std::string parts = argc > 3 ? argv[3] : "cbdtznk";
+  const std::string parts = argc > 3 ? argv[3] : "cbdtzn";
   const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
@@ -494,8 +396,6 @@ int main(int argc, char** argv) {
       charts(n, n > 1000 ? lots : 10 * lots);
   if (asked('n'))
     for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
-  if (asked('k'))
-    for (const double walk : {2.5e-4, 5e-4, 1e-3}) neighbour_lots(walk, lots);
   if (argc > 4)
     write_fleet(devices, argv[4]);
   else if (devices > 0)

@@ -4,11 +4,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "libchar/lot/fleet_lot.hpp"
-#include "tests/lot/made_fleet.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -70,34 +68,4 @@ TEST_CASE("left out: nothing where all count, and of what is not left out for be
   CHECK(zero->factor == Approx(1.25));
   CHECK(zero->mean_ci95.low == Approx(0.8 * effects.mean_ci95.low));
   CHECK(zero->mean_ci95.high == effects.mean_ci95.high);
-}
-
-TEST_CASE("beside a term that is not detected: the mean of another holds what it may have of it") {
-  test::MadeLot made;
-  made.channels = {"gyro_x"};
-  made.devices = 60;
-  made.spread[1] = 0;
-  made.sd[1] = 0.07;
-  auto records = test::made_lot(made, 20);
-  const auto b = [&] {
-    for (const QuantityLot& q : fleet_lot(records).quantities)
-      if (q.quantity == DeviceQuantity::bias_instability) return q;
-    throw std::logic_error("no such quantity");
-  };
-  CHECK_FALSE(b().beside);
-  // The model of all terms has B 3 % smaller in half of them: their intervals begin there.
-  for (std::size_t i = 0; i < 60; ++i) {
-    auto& values = records[i].channels[0].values;
-    if (i % 2 == 0) values[1].ci95.low *= std::exp(-0.06);
-    if (i % 2 == 1) continue;
-    values[2].status = Status::not_detected;
-    values[2].value = kNone;
-    values[2].upper95 = 5e-4;
-  }
-  const QuantityLot q = b();
-  REQUIRE(q.beside);
-  CHECK(q.beside->devices == 30);
-  CHECK(q.beside->factor == Approx(std::exp(0.03)).epsilon(0.004));
-  CHECK(q.beside->mean_ci95.low == Approx(q.figures->mean_ci95.low / q.beside->factor));
-  CHECK(q.beside->mean_ci95.high == Approx(q.figures->mean_ci95.high));
 }

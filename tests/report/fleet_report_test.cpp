@@ -459,23 +459,3 @@ TEST_CASE("a comparison of lots keeps its schema and has a table") {
   CHECK_THAT(fleet_comparison_text(c),
              Contains("mean of March") && Contains("larger than of March ["));
 }
-
-TEST_CASE("a mean that has something of a term that is not detected says so") {
-  test::MadeLot made;
-  made.devices = 60;
-  made.spread[1] = 0;
-  auto records = test::made_lot(made, 20);
-  for (DeviceRecord& r : records) {
-    auto& values = r.channels[0].values;
-    values[1].ci95.low *= std::exp(-0.06);
-    values[2].status = Status::not_detected;
-    values[2].value = kNone;
-    values[2].upper95 = 5e-4;
-  }
-  const FleetLot lot = fleet_lot(records);
-  const FleetReport report{records, &lot, "", {}, {}};
-  CHECK(test::schema_fault(test::written_fleet(report)[3].text) == "");
-  CHECK_THAT(fleet_html(report),
-             Contains("devices another term is not detected, so that its noise"));
-  CHECK_THAT(fleet_text(report), Contains("too large by up to 6"));
-}

@@ -26,26 +26,6 @@ void add_quantiles(const std::vector<double>& y, bool logarithm, QuantityLot& ou
   }
 }
 
-/// Weights as of the mean.
-void add_beside(const QuantityValues& values, QuantityLot& out) {
-  double sum = 0, weights = 0;
-  BesideMissing found;
-  for (std::size_t i = 0; i < values.y.size(); ++i) {
-    const double w = 1 / (values.v[i] + out.effects->spread * out.effects->spread);
-    weights += w;
-    if (std::isnan(values.excess[i])) continue;
-    ++found.devices;
-    sum += w * values.excess[i];
-  }
-  const Interval& mean = out.effects->mean_ci95;
-  const double off = sum / weights;
-  if (!(off > (mean.high - mean.low) / 8)) return;
-  found.factor = std::exp(off);
-  found.mean_ci95 = {std::exp(mean.low - off), std::exp(mean.high)};
-  if (out.left_out) out.left_out->mean_ci95.low /= found.factor;
-  out.beside = found;
-}
-
 void add_chart(const Statistic& s, QuantityLot& out) {
   if (s.values.y.size() < kLeastForChart) return;
   out.chart = control_chart(s.values.y);
@@ -95,7 +75,6 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   if (lot.effects) lot.figures = lot_figures(*lot.effects, logarithm);
   if (lot.effects)
     lot.left_out = left_out(quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
-  if (lot.effects && term_of(quantity)) add_beside(s.values, lot);
   lot.repeats = s.values.repeats;
   lot.temperatures = std::move(s.values.temperatures);
   add_quantiles(s.values.y, logarithm, lot);

@@ -32,24 +32,6 @@ Measured measured(const RecordedChannel& channel, DeviceQuantity quantity) {
   return usable ? Measured{Known::counted, y, v} : Measured{Known::doubtful};
 }
 
-/// Is any term but this one looked for and not found?
-bool beside_missing(const RecordedChannel& channel, DeviceQuantity quantity) {
-  return std::any_of(channel.values.begin(), channel.values.end(), [&](const RecordedValue& v) {
-    return v.quantity != quantity && term_of(v.quantity) && v.status == Status::not_detected;
-  });
-}
-
-/// A term that is not detected is not in the model, and what there is of it counts as the others. Their intervals are joined with those of the
-/// model of all terms (docs/theory/fit.md): what the lower end lies below that of the value's own deviation is not less than the value lies
-/// above the one in that model. Above 15 % intervals are those of a profile and say nothing of the kind.
-double excess_of(const RecordedChannel& channel, DeviceQuantity quantity) {
-  constexpr double kPlain = 0.15;
-  if (!term_of(quantity) || !beside_missing(channel, quantity)) return kNone;
-  const RecordedValue& v = *channel.find(quantity);
-  if (!(v.sd < kPlain) || !(v.ci95.low > 0) || !(v.value > v.ci95.low)) return kNone;
-  return std::max(0.0, std::log(v.value / v.ci95.low) - kNormal95 * v.sd);
-}
-
 /// NaN where it is not known, or no temperature.
 double temperature_of(const DeviceRecord& record) {
   const double t = record.temperature_c.value_or(kNone);
@@ -85,7 +67,6 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
       out.y.push_back(one.y);
       out.v.push_back(one.v);
       out.temperature_c.push_back(temperature_of(record));
-      out.excess.push_back(excess_of(record.channels[place.channel], quantity));
       out.place.push_back(place);
       out.member.push_back(out.members.size());
     }

@@ -13,8 +13,6 @@ namespace libchar {
 struct MemberRecordings {
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
   std::vector<double> temperature_c;  ///< NaN: not known
-  /// How far ln(value) can be too large because another term is not in the model of its fit; NaN: all are, or nothing is known of it.
-  std::vector<double> excess;
   std::vector<LotPlace> place;
   std::vector<std::size_t> member;     ///< index into `members`
   std::vector<std::uint32_t> members;  ///< of the group, those that count

@@ -41,14 +41,6 @@ std::vector<std::size_t> recordings_of(const MemberRecordings& in) {
   return out;
 }
 
-/// The largest of a member's recordings: their values are taken together with any weights.
-std::vector<double> excess_by_member(const MemberRecordings& in) {
-  std::vector<double> out(in.members.size(), kNone);
-  for (std::size_t i = 0; i < in.excess.size(); ++i)
-    if (!(out[in.member[i]] >= in.excess[i])) out[in.member[i]] = in.excess[i];
-  return out;
-}
-
 void take_together(const MemberRecordings& in, QuantityValues& out) {
   const std::size_t members = in.members.size();
   if (in.y.size() == members || members < 2) {  // one recording each, or nobody to compare with
@@ -125,7 +117,6 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
   out.counts = found.counts;
   out.batch_counts = found.batch_counts;
   out.member = found.members;
-  out.excess = excess_by_member(found);
   auto at = quantity == DeviceQuantity::turn_on_bias ? temperature_lines(found) : std::nullopt;
   if (at)
     take_lines(*std::move(at), out);

@@ -17,7 +17,6 @@ struct QuantityValues {
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
   /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
   std::vector<double> v_low, v_high;
-  std::vector<double> excess;  ///< of each that counts (member_recordings.hpp); NaN: none
   std::optional<RepeatedDevices> repeats;
   std::optional<TemperatureRuns> temperatures;
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says

@@ -51,13 +51,12 @@ std::string mean_text(const std::optional<LotFigures>& f, const std::string& uni
 
 /// Behind a mean that is not of all.
 std::string off_text(const QuantityLot& q) {
-  if (!q.left_out && !q.beside) return "";
-  const double factor = (q.left_out ? q.left_out->factor : 1) * (q.beside ? q.beside->factor : 1);
-  const double most = 100 * (factor - 1);
-  return fmt::format(
-      ", too {} by up to {}",
-      in_logarithm(q.quantity) ? "large" : "far from zero",
-      most < 100 ? number_text(most, 2) + " %" : "a factor of " + number_text(factor, 2));
+  if (!q.left_out) return "";
+  const double most = 100 * (q.left_out->factor - 1);
+  return fmt::format(", too {} by up to {}",
+                     in_logarithm(q.quantity) ? "large" : "far from zero",
+                     most < 100 ? number_text(most, 2) + " %"
+                                : "a factor of " + number_text(q.left_out->factor, 2));
 }
 
 std::string channel_unit_text(const QuantityLot& q) {
@@ -229,23 +228,9 @@ std::string left_out_sentence(const QuantityLot& q) {
                     number_text(100 * left.spread_high, 3));
 }
 
-std::string beside_sentence(const QuantityLot& q) {
-  const BesideMissing& b = *q.beside;
-  return fmt::format(
-      "In {} of {} devices another term is not detected, so that its noise counts as this one: the "
-      "mean is too large by up to {} % for that, and that of all in [{}, {}] {}.",
-      count_text(b.devices),
-      count_text(q.counts.counted),
-      number_text(100 * (b.factor - 1), 2),
-      number_text(b.mean_ci95.low),
-      number_text(b.mean_ci95.high),
-      q.unit);
-}
-
 std::string sentences(const QuantityLot& q) {
   const bool logarithm = in_logarithm(q.quantity);
   std::vector<std::string> out;
-  if (q.beside) out.push_back(beside_sentence(q));
   if (q.left_out) out.push_back(left_out_sentence(q));
   if (q.quantity == DeviceQuantity::temperature_coefficient)
     out.push_back(coefficient_sentence(q));
