@@ -91,7 +91,7 @@ std::vector<Group> groups_of(Devices devices) {
 }
 
 struct Values {
-  std::vector<double> y, v;
+  std::vector<double> y, v, samples;
 };
 
 Values add_values(Devices devices,
@@ -111,8 +111,9 @@ Values add_values(Devices devices,
       if (k.status == Status::not_detected) ++out.not_detected;
       if (k.status != Status::detected && k.status != Status::not_detected) ++out.doubtful;
       if (k.status != Status::detected || !k.value || !(k.relative_sd > 0)) continue;
-      y = std::log(*k.value);
-      v = k.relative_sd * k.relative_sd;
+      const LogCoefficient one = log_coefficient(k);
+      y = one.y;
+      v = one.v;
     } else {
       y = c.quality.mean;
       v = mean_noise_variance(*c.fit);
@@ -120,6 +121,7 @@ Values add_values(Devices devices,
     }
     values.y.push_back(y);
     values.v.push_back(v);
+    values.samples.push_back(static_cast<double>(c.fit->samples));
     out.counted.push_back(m);
   }
   return values;
@@ -181,7 +183,9 @@ std::optional<Statistic> statistic_of(Devices devices,
   out.values = add_values(devices, group, term, lot);
   if (lot.counted.empty() && (lot.not_detected == 0 || (term && *term >= Term::quantization)))
     return std::nullopt;
-  lot.effects = lot_effects(out.values.y, out.values.v, lot.members);
+  const Values& found = out.values;
+  lot.effects = term ? coefficient_effects(found.y, found.v, found.samples, lot.members)
+                     : lot_effects(found.y, found.v, lot.members);
   return out;
 }
 

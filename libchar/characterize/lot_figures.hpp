@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "libchar/core/coefficient.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/random_effects.hpp"
 
@@ -23,6 +24,18 @@ struct LotFigures {
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members);
+
+/// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the records, one a value.
+std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm,
+                                                 std::span<const double> variance,
+                                                 std::span<const double> samples,
+                                                 std::size_t members);
+
+/// ln(value) of a coefficient and its variance as a lot takes them: in the model of all terms.
+struct LogCoefficient {
+  double y = 0, v = 0;
+};
+LogCoefficient log_coefficient(const Coefficient& found);
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
 

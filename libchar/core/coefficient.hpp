@@ -38,6 +38,10 @@ struct Coefficient {
   double likelihood_ratio = 0;    ///< 2 (lnL with - lnL without)
   std::optional<double> bound;    ///< Cramér–Rao bound at the fit, relative sd
   std::optional<double> seconds_for_10_percent;  ///< record length at which the bound is 10 %
+  /// The value, and its relative sd, in the model of all terms that were offered with none of them held at zero, where that is another
+  /// model: less exact, but not biased by a term that is there and was not detected. For means over many records.
+  std::optional<double> value_in_all;
+  double relative_sd_in_all = 0;
 };
 
 /// One of each term, indexed by Term.

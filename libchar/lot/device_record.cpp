@@ -28,6 +28,10 @@ RecordedValue recorded(DeviceQuantity quantity, const Coefficient& c) {
     out.sd = c.relative_sd;
   }
   if (c.upper95) out.upper95 = *c.upper95;
+  if (c.value && c.value_in_all) {
+    out.value_in_all = *c.value_in_all;
+    out.sd_in_all = c.relative_sd_in_all;
+  }
   return out;
 }
 
@@ -100,7 +104,8 @@ bool is_in_celsius(const std::string& text) {
 bool RecordedValue::operator==(const RecordedValue& o) const {
   return quantity == o.quantity && status == o.status && same_number(value, o.value) &&
          same_number(ci95.low, o.ci95.low) && same_number(ci95.high, o.ci95.high) &&
-         same_number(sd, o.sd) && same_number(upper95, o.upper95);
+         same_number(sd, o.sd) && same_number(upper95, o.upper95) &&
+         same_number(value_in_all, o.value_in_all) && same_number(sd_in_all, o.sd_in_all);
 }
 
 bool RecordedChannel::operator==(const RecordedChannel& o) const {
@@ -165,6 +170,10 @@ Coefficient coefficient_of(const RecordedValue& v) {
     out.value = v.value;
     out.ci95 = v.ci95;
     out.relative_sd = v.sd;
+  }
+  if (!std::isnan(v.value_in_all)) {
+    out.value_in_all = v.value_in_all;
+    out.relative_sd_in_all = v.sd_in_all;
   }
   if (!std::isnan(v.upper95)) out.upper95 = v.upper95;
   return out;

@@ -27,6 +27,8 @@ struct RecordedValue {
   double sd =
       kNone;  ///< of ln(value) where the quantity is compared as logarithm, else of the value
   double upper95 = kNone;  ///< of what is not detected
+  /// of a noise term, with its relative sd, in the model of all terms (core/coefficient.hpp), where that is another model
+  double value_in_all = kNone, sd_in_all = kNone;
   bool operator==(const RecordedValue&) const;
 };
 

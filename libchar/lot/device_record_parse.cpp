@@ -34,6 +34,13 @@ RecordedValue read_value(const MapReader& map, DeviceQuantity quantity) {
   out.value = map.number_or("value", kNone, in_logarithm(quantity) ? kNotNegative : kAnyNumber);
   out.upper95 = map.number_or("upper95", kNone, kNotNegative);
   out.sd = map.number_or("sd", kNone, kNotNegative);
+  if (map.has("in_all")) {
+    const std::vector<double> both = map.numbers("in_all");
+    if (both.size() != 2 || !(both[0] >= 0) || !(both[1] >= 0))
+      map.refuse("in_all", "expected a value and its relative sd");
+    out.value_in_all = both[0];
+    out.sd_in_all = both[1];
+  }
   if (!map.has("ci95")) return out;
   const std::vector<Document>& ends = map.list("ci95");
   if (ends.size() != 2) map.refuse("ci95", "expected a list of two numbers");

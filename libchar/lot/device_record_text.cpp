@@ -13,6 +13,8 @@ Json value_json(const RecordedValue& v) {
     out["value"] = json_number(v.value);
     out["ci95"] = Json::array({json_number(v.ci95.low), json_number(v.ci95.high)});
     out["sd"] = json_number(v.sd);
+    if (!std::isnan(v.value_in_all))
+      out["in_all"] = Json::array({json_number(v.value_in_all), json_number(v.sd_in_all)});
   }
   if (!std::isnan(v.upper95)) out["upper95"] = json_number(v.upper95);
   return out;

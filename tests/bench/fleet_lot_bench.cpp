@@ -1,6 +1,6 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtzn: coverage, batches, differences of two lots,
-// temperatures, zone rules of charts, what is not detected] [FOLDER]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznk: coverage, batches, differences of two lots,
+// temperatures, zone rules of charts, what is not detected, whole fits of three terms] [FOLDER]
 // With a folder: a fleet of that many devices with all of its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 
@@ -301,6 +301,60 @@ void left_out_lots(Term term, int lots) {
       }
 }
 
+/// Lots of whole fits of N, B and K together: what a term that is there and not detected does to the means of the others.
+void fitted_lots(double walk, double spread, int lots) {
+  constexpr std::size_t kSamples = 16384;
+  constexpr std::size_t kDevices = 200;
+  const double truth[] = {1, 0.15, walk};
+  test::NoiseSource source(kSamples, 1, 4711);
+  test::Gaussian gauss(5);
+  FitOptions options;
+  options.second_opinion = options.remedies = false;
+  Tally tally[3];
+  std::size_t detected = 0;
+  for (int l = 0; l < lots; ++l) {
+    test::MadeLot made;
+    made.devices = kDevices;
+    made.channels = {"gyro_x"};
+    std::vector<DeviceRecord> records = test::made_lot(made, 1);
+    for (DeviceRecord& r : records) {
+      double c[3];
+      for (int t = 0; t < 3; ++t) c[t] = truth[t] * std::exp(spread * gauss());
+      PowerBinner binner(kSamples);
+      binner.push(source.record(c[0], c[1], c[2]));
+      Characterization one;
+      ChannelResult& channel = one.channels.emplace_back();
+      channel.channel = {"gyro_x", "deg/s"};
+      channel.quality.samples = kSamples;
+      channel.fit = fit_power_bins(binner.finish(1), 1, kSamples, nullptr, options);
+      detected += (*channel.fit)[Term::walk].status == Status::detected;
+      r.channels = record_of(one).channels;
+    }
+    for (const QuantityLot& q : fleet_lot(records).quantities) {
+      const auto term = term_of(q.quantity);
+      if (!term || q.of_kind || !q.figures) continue;
+      Tally& of = tally[static_cast<std::size_t>(*term)];
+      ++of.lots;
+      of.mean += holds(q.left_out ? q.left_out->mean_ci95 : q.figures->mean_ci95,
+                       truth[static_cast<std::size_t>(*term)]);
+      Interval width = q.figures->spread_ci95;
+      if (q.left_out) width.high = std::max(width.high, q.left_out->spread_high);
+      of.spread += holds(width, spread);
+    }
+  }
+  fmt::print("{} devices of N 1, B .15, K {}, spread {} ({:.0f} % of K detected)\n",
+             kDevices,
+             walk,
+             spread,
+             100.0 * static_cast<double>(detected) / (lots * static_cast<double>(kDevices)));
+  for (std::size_t t = 0; t < 3; ++t) {
+    if (tally[t].lots == 0) continue;
+    const std::string title = title_of(quantity_of(static_cast<Term>(t)));
+    print_rate(title + ": mean in its interval", tally[t].mean, tally[t].lots, "95 %");
+    print_rate(title + ": spread in its interval", tally[t].spread, tally[t].lots, "95 %");
+  }
+}
+
 test::MadeLot large_lot(std::size_t devices) {
   test::MadeLot made;
   made.devices = devices;
@@ -366,7 +420,7 @@ void size_of_a_fleet(std::size_t devices) {
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
-  const std::string parts = argc > 3 ? argv[3] : "cbdtzn";
+  const std::string parts = argc > 3 ? argv[3] : "cbdtznk";
   const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
@@ -396,6 +450,9 @@ int main(int argc, char** argv) {
       charts(n, n > 1000 ? lots : 10 * lots);
   if (asked('n'))
     for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
+  if (asked('k'))
+    for (const double spread : {0.1, 0.3})
+      for (const double walk : {0.0, 0.002, 0.005, 0.008}) fitted_lots(walk, spread, lots);
   if (argc > 4)
     write_fleet(devices, argv[4]);
   else if (devices > 0)

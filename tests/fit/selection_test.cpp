@@ -6,6 +6,9 @@
 #include <numbers>
 
 #include "libchar/fit/detail/profile.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/power_bins.hpp"
+#include "tests/support/noise.hpp"
 
 using namespace libchar;
 
@@ -43,4 +46,48 @@ TEST_CASE("selected lower limits: zero at the threshold, the plain limit far fro
   CHECK(selected_rise(13.0, 5.41) < 13.0);
   CHECK(selected_rise(60, 5.41) == Approx(kTwoSided95).epsilon(1e-3));
   CHECK(selected_rise(INFINITY, 5.41) == kTwoSided95);
+}
+
+TEST_CASE(
+    "the value in the model of all terms is right on average where a neighbour is not detected") {
+  constexpr std::size_t n = 16384;
+  constexpr double kFlicker = 0.15, kWalk = 0.003;
+  test::NoiseSource source(n, 1, 77);
+  FitOptions options;
+  options.second_opinion = options.remedies = false;
+  double reported = 0, in_all = 0, variance = 0;
+  int records = 0, other_model = 0;
+  for (int r = 0; r < 300; ++r) {
+    PowerBinner binner(n);
+    binner.push(source.record(1, kFlicker, kWalk));
+    const NoiseFit fit = fit_power_bins(binner.finish(1), 1, n, nullptr, options);
+    const Coefficient& b = fit[Term::flicker];
+    if (!b.value) continue;
+    const double value = b.value_in_all.value_or(*b.value);
+    const double sd = b.value_in_all ? b.relative_sd_in_all : b.relative_sd;
+    ++records;
+    other_model += b.value_in_all.has_value();
+    reported += std::pow(*b.value / kFlicker, 2);
+    in_all += std::pow(value / kFlicker, 2);
+    variance += std::pow(2 * sd * std::pow(value / kFlicker, 2), 2);
+  }
+  CHECK(records > 295);
+  CHECK(other_model > 150);  // K is mostly not detected
+  const double error = std::sqrt(variance) / records;
+  CHECK(std::abs(in_all / records - 1) < 3.5 * error);
+  CHECK(reported / records - 1 > 3.5 * error);
+}
+
+TEST_CASE("where all terms are reported there is no other model") {
+  constexpr std::size_t n = 1 << 15;
+  test::NoiseSource source(n, 1, 5);
+  PowerBinner binner(n);
+  binner.push(source.record(1, 0.4, 0.05));
+  FitOptions options;
+  options.second_opinion = false;
+  const NoiseFit fit = fit_power_bins(binner.finish(1), 1, n, nullptr, options);
+  for (const Term term : {Term::white, Term::flicker, Term::walk}) {
+    CHECK(fit[term].status == Status::detected);
+    CHECK_FALSE(fit[term].value_in_all);
+  }
 }

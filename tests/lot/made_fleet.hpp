@@ -26,9 +26,10 @@ inline libchar::RecordedValue made_value(
   libchar::RecordedValue v;
   v.quantity = quantity;
   v.sd = sd * std::exp2(gauss.uniform() - 0.5);
-  const double off = spread * gauss() + v.sd * gauss();
   const bool logarithm = libchar::in_logarithm(quantity);
-  v.value = logarithm ? mean * std::exp(off) : mean + off;
+  const double device = spread * gauss(), error = v.sd * gauss();
+  // A fit finds the square of a coefficient without bias: ln c is too small by v on average.
+  v.value = logarithm ? mean * std::exp(device + error - v.sd * v.sd) : mean + device + error;
   v.ci95 = logarithm ? libchar::Interval{v.value * std::exp(-1.96 * v.sd),
                                          v.value * std::exp(1.96 * v.sd)}
                      : libchar::Interval{v.value - 1.96 * v.sd, v.value + 1.96 * v.sd};

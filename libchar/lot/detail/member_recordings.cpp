@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/lot_figures.hpp"
 #include "libchar/core/not_known.hpp"
 
 namespace libchar {
@@ -24,8 +25,10 @@ Measured measured(const RecordedChannel& channel, DeviceQuantity quantity) {
   if (value == nullptr) return {};
   if (value->status == Status::not_detected) return {Known::not_detected};
   if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
-  const bool logarithm = in_logarithm(quantity);
-  const double y = logarithm ? std::log(value->value) : value->value, v = value->sd * value->sd;
+  const LogCoefficient in_logarithms =
+      in_logarithm(quantity) ? log_coefficient(coefficient_of(*value)) : LogCoefficient{};
+  const double y = in_logarithm(quantity) ? in_logarithms.y : value->value,
+               v = in_logarithm(quantity) ? in_logarithms.v : value->sd * value->sd;
   // A square that a double does not hold is no uncertainty either.
   const bool usable =
       std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
@@ -66,6 +69,7 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
       if (one.known != Known::counted) continue;
       out.y.push_back(one.y);
       out.v.push_back(one.v);
+      out.samples.push_back(static_cast<double>(record.channels[place.channel].samples));
       out.temperature_c.push_back(temperature_of(record));
       out.place.push_back(place);
       out.member.push_back(out.members.size());

@@ -12,6 +12,7 @@ namespace libchar {
 /// The recordings that count, by member.
 struct MemberRecordings {
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
+  std::vector<double> samples;        ///< of each
   std::vector<double> temperature_c;  ///< NaN: not known
   std::vector<LotPlace> place;
   std::vector<std::size_t> member;     ///< index into `members`

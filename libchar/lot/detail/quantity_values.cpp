@@ -122,10 +122,17 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
     take_lines(*std::move(at), out);
   else
     take_together(found, out);
+  if (term_of(quantity)) {
+    out.samples.resize(out.y.size());
+    for (std::size_t i = 0; i < found.member.size(); ++i)
+      out.samples[found.member[i]] += found.samples[i];
+  }
   return out;
 }
 
 std::optional<RandomEffects> effects_of(const QuantityValues& values) {
+  if (!values.samples.empty())
+    return coefficient_effects(values.y, values.v, values.samples, values.counts.members);
   auto out = lot_effects(values.y, values.v, values.counts.members);
   if (!out || values.v_low.empty()) return out;
   const auto square = [](double x) { return x * x; };

@@ -15,6 +15,8 @@ struct QuantityValues {
   LotCounts counts;
   std::vector<std::uint32_t> member;  ///< of the group, those that count
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
+  /// Of the records behind each, of noise terms; empty of others.
+  std::vector<double> samples;
   /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
   std::vector<double> v_low, v_high;
   std::optional<RepeatedDevices> repeats;

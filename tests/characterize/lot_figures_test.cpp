@@ -1,0 +1,87 @@
+// Means over many fits: what each does not show.
+
+#include "libchar/characterize/lot_figures.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+
+namespace {
+
+/// Fits of devices whose coefficient is exp(spread N(0, 1)): c² is found without bias, by `dof` squares, and v is what the fit believes.
+struct Fits {
+  std::vector<double> y, v, samples;
+};
+
+Fits made_fits(std::size_t devices, double spread, int dof, test::Gaussian& gauss) {
+  Fits out;
+  for (std::size_t i = 0; i < devices; ++i) {
+    const double truth = std::exp(2 * spread * gauss());
+    // A background that is known adds to what is measured: who is found large is believed to be known well.
+    const double background = 1;
+    double squares = 0;
+    for (int k = 0; k < dof; ++k) squares += std::pow(gauss(), 2);
+    const double found = (truth + background) * squares / dof - background;
+    if (!(found > 0.05)) continue;
+    const double sd = std::sqrt(2.0 / dof) * (found + background);
+    out.y.push_back(0.5 * std::log(found));
+    out.v.push_back(std::pow(sd / (2 * found), 2));
+    out.samples.push_back(1000);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the mean of many fits is not moved by those that were found too large") {
+  test::Gaussian gauss(8);
+  int plain = 0, ours = 0;
+  constexpr int kLots = 200;
+  for (int l = 0; l < kLots; ++l) {
+    const Fits fits = made_fits(200, 0.1, 200, gauss);
+    const auto a = lot_effects(fits.y, fits.v, fits.y.size());
+    const auto b = coefficient_effects(fits.y, fits.v, fits.samples, fits.y.size());
+    REQUIRE((a && b));
+    plain += a->mean_ci95.low <= 0 && 0 <= a->mean_ci95.high;
+    ours += b->mean_ci95.low <= 0 && 0 <= b->mean_ci95.high;
+    CHECK(a->spread == b->spread);
+  }
+  CHECK(ours >= 180);
+  CHECK(ours <= 199);
+  CHECK(plain < 150);
+}
+
+TEST_CASE("short records do not weigh as long ones, whatever was found in them") {
+  // One of ten samples, found half as large again.
+  const std::vector<double> spread_y = {
+      1, 1.001, 1.002, 1.0005, 1.5, 1.0, 1.001, 1.002, 1.0, 1.001};
+  const std::vector<double> spread_v = {1e-6, 1e-6, 1e-6, 1e-6, 1, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6};
+  std::vector<double> lengths(10, 1e6);
+  lengths[4] = 10;
+  const auto effects = coefficient_effects(spread_y, spread_v, lengths, 10);
+  REQUIRE(effects);
+  CHECK(effects->mean < 1.01);
+  std::vector<double> y(spread_y.rbegin(), spread_y.rend()), v(spread_v.rbegin(), spread_v.rend()),
+      samples(lengths.rbegin(), lengths.rend());
+  const auto reversed = coefficient_effects(y, v, samples, 10);
+  REQUIRE(reversed);
+  CHECK(reversed->mean == Approx(effects->mean).epsilon(1e-14));
+}
+
+TEST_CASE("a coefficient in a lot is that of the model of all terms") {
+  Coefficient c;
+  c.value = 2;
+  c.relative_sd = 0.1;
+  CHECK(log_coefficient(c).y == std::log(2.0));
+  CHECK(log_coefficient(c).v == 0.1 * 0.1);
+  c.value_in_all = 1.9;
+  c.relative_sd_in_all = 0.12;
+  CHECK(log_coefficient(c).y == std::log(1.9));
+  CHECK(log_coefficient(c).v == 0.12 * 0.12);
+  c.relative_sd = 0.2;  // widened by what the noise does not explain
+  CHECK(log_coefficient(c).v == 0.2 * 0.2);
+}
