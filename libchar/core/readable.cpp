@@ -42,7 +42,8 @@ std::string significant_or_dash(double value, int digits) {
 
 int digits_for(double relative_uncertainty) {
   if (!(relative_uncertainty > 0)) return 4;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(relative_uncertainty))), 2, 6);
+  // Clamped before it is an int: an uncertainty may be infinite.
+  return static_cast<int>(std::clamp(1 - std::floor(std::log10(relative_uncertainty)), 2.0, 6.0));
 }
 
 std::string duration_text(double seconds) {

@@ -58,3 +58,11 @@ TEST_CASE("counts and probabilities") {
   CHECK(probability_text(0.005, 199) == "p ≤ 0.005");
   CHECK(probability_text(0.01, 199) == "p = 0.010");
 }
+
+TEST_CASE("digits that an uncertainty leaves, none at all as well") {
+  CHECK(digits_for(0.001) == 4);
+  CHECK(digits_for(0.3) == 2);
+  CHECK(digits_for(std::numeric_limits<double>::infinity()) == 2);
+  CHECK(digits_for(std::numeric_limits<double>::quiet_NaN()) == 4);
+  CHECK(digits_for(1e-300) == 6);
+}
