@@ -103,7 +103,7 @@ TEST_CASE("sensor chain: low-passed noise is stationary from the first sample") 
   SensorModel m;
   m.rate_hz = 100;
   m.bandwidth_hz = 1;
-  m.noise[0] = {Status::given, 1.0, {}, 0, false, {}, 0, {}, {}};
+  m.noise[0] = {Status::given, 1.0, {}, 0, false, {}, 0, {}, {}, {}};
   const double a = std::exp(-2 * 3.14159265358979 * 0.01);
   for (const auto sampling : {NoiseSampling::per_sample, NoiseSampling::band_limited}) {
     m.noise_sampling = sampling;
