@@ -32,7 +32,7 @@ reportPage.start({}, () => 320);
         link.textContent = data.device[i];
         first.append(link);
       } else first.textContent = data.device[i];
-      cell(row, recording(i));
+      if (data.recording !== null) cell(row, recording(i));
       cell(row, data.types[data.type[i]]);
       cell(row, data.batches[data.batch[i]]);
       const state = STATES.filter(([bit]) => data.state[i] & bit).map(([, word]) => word).join(", ");

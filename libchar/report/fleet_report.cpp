@@ -163,7 +163,13 @@ std::string figures_part(const FleetReport& report) {
          "</section>\n";
 }
 
-std::string devices_part() {
+bool has_several_recordings(const FleetLot& lot) {
+  return lot.order.size() > lot.devices;
+}
+
+std::string devices_part(const FleetLot& lot) {
+  std::vector<std::string> heads = {"Device", "Type", "Batch", "What is the matter"};
+  if (has_several_recordings(lot)) heads.insert(heads.begin() + 1, "Recording");
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
          "batch\"></label>\n"
@@ -176,7 +182,7 @@ std::string devices_part() {
          "<button type=\"button\" id=\"device-next\">next ›</button>\n<span id=\"device-place\" "
          "class=\"dim\"></span>\n"
          "</div>\n<div class=\"wide\"><table class=\"devices\" id=\"devices\">\n" +
-         table_head({"Device", "Recording", "Type", "Batch", "What is the matter"}) +
+         table_head(heads) +
          "</tbody></table></div>\n<p class=\"note\">Every coefficient of every device stands in "
          "coefficients.csv and "
          "coefficients.npz beside this page.</p>\n</section>\n";
@@ -220,7 +226,7 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
 /// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one.
 Json recordings_json(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  if (lot.order.size() == lot.devices) return nullptr;
+  if (!has_several_recordings(lot)) return nullptr;
   std::map<std::pair<std::string_view, std::string_view>, std::size_t> count;
   const auto device = [&](std::size_t r) -> std::size_t& {
     return count[{report.records[r].type, report.records[r].device}];
@@ -298,7 +304,7 @@ std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
                            quantities_part(lot) + "</section>\n" + worst_part(report) +
-                           figures_part(report) + devices_part() + provenance(report);
+                           figures_part(report) + devices_part(*report.lot) + provenance(report);
   PageParts parts;
   parts.title = "A fleet of sensors";
   parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;

@@ -31,7 +31,7 @@ test::Ran run_with_additions(std::vector<std::string> words) {
 TEST_CASE("a verb is one file: help, work, JSON and messages have it") {
   const auto help = run_with_additions({"--help"});
   CHECK(help.code == 0);
-  CHECK_THAT(help.out, Contains("convert") && Contains("count-words"));
+  CHECK_THAT(help.out, Contains("convert") && Contains("count words"));
   CHECK_THAT(run_with_additions({"count-words", "--help"}).out, Contains("--json"));
   CHECK(run_with_additions({"count-words", "one", "two"}).out == "2\n");
   const auto json = run_with_additions({"count-words", "one", "--json"});

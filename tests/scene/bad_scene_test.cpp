@@ -67,7 +67,7 @@ const std::map<std::string, Case>& yaml_cases() {
         ":6:37: error E0543",
         "faults[0].value"}},
       {"014_comma_decimal", {with_rate("1,5"), ":5:12: error E0541", "point"}},
-      {"015_unit_suffix", {with_rate("100 Hz"), ":5:12: error E0541", "unit"}},
+      {"015_unit_suffix", {with_rate("100 Hz"), ":5:12: error E0541", "write the number alone: it is in Hz"}},
       {"016_unknown_key",
        {kHead + kBody + "algoritms: [mean]\n", ":5:1: error E0540", "algorithms?"}},
       {"017_version_99", {"format: scene\nversion: 99\n", ":2:10: error E0546", "newer"}},
