@@ -90,6 +90,7 @@ TEST_CASE("fleet merge and the verbs for other reports: what a lot's report is")
   const Fleets fleets(2);
   fleets.made("f", {"d0.csv", "d1.csv"});
   CHECK_THAT(fleets.refused({"merge", "f", "-o", "-"}).err, Contains("name a folder"));
+  CHECK_THAT(fleets.refused({"plan", "d0.csv", "-o", "-"}).err, Contains("name a folder"));
   CHECK_FALSE(fs::exists(fleets.folder / "-"));
   REQUIRE(fleets.run({"merge", "f", "-o", "r"}).code == 0);
   for (const char* report : {"r", "r/lot.json"}) {

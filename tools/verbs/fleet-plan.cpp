@@ -82,6 +82,7 @@ std::string replaced_text(const ReplacedPlan& replaced, std::size_t others) {
 }
 
 void run_plan(Session& session, PlanVerb verb) {
+  refuse_standard_output("--output", verb.folder);
   const CharacterizeOptions options = finish(verb.analysis);
   verb.plan.reports = !verb.no_reports;
   const auto replaced = plan_in(verb.folder);
