@@ -141,8 +141,8 @@ TEST_CASE("workers call the program by a path with any letters, or by a command 
   }
   if (is_there("parallel")) {  // another machine begins in another folder
     test::write_file(folder / "ssh",
-                     fmt::format("#!/bin/bash\nshift\n[ \"$1\" = -- ] && shift\ncd '{}'\nexec bash "
-                                 "-c \"$*\"\n",
+                     fmt::format("#!/bin/bash\nshift\n[ \"$1\" = -- ] && shift\ncd '{}'\n"
+                                 "export SHELL=/bin/sh  # as sshd does\nexec bash -c \"$*\"\n",
                                  folder.path().string()));
     fs::permissions(folder / "ssh", fs::perms::owner_all);
     export_jobs(jobs, engines()[2], fleet, options);

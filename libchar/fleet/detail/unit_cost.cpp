@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/nameless_file.hpp"
 #include "libchar/core/sha256.hpp"
 
 namespace libchar {
@@ -44,17 +44,15 @@ double seconds_of(std::size_t samples) {
   return seconds_since(start);
 }
 
-/// A table of one column in the folder for temporary files. It has no name there: whoever is killed leaves nothing.
+/// A table of one column in the folder for temporary files.
 class TemporaryTable {
  public:
   TemporaryTable() {
     std::error_code error;
     const auto folder = std::filesystem::temp_directory_path(error);
     if (error) return;
-    std::string name = (folder / "libchar-cost-XXXXXX").string();
-    descriptor_ = ::mkstemp(name.data());
+    descriptor_ = open_nameless(folder);
     if (descriptor_ < 0) return;
-    ::unlink(name.c_str());
     std::string text = "x\n";
     for (int row = 0; row < kRows; ++row) text += fmt::format("{:.9f}\n", std::sin(row));
     const auto size = static_cast<ssize_t>(text.size());

@@ -1,6 +1,5 @@
 #include "libchar/log/write/value_writer.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,24 +12,13 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/nameless_file.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::size_t kStretch =
     std::size_t{1} << 19U;  // bytes of one column that are kept before they go to the spool
-
-// A file without a name: it is gone when it is closed, however the program ends.
-int open_spool(const std::string& beside) {
-  const std::string folder = std::filesystem::path(beside).parent_path().string();
-  const int nameless =
-      ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (nameless >= 0) return nameless;
-  std::string name = beside + ".tmp-XXXXXX";  // a file system without nameless files
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
 
 }  // namespace
 
@@ -41,7 +29,7 @@ ValueWriter::ValueWriter(WholeFile& file,
     : file_(file), number_(number), column_major_(column_major && channels > 1) {
   if (!column_major_) return;
   pending_.resize(channels);
-  spool_ = open_spool(file.path());
+  spool_ = open_nameless(std::filesystem::path(file.path()).parent_path());
   if (spool_ < 0) fail("create a temporary file beside it");
 }
 
