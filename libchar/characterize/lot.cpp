@@ -92,13 +92,26 @@ std::vector<Group> groups_of(Devices devices) {
 
 struct Values {
   std::vector<double> y, v, samples;
+  LotSquares
+      squares;  ///< of a term, also of members that do not count; none where one of them has none
 };
+
+void add_square(const Coefficient& found, std::uint64_t samples, bool& known, LotSquares& out) {
+  const auto one = square_in_lot(found);
+  known = known && (one || found.status == Status::misfit);
+  if (!one) return;
+  out.square.push_back(one->square);
+  out.sd.push_back(one->sd);
+  out.skewness.push_back(one->skewness);
+  out.samples.push_back(static_cast<double>(samples));
+}
 
 Values add_values(Devices devices,
                   const Group& group,
                   std::optional<Term> term,
                   LotStatistic& out) {
   Values values;
+  bool squared = term.has_value();
   for (const LotMember& m : group.members) {
     const ChannelResult& c = channel_of(devices, m);
     double y = 0, v = 0;
@@ -108,6 +121,7 @@ Values add_values(Devices devices,
     }
     if (term) {
       const Coefficient& k = (*c.fit)[*term];
+      add_square(k, c.fit->samples, squared, values.squares);
       if (k.status == Status::not_detected) ++out.not_detected;
       if (k.status != Status::detected && k.status != Status::not_detected) ++out.doubtful;
       if (k.status != Status::detected || !k.value || !(k.relative_sd > 0)) continue;
@@ -124,6 +138,7 @@ Values add_values(Devices devices,
     values.samples.push_back(static_cast<double>(c.fit->samples));
     out.counted.push_back(m);
   }
+  if (!squared) values.squares = {};
   return values;
 }
 
@@ -186,6 +201,13 @@ std::optional<Statistic> statistic_of(Devices devices,
   const Values& found = out.values;
   lot.effects = term ? coefficient_effects(found.y, found.v, found.samples, lot.members)
                      : lot_effects(found.y, found.v, lot.members);
+  if (const auto all = effects_of_all(found.squares, lot.counted.size(), lot.members)) {
+    lot.figures = lot_figures(*all);
+    lot.in_figures = all->count;
+  } else if (lot.effects) {
+    lot.figures = lot_figures(*lot.effects, term.has_value());
+    lot.in_figures = lot.counted.size();
+  }
   return out;
 }
 
@@ -266,7 +288,6 @@ Lot lot_of(Devices devices, const LotOptions& options) {
     if (s.lot.effects)
       for (const Outlier& found : find_outliers(s.values.y, s.values.v, share))
         s.lot.outliers.push_back(outlier_of(devices, lot.devices, s.lot, s.values, found));
-    if (s.lot.effects) s.lot.figures = lot_figures(*s.lot.effects, s.lot.term.has_value());
     lot.statistics.push_back(std::move(s.lot));
   }
   lot.verdict = lot_verdict(lot);

@@ -33,10 +33,12 @@ struct LotStatistic {
   std::size_t members = 0;
   std::size_t not_detected = 0;    ///< upper limit only
   std::size_t doubtful = 0;        ///< undetermined, misfit, or no fit
-  std::vector<LotMember> counted;  ///< those that the figures below are of
+  std::vector<LotMember> counted;  ///< those detected
   /// of ln(value) for coefficients, of the value for means; none: as lot_effects says
   std::optional<RandomEffects> effects;
-  std::optional<LotFigures> figures;  ///< of `effects`
+  std::optional<LotFigures> figures;  ///< of `effects`, or of more:
+  std::size_t in_figures =
+      0;  ///< members that they are of; those not detected too, where their squares are known (lot_figures.hpp)
   std::vector<LotOutlier> outliers;
 };
 

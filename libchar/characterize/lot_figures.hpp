@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/interval.hpp"
+#include "libchar/core/lognormal_effects.hpp"
 #include "libchar/core/random_effects.hpp"
 
 namespace libchar {
@@ -18,6 +20,14 @@ struct LotFigures {
   double spread =
       0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
   Interval spread_ci95;
+};
+
+/// Of the values, where LotFigures is of their logarithms.
+struct ArithmeticFigures {
+  double mean = 0;
+  Interval mean_ci95;
+  double sd = 0;  ///< of the devices
+  Interval sd_ci95;
 };
 
 /// Of the members that count; none for fewer than two, or under two thirds of all: what was not detected is smaller than what was.
@@ -37,6 +47,28 @@ struct LogCoefficient {
 };
 LogCoefficient log_coefficient(const Coefficient& found);
 
+/// The square of a noise coefficient, whether it was detected or not. Nothing where the model does not describe the record, or the
+/// coefficient was not fitted.
+std::optional<SquareInAll> square_in_lot(const Coefficient& found);
+
+/// The squares of a term over the members of a lot, one a member.
+struct LotSquares {
+  std::vector<double> square, sd, skewness, samples;
+};
+
+/// Of all members, also those that are not detected or doubtful, where they are more than those that count, and a third of all members counts.
+std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
+                                               std::size_t counted,
+                                               std::size_t members);
+
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
+LotFigures lot_figures(const LognormalEffects& effects);
+
+/// Of logarithms whose effects these are, without a belief in their distribution but for the interval of the standard deviation.
+ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
+                                     std::span<const double> variance,
+                                     std::span<const double> samples);
+/// Those that a lognormal distribution has.
+ArithmeticFigures arithmetic_figures(const LognormalEffects& effects);
 
 }  // namespace libchar

@@ -27,6 +27,13 @@ inline constexpr auto enum_table<Status> =
                         {Status::given, "given"},
                         {Status::not_fitted, "not_fitted"}});
 
+/// The estimate of a square that no bound and no decision biases: below zero where chance has it so.
+struct SquareInAll {
+  double square = 0;
+  double sd = 0, skewness = 0;  ///< of its distribution
+  bool operator==(const SquareInAll&) const = default;
+};
+
 /// One coefficient (not squared), in the channel's unit times the unit of core/units.hpp's term_unit.
 struct Coefficient {
   Status status = Status::not_fitted;
@@ -38,10 +45,8 @@ struct Coefficient {
   double likelihood_ratio = 0;    ///< 2 (lnL with - lnL without)
   std::optional<double> bound;    ///< Cramér–Rao bound at the fit, relative sd
   std::optional<double> seconds_for_10_percent;  ///< record length at which the bound is 10 %
-  /// The value, and its relative sd, in the model of all terms that were offered with none of them held at zero, where that is another
-  /// model: less exact, but not biased by a term that is there and was not detected. For means over many records.
-  std::optional<double> value_in_all;
-  double relative_sd_in_all = 0;
+  /// In the model of all terms that were offered, none of them held at zero; for means over many records.
+  std::optional<SquareInAll> in_all;
 };
 
 /// One of each term, indexed by Term.

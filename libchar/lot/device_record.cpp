@@ -18,6 +18,17 @@ bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
+/// Where the model that is reported has all terms and the term is well known, its square is that of the value, and hardly skew.
+bool says_more(const Coefficient& c) {
+  constexpr double kSame = 1e-6, kWellKnown = 0.05;
+  if (!c.in_all || !(c.in_all->sd > 0) || !std::isfinite(c.in_all->sd) ||
+      !std::isfinite(c.in_all->square) || !std::isfinite(c.in_all->skewness))
+    return false;
+  const double square = c.value.value_or(0) * c.value.value_or(0);
+  return c.status != Status::detected || c.relative_sd > kWellKnown ||
+         std::abs(c.in_all->square - square) > kSame * square;
+}
+
 RecordedValue recorded(DeviceQuantity quantity, const Coefficient& c) {
   RecordedValue out;
   out.quantity = quantity;
@@ -28,10 +39,7 @@ RecordedValue recorded(DeviceQuantity quantity, const Coefficient& c) {
     out.sd = c.relative_sd;
   }
   if (c.upper95) out.upper95 = *c.upper95;
-  if (c.value && c.value_in_all) {
-    out.value_in_all = *c.value_in_all;
-    out.sd_in_all = c.relative_sd_in_all;
-  }
+  if (says_more(c)) out.in_all = c.in_all;
   return out;
 }
 
@@ -104,8 +112,7 @@ bool is_in_celsius(const std::string& text) {
 bool RecordedValue::operator==(const RecordedValue& o) const {
   return quantity == o.quantity && status == o.status && same_number(value, o.value) &&
          same_number(ci95.low, o.ci95.low) && same_number(ci95.high, o.ci95.high) &&
-         same_number(sd, o.sd) && same_number(upper95, o.upper95) &&
-         same_number(value_in_all, o.value_in_all) && same_number(sd_in_all, o.sd_in_all);
+         same_number(sd, o.sd) && same_number(upper95, o.upper95) && in_all == o.in_all;
 }
 
 bool RecordedChannel::operator==(const RecordedChannel& o) const {
@@ -171,10 +178,7 @@ Coefficient coefficient_of(const RecordedValue& v) {
     out.ci95 = v.ci95;
     out.relative_sd = v.sd;
   }
-  if (!std::isnan(v.value_in_all)) {
-    out.value_in_all = v.value_in_all;
-    out.relative_sd_in_all = v.sd_in_all;
-  }
+  out.in_all = v.in_all;
   if (!std::isnan(v.upper95)) out.upper95 = v.upper95;
   return out;
 }

@@ -27,8 +27,8 @@ struct RecordedValue {
   double sd =
       kNone;  ///< of ln(value) where the quantity is compared as logarithm, else of the value
   double upper95 = kNone;  ///< of what is not detected
-  /// of a noise term, with its relative sd, in the model of all terms (core/coefficient.hpp), where that is another model
-  double value_in_all = kNone, sd_in_all = kNone;
+  std::optional<SquareInAll>
+      in_all;  ///< of a noise term, where it says more than value and sd (core/coefficient.hpp)
   bool operator==(const RecordedValue&) const;
 };
 

@@ -34,12 +34,11 @@ RecordedValue read_value(const MapReader& map, DeviceQuantity quantity) {
   out.value = map.number_or("value", kNone, in_logarithm(quantity) ? kNotNegative : kAnyNumber);
   out.upper95 = map.number_or("upper95", kNone, kNotNegative);
   out.sd = map.number_or("sd", kNone, kNotNegative);
-  if (map.has("in_all")) {
-    const std::vector<double> both = map.numbers("in_all");
-    if (both.size() != 2 || !(both[0] >= 0) || !(both[1] >= 0))
-      map.refuse("in_all", "expected a value and its relative sd");
-    out.value_in_all = both[0];
-    out.sd_in_all = both[1];
+  if (map.has("square_in_all")) {
+    const std::vector<double> of = map.numbers("square_in_all");
+    if (of.size() != 3 || !(of[1] > 0))
+      map.refuse("square_in_all", "expected a square, its standard deviation and its skewness");
+    out.in_all = SquareInAll{of[0], of[1], of[2]};
   }
   if (!map.has("ci95")) return out;
   const std::vector<Document>& ends = map.list("ci95");

@@ -13,9 +13,11 @@ Json value_json(const RecordedValue& v) {
     out["value"] = json_number(v.value);
     out["ci95"] = Json::array({json_number(v.ci95.low), json_number(v.ci95.high)});
     out["sd"] = json_number(v.sd);
-    if (!std::isnan(v.value_in_all))
-      out["in_all"] = Json::array({json_number(v.value_in_all), json_number(v.sd_in_all)});
   }
+  if (v.in_all)
+    out["square_in_all"] = Json::array({json_number(v.in_all->square),
+                                        json_number(v.in_all->sd),
+                                        json_number(v.in_all->skewness)});
   if (!std::isnan(v.upper95)) out["upper95"] = json_number(v.upper95);
   return out;
 }

@@ -119,9 +119,11 @@ struct QuantityLot {
   DeviceQuantity quantity = DeviceQuantity::white_noise;
   std::string channel_unit, unit;  ///< of the values
   LotCounts counts;
-  std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as lot_effects says
-  std::optional<LotFigures> figures;     ///< of those counted
-  std::optional<LeftOut> left_out;       ///< what they say of all
+  std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as effects_of says
+  std::optional<LotFigures> figures;
+  std::optional<ArithmeticFigures> arithmetic;  ///< of what is compared as logarithm
+  bool of_all = false;  ///< the figures are also of devices that are not detected or doubtful
+  std::optional<LeftOut> left_out;  ///< what figures of those counted say of all
   std::array<double, kLotQuantiles.size()> quantiles{};  ///< of those counted
   Histogram histogram;                                   ///< of ln(value) or of the value
   std::vector<BatchLot> batches;  ///< in natural order; empty where there is one

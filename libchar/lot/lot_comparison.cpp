@@ -79,9 +79,9 @@ void compare_means(const RandomEffects& a,
 std::optional<LotDifference> difference_of(
     const Side& a, std::size_t ga, const Side& b, std::size_t gb, DeviceQuantity quantity) {
   const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
-  const auto ea = effects_of(va), eb = effects_of(vb);
-  if (!ea || !eb) return std::nullopt;
   const bool logarithm = in_logarithm(quantity);
+  const auto ea = effects_of(va, logarithm), eb = effects_of(vb, logarithm);
+  if (!ea || !eb) return std::nullopt;
   const LotGroup& group = a.groups[ga];
   LotDifference out;
   out.type = group.type;
@@ -91,9 +91,9 @@ std::optional<LotDifference> difference_of(
   out.unit = unit_of(quantity, group.channel_unit);
   out.counts_a = va.counts;
   out.counts_b = vb.counts;
-  out.a = lot_figures(*ea, logarithm);
-  out.b = lot_figures(*eb, logarithm);
-  compare_means(*ea, *eb, logarithm, out);
+  out.a = lot_figures(ea->effects, logarithm);
+  out.b = lot_figures(eb->effects, logarithm);
+  compare_means(ea->effects, eb->effects, logarithm, out);
   out.p_spread = equal_spread_p(va.y, va.v, vb.y, vb.v);
   return out;
 }
@@ -118,7 +118,10 @@ void note_detection(const Side& a,
                     FleetComparison& out) {
   const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
   if (va.counts.counted + vb.counts.counted == 0) return;
-  const bool only_a = !effects_of(va) && effects_of(vb), only_b = effects_of(va) && !effects_of(vb);
+  const bool logarithm = in_logarithm(quantity);
+  const bool in_a = effects_of(va, logarithm).has_value(),
+             in_b = effects_of(vb, logarithm).has_value();
+  const bool only_a = !in_a && in_b, only_b = in_a && !in_b;
   out.not_compared.push_back(fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
                                          title_of(quantity),
                                          channel_title(a.groups[ga].name, a.groups[ga].type),

@@ -168,6 +168,13 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
                                 {"spread_high", json_number(left->spread_high)}}
                          : Json(nullptr);
   out["spread_is"] = in_logarithm(q.quantity) ? "relative" : "absolute";
+  out["of_all"] = q.of_all;
+  const auto& plain = q.arithmetic;
+  out["arithmetic"] = plain ? Json{{"mean", json_number(plain->mean)},
+                                   {"mean_ci95", interval_json(plain->mean_ci95)},
+                                   {"sd", json_number(plain->sd)},
+                                   {"sd_ci95", interval_json(plain->sd_ci95)}}
+                            : Json(nullptr);
   out["quantiles"] = Json::array();
   for (std::size_t k = 0; k < kLotQuantiles.size(); ++k)
     out["quantiles"].push_back({kLotQuantiles[k], json_number(q.quantiles[k])});

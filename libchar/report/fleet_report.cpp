@@ -123,10 +123,12 @@ std::string quantities_part(const FleetLot& lot) {
          "what the uncertainty of each "
          "alone would make is taken out; ≤: none beyond that, 97.5 % limit. In brackets: 95 % "
          "intervals. 95 % of devices: "
-         "their values as they were measured. Only what was detected counts, and no mean is given "
-         "where that is under two "
-         "thirds; too large by up to: at most that, if those that are not detected or doubtful are "
-         "the smallest.</p>\n";
+         "their values as they were measured. A mean \"of\" more devices than are counted is also "
+         "of "
+         "those not detected or doubtful, by what their records show of the square; else only what "
+         "was detected counts, no mean is given where that is under two thirds, and too large by "
+         "up "
+         "to: at most that, if the others are the smallest.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {

@@ -36,6 +36,7 @@ std::vector<std::string> lot_cells(const LotStatistic& s) {
   std::string mean = "–", spread = "–";
   if (figures) {
     mean = number_text(figures->mean) + " " + in_brackets(figures->mean_ci95, 1, 4) + " " + s.unit;
+    if (s.in_figures > s.counted.size()) mean += fmt::format(", of {}", s.in_figures);
     const double factor = s.term ? 100 : 1;
     const std::string unit = s.term ? " %" : " " + s.unit;
     spread = figures->spread_ci95.low > 0
@@ -78,10 +79,10 @@ std::string statistics_part(const Lot& lot) {
          "<p class=\"note\">Means of coefficients are geometric. Spread: from member to member, "
          "what the "
          "uncertainty of each alone would make is taken out; ≤: none beyond that, 97.5 % limit. In "
-         "brackets: 95 % intervals. Only "
-         "coefficients that were detected count, and no mean is given where they are under two "
-         "thirds; a term detected in no member "
-         "has no row.</p>\n";
+         "brackets: 95 % intervals. \"Of\" more than are counted: those not detected or doubtful "
+         "too, by "
+         "what their records show of the square. Else no mean is given where under two thirds "
+         "count; a term detected in no member has no row.</p>\n";
 }
 
 std::vector<std::string> outlier_sentences(const Lot& lot) {
@@ -161,7 +162,8 @@ Json statistic_json(const LotReport& report, const LotStatistic& s) {
   out["spread"] = figures ? json_number(figures->spread) : Json(nullptr);
   out["spread_ci95"] = figures ? interval_json(figures->spread_ci95) : Json(nullptr);
   out["spread_is"] = s.term ? "relative" : "absolute";
-  out["p"] = figures ? json_number(s.effects->p) : Json(nullptr);
+  out["of_all"] = s.in_figures > s.counted.size();
+  out["p"] = s.effects ? json_number(s.effects->p) : Json(nullptr);
   out["outliers"] = Json::array();
   for (const LotOutlier& o : s.outliers)
     out["outliers"].push_back(

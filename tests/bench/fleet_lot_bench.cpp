@@ -1,6 +1,6 @@
 // How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznk: coverage, batches, differences of two lots,
-// temperatures, zone rules of charts, what is not detected, terms beside a random walk that is not] [FOLDER]
+// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznks: coverage, batches, differences of two lots,
+// temperatures, zone rules of charts, what is not detected, terms beside a random walk that is not, squares against their information] [FOLDER]
 // With a folder: a fleet of that many devices with all of its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -206,100 +206,124 @@ void charts(std::size_t values, int count) {
   }
 }
 
-/// A fit of a record of which the truth is known.
-struct KnownFit {
-  double truth = 0;
-  Coefficient found;
-};
-
-/// Fits of records of 8192 samples of white noise with a second term, from far below what is detected to far above.
-std::vector<KnownFit> known_fits(Term term, std::size_t count) {
-  constexpr std::size_t kSamples = 8192;
+/// Fits of records of 8192 samples of white noise with a second term, as devices of a lot of this mean and spread have them.
+std::vector<Coefficient> fits_of_lot(Term term, double mean, double spread, std::size_t count) {
+  constexpr std::size_t kSamples = 8192, kChunk = 50;
   const bool walk = term == Term::walk;
-  test::NoiseSource source(kSamples, 1, 4711 + static_cast<std::uint64_t>(term));
-  test::Gaussian where(99);
   FitOptions options;
   options.second_opinion = options.remedies = false;
-  std::vector<KnownFit> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double truth = (walk ? 3e-3 : 0.08) * std::exp(3 * (2 * where.uniform() - 1));
-    const auto y = source.record(1, walk ? 0 : truth, walk ? truth : 0);
-    PowerBinner binner(kSamples);
-    binner.push(y);
-    const NoiseFit fit = fit_power_bins(binner.finish(1), 1, kSamples, nullptr, options);
-    out.push_back({truth, fit[term]});
-  }
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.truth < b.truth; });
+  std::vector<Coefficient> out(count);
+  tbb::parallel_for(std::size_t{0}, count / kChunk, [&](std::size_t c) {
+    test::NoiseSource source(kSamples, 1, 4711 + c);
+    test::Gaussian gauss(99 + c);
+    for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
+      const double truth = mean * std::exp(spread * gauss());
+      PowerBinner binner(kSamples);
+      binner.push(source.record(1, walk ? 0 : truth, walk ? truth : 0));
+      out[i] = fit_power_bins(binner.finish(1), 1, kSamples, nullptr, options)[term];
+    }
+  });
   return out;
 }
 
-/// A lot's records, each with the fit of a record whose truth is that of the device, nearly.
-std::vector<DeviceRecord> lot_of_fits(const std::vector<KnownFit>& fits,
+/// A lot's records, each with one of the fits.
+std::vector<DeviceRecord> lot_of_fits(const std::vector<Coefficient>& fits,
                                       Term term,
                                       std::size_t devices,
-                                      double mean,
-                                      double spread,
                                       test::Gaussian& gauss) {
   test::MadeLot made;
   made.devices = devices;
   made.channels = {"gyro_x"};
   std::vector<DeviceRecord> records = test::made_lot(made, 1);
   for (DeviceRecord& r : records) {
-    const double truth = std::exp(std::log(mean) + spread * gauss());
-    const auto at = std::lower_bound(
-        fits.begin(), fits.end(), truth, [](const KnownFit& f, double t) { return f.truth < t; });
-    const auto place = std::clamp<std::ptrdiff_t>(
-        at - fits.begin() + static_cast<std::ptrdiff_t>(31 * gauss.uniform()) - 15,
-        0,
-        static_cast<std::ptrdiff_t>(fits.size()) - 1);
-    const KnownFit& fit = fits[static_cast<std::size_t>(place)];
-    RecordedValue value;
-    value.quantity = quantity_of(term);
-    value.status = fit.found.status;
-    // The fit's error, about this device's truth.
-    if (fit.found.value) value.value = *fit.found.value * truth / fit.truth;
-    value.sd = fit.found.relative_sd;
-    r.channels[0].values = {value};
+    Characterization one;
+    ChannelResult& channel = one.channels.emplace_back();
+    channel.channel = {"gyro_x", "deg/s"};
+    channel.quality.samples = 8192;
+    channel.fit.emplace();
+    const auto k = static_cast<std::size_t>(gauss.uniform() * static_cast<double>(fits.size()));
+    channel.fit->term[static_cast<std::size_t>(term)] = fits[k];
+    r.channels = record_of(one).channels;
   }
   return records;
 }
 
-/// Lots of which some devices are not detected or doubtful: what their mean says of all.
+/// How squares of devices that are alike scatter, against what the information at the truth says.
+void squares(Term term) {
+  for (const double times : {0.5, 1.0, 1.5, 2.0, 4.0}) {
+    const double c = times * (term == Term::walk ? 3.3e-3 : 0.063), truth = c * c;
+    double count = 0, bias = 0, square = 0, near = 0, by_information = 0, skewness = 0, third = 0;
+    const std::vector<Coefficient> fits = fits_of_lot(term, c, 0, 12000);
+    for (const Coefficient& fit : fits) bias += (fit.in_all->square - truth) / 12000;
+    for (const Coefficient& fit : fits) {
+      const SquareInAll& q = *fit.in_all;
+      const double off = q.square - truth - bias;
+      ++count;
+      square += off * off;
+      third += off * off * off;
+      if (std::abs(q.square / truth - 1) > 0.2) continue;
+      ++near;
+      by_information += q.sd * q.sd;
+      skewness += q.skewness;
+    }
+    const double sd = std::sqrt(square / count), r = std::sqrt(by_information / near) / truth;
+    fmt::print(
+        "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), "
+        "skewness {:.2f} ({:.2f} by information), bias {:+.3f} sd ± .009\n",
+        title_of(quantity_of(term)),
+        c,
+        r,
+        sd * sd / (r * r * truth * truth),
+        1 + 0.55 * r / (1 + 1.5 * r),
+        third / count / (sd * sd * sd),
+        skewness / near,
+        bias / sd);
+  }
+}
+
+/// Lots of which some devices are not detected or doubtful.
 void left_out_lots(Term term, int lots) {
-  const std::vector<KnownFit> fits = known_fits(term, 12000);
-  for (const std::size_t devices : {20, 200})
-    for (const double spread : {0.1, 0.3})
-      for (const double times : {4.0, 2.0, 1.5}) {
-        // In units of what half of the records detect.
-        const double mean = times * (term == Term::walk ? 3.3e-3 : 0.063);
+  for (const double spread : {0.1, 0.3})
+    for (const double times : {4.0, 2.0, 1.5, 1.0}) {
+      // In units of what half of the records detect.
+      const double mean = times * (term == Term::walk ? 3.3e-3 : 0.063);
+      const std::vector<Coefficient> fits = fits_of_lot(term, mean, spread, 12000);
+      const auto found = std::count_if(fits.begin(), fits.end(), [](const Coefficient& c) {
+        return c.status == Status::detected;
+      });
+      fmt::print("{}, spread {}: detected in {:.0f} % of devices\n",
+                 title_of(quantity_of(term)),
+                 spread,
+                 100.0 * static_cast<double>(found) / static_cast<double>(fits.size()));
+      for (const std::size_t devices : {8, 20, 200}) {
         test::Gaussian gauss(61);
-        int with_mean = 0, plain = 0, all = 0, width = 0;
-        double missing = 0;
-        for (int i = 0; i < lots; ++i) {
-          const auto records = lot_of_fits(fits, term, devices, mean, spread, gauss);
-          for (const QuantityLot& q : fleet_lot(records).quantities) {
-            if (!q.figures) continue;
+        int with_mean = 0, in_mean = 0, in_spread = 0, of_all = 0;
+        double sum_mean = 0, sum_spread = 0;
+        for (int i = 0; i < lots; ++i)
+          for (const QuantityLot& q :
+               fleet_lot(lot_of_fits(fits, term, devices, gauss)).quantities) {
+            if (!q.figures || q.quantity != quantity_of(term)) continue;
             ++with_mean;
-            missing += q.left_out ? q.left_out->share : 0;
-            plain += holds(q.figures->mean_ci95, mean);
-            all += holds(q.left_out ? q.left_out->mean_ci95 : q.figures->mean_ci95, mean);
-            Interval of_spread = q.figures->spread_ci95;
-            if (q.left_out) of_spread.high = q.left_out->spread_high;
-            width += holds(of_spread, spread);
+            of_all += !q.left_out;
+            in_mean += holds(q.figures->mean_ci95, mean);
+            in_spread += holds(q.figures->spread_ci95, spread);
+            sum_mean += std::log(q.figures->mean / mean);
+            sum_spread += q.figures->spread;
           }
-        }
         if (with_mean == 0) continue;
-        fmt::print("{} of {} devices, spread {}: {:.0f} % left out, {} of {} lots have a mean\n",
-                   title_of(quantity_of(term)),
-                   devices,
-                   spread,
-                   100 * missing / with_mean,
-                   with_mean,
-                   lots);
-        print_rate("mean in the interval of those counted", plain, with_mean, "");
-        print_rate("mean in the interval for all", all, with_mean, "at least 95 %");
-        print_rate("spread in its interval for all", width, with_mean, "at least 95 %");
+        fmt::print(
+            "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, "
+            "spread {:.3f}\n",
+            devices,
+            with_mean,
+            lots,
+            of_all,
+            100 * sum_mean / with_mean,
+            sum_spread / with_mean);
+        print_rate("true mean in its interval", in_mean, with_mean, "95 %");
+        print_rate("true spread in its interval", in_spread, with_mean, "95 %");
       }
+    }
 }
 
 /// Fits of 1000 s at 50 Hz with N = .005, B = .004 and this K, which is found in some of them.
@@ -327,8 +351,11 @@ RecordedChannel channel_of_fit(const NoiseFit& fit, double own) {
   channel.quality.samples = fit.samples;
   channel.fit = fit;
   RecordedChannel out = record_of(one).channels[0];
-  for (RecordedValue& v : out.values)
-    for (double* x : {&v.value, &v.value_in_all, &v.ci95.low, &v.ci95.high, &v.upper95}) *x *= own;
+  for (RecordedValue& v : out.values) {
+    for (double* x : {&v.value, &v.ci95.low, &v.ci95.high, &v.upper95}) *x *= own;
+    if (!v.in_all) continue;
+    for (double* x : {&v.in_all->square, &v.in_all->sd}) *x *= own * own;
+  }
   return out;
 }
 
@@ -438,7 +465,7 @@ void size_of_a_fleet(std::size_t devices) {
 int main(int argc, char** argv) {
   const int lots = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::size_t devices = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 100000;
-  const std::string parts = argc > 3 ? argv[3] : "cbdtznk";
+  const std::string parts = argc > 3 ? argv[3] : "cbdtznks";
   const auto asked = [&](char part) { return lots > 0 && parts.find(part) != std::string::npos; };
   test::MadeLot few, equal;
   few.devices = 8;
@@ -468,6 +495,8 @@ int main(int argc, char** argv) {
       charts(n, n > 1000 ? lots : 10 * lots);
   if (asked('n'))
     for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
+  if (asked('s'))
+    for (const Term term : {Term::flicker, Term::walk}) squares(term);
   if (asked('k'))
     for (const double walk : {0.0, 2.5e-4, 5e-4, 1e-3}) neighbour_lots(walk, lots);
   if (argc > 4)

@@ -78,10 +78,74 @@ TEST_CASE("a coefficient in a lot is that of the model of all terms") {
   c.relative_sd = 0.1;
   CHECK(log_coefficient(c).y == std::log(2.0));
   CHECK(log_coefficient(c).v == 0.1 * 0.1);
-  c.value_in_all = 1.9;
-  c.relative_sd_in_all = 0.12;
-  CHECK(log_coefficient(c).y == std::log(1.9));
-  CHECK(log_coefficient(c).v == 0.12 * 0.12);
+  c.in_all = SquareInAll{1.9 * 1.9, 2 * 0.12 * 1.9 * 1.9, 0.5};
+  CHECK(log_coefficient(c).y == Approx(std::log(1.9)));
+  CHECK(log_coefficient(c).v == Approx(0.12 * 0.12));
   c.relative_sd = 0.2;  // widened by what the noise does not explain
   CHECK(log_coefficient(c).v == 0.2 * 0.2);
+  c.in_all->square = -0.1;  // then the model that has it is all there is
+  CHECK(log_coefficient(c).y == std::log(2.0));
+}
+
+TEST_CASE(
+    "values that are known well have the arithmetic mean and standard deviation of a sample") {
+  const std::vector<double> value = {1, 2, 4, 3, 2.5}, samples(5, 100), v(5, 1e-12);
+  std::vector<double> y;
+  for (const double x : value) y.push_back(std::log(x));
+  const ArithmeticFigures found = arithmetic_figures(y, v, samples);
+  CHECK(found.mean == Approx(2.5));
+  CHECK(found.sd == Approx(std::sqrt(1.25)));
+  // Student's t of 4 degrees of freedom.
+  CHECK(found.mean_ci95.high == Approx(2.5 + 2.7764451 * std::sqrt(0.25)));
+}
+
+TEST_CASE(
+    "arithmetic mean and standard deviation of devices, normal or lognormal, lie in their "
+    "intervals") {
+  constexpr int kLots = 200;
+  constexpr double kSpread = 0.3;
+  for (const bool lognormal : {false, true}) {
+    test::Gaussian gauss(41);
+    const double mean = lognormal ? std::exp(kSpread * kSpread / 2) : 1;
+    const double sd = lognormal ? mean * std::sqrt(std::expm1(kSpread * kSpread)) : kSpread;
+    int of_mean = 0, of_sd = 0;
+    for (int l = 0; l < kLots; ++l) {
+      std::vector<double> y, v, samples(200, 1000);
+      for (int i = 0; i < 200; ++i) {
+        const double own = kSpread * gauss();
+        const double truth = lognormal ? std::exp(own) : std::max(0.05, 1 + own);
+        double squares = 0;  // c² is found without bias
+        for (int k = 0; k < 100; ++k) squares += std::pow(gauss(), 2) / 100;
+        y.push_back(std::log(truth) + std::log(squares) / 2);
+        v.push_back(1.0 / 200);
+      }
+      const ArithmeticFigures found = arithmetic_figures(y, v, samples);
+      of_mean += found.mean_ci95.low <= mean && mean <= found.mean_ci95.high;
+      of_sd += found.sd_ci95.low <= sd && sd <= found.sd_ci95.high;
+    }
+    INFO(of_mean << " " << of_sd);
+    CHECK(of_mean >= 180);
+    CHECK(of_sd >= 176);
+    CHECK(of_mean < kLots);
+  }
+}
+
+TEST_CASE("a square in a lot is there where the model describes the record") {
+  Coefficient c;
+  CHECK_FALSE(square_in_lot(c));  // not fitted
+  c.status = Status::not_detected;
+  CHECK_FALSE(square_in_lot(c));
+  c.in_all = SquareInAll{-0.1, 0.3, 1};
+  CHECK(square_in_lot(c) == SquareInAll{-0.1, 0.3, 1});
+  c.status = Status::misfit;
+  CHECK_FALSE(square_in_lot(c));
+  c.status = Status::detected;
+  c.value = 2;
+  c.relative_sd = 0.1;
+  c.in_all = SquareInAll{4.1, 0.5, 1};
+  CHECK(square_in_lot(c)->sd == Approx(2 * 0.1 * 4.1));  // widened
+  c.in_all = std::nullopt;
+  CHECK(square_in_lot(c)->square == 4);
+  CHECK(square_in_lot(c)->sd == Approx(0.8));
+  CHECK(square_in_lot(c)->skewness == Approx(0.4));
 }

@@ -353,7 +353,7 @@ TEST_CASE("states that are missing, double, foreign, or of other settings are re
   options = {};
   options.reading.threads = 1;
   options.memory_bytes = 1 << 20U;
-  REQUIRE(refusal_of_states(states, options) == "");
+  REQUIRE(refusal_of_states(states, options).empty());
 }
 
 TEST_CASE("states that are cut or changed anywhere are refused, and never read") {

@@ -78,8 +78,8 @@ TEST_CASE("state archive: a byte that is another one, or is not there, is told")
     std::string other = whole;
     other[i] = static_cast<char>(other[i] ^ 0x10);
     CAPTURE(i);
-    REQUIRE(state_refusal(other) != "");
-    REQUIRE(state_refusal(whole.substr(0, i)) != "");
+    REQUIRE_FALSE(state_refusal(other).empty());
+    REQUIRE_FALSE(state_refusal(whole.substr(0, i)).empty());
   }
   REQUIRE(state_refusal(whole + " ") == "is damaged: its digest is another one");
   REQUIRE(state_refusal("") == "is empty");

@@ -40,8 +40,7 @@ Characterization recording() {
   fit.samples = 100000;
   fit.goodness.p = 1.0 / 3;
   fit.term[0] = detected(0.005, 0.01);
-  fit.term[0].value_in_all = 0.0049;
-  fit.term[0].relative_sd_in_all = 0.011;
+  fit.term[0].in_all = SquareInAll{2.4e-5, 1.1e-6, 0.2};
   fit.theta[0] = 0.005 * 0.005;
   fit.term[1].status = Status::not_detected;
   fit.term[1].upper95 = 1e-3;
@@ -90,9 +89,8 @@ TEST_CASE("a device record holds what a lot looks at") {
   };
   CHECK(value(DeviceQuantity::white_noise).value == 0.005);
   CHECK(value(DeviceQuantity::white_noise).sd == 0.01);
-  CHECK(value(DeviceQuantity::white_noise).value_in_all == 0.0049);
-  CHECK(value(DeviceQuantity::white_noise).sd_in_all == 0.011);
-  CHECK(std::isnan(value(DeviceQuantity::gauss_markov_time).value_in_all));
+  CHECK(value(DeviceQuantity::white_noise).in_all == SquareInAll{2.4e-5, 1.1e-6, 0.2});
+  CHECK_FALSE(value(DeviceQuantity::gauss_markov_time).in_all);
   CHECK(value(DeviceQuantity::bias_instability).status == Status::not_detected);
   CHECK(value(DeviceQuantity::bias_instability).upper95 == 1e-3);
   CHECK(gyro.find(DeviceQuantity::random_walk) == nullptr);

@@ -47,9 +47,11 @@ struct WithDropped {
 
 WithDropped with_dropped(const BinProblem& problem,
                          const Decision& decision,
+                         const Optimum& reported,
                          const TermSet& offered) {
   WithDropped all;
   all.terms = offered;
+  all.best = reported;
   all.any = offered != decision.kept;
   if (all.any) {
     const ScoringResult full = score(problem, all.terms);
@@ -61,12 +63,13 @@ WithDropped with_dropped(const BinProblem& problem,
 /// One step of Fisher scoring from the maximum over theta >= 0, which lets dropped terms below zero: an efficient estimate of each theta
 /// that no bound and no decision biases (van der Vaart, Asymptotic Statistics (1998), 5.7).
 ///   theta = theta_max + I^-1 g,   g_i = sum nu/2 (u - 1) a_i / mu
+/// So it is a sum of chi-squares, sum w_j (u_j - 1) with w = nu/2 (I^-1 a) / mu, and has the skewness sum w³ 8 / nu² over sd³.
 void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficients& terms) {
   const ModelPoint& at = all.best.at;
   const TermMatrix covariance = inverse_of(fisher_information(problem, at, all.terms), all.terms);
   const Eigen::ArrayXd model = model_of(problem, at);
-  const Eigen::ArrayXd slope =
-      problem.dof / 2 * (problem.energy / model - 1) * shape_of(problem, at.shape) / model;
+  const Eigen::ArrayXd shape = shape_of(problem, at.shape);
+  const Eigen::ArrayXd slope = problem.dof / 2 * (problem.energy / model - 1) * shape / model;
   Eigen::Matrix<double, kTerms, 1> gradient;
   for (std::size_t i = 0; i < kTerms; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -74,10 +77,13 @@ void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficien
   }
   for (std::size_t i = 0; i < kTerms; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const double theta = at.theta[i] + covariance.row(k).dot(gradient);
-    if (!terms[i].value || !(theta > 0)) continue;
-    terms[i].value_in_all = std::sqrt(theta);
-    terms[i].relative_sd_in_all = std::sqrt(covariance(k, k)) / (2 * theta);
+    if (!all.terms[i]) continue;
+    const double sd = std::sqrt(covariance(k, k));
+    const Eigen::ArrayXd weight =
+        problem.dof / 2 * shape / model * (problem.unit.matrix() * covariance.col(k)).array() / sd;
+    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(k).dot(gradient),
+                                  sd,
+                                  (8 * weight.cube() / problem.dof.square()).sum()};
   }
 }
 
@@ -123,7 +129,7 @@ ModelPoint report_coefficients(const BinProblem& problem,
   fit.converged = decision.converged && polished.converged;
   fit.iterations = decision.iterations + polished.iterations;
   const Optimum best{polished.at, polished.half_deviance};
-  const WithDropped all = with_dropped(problem, decision, options.terms);
+  const WithDropped all = with_dropped(problem, decision, best, options.terms);
   for (std::size_t i = 0; i < kTerms; ++i) {
     for (std::size_t j = 0; j < kTerms; ++j) {
       fit.covariance[i][j] =
@@ -160,7 +166,7 @@ ModelPoint report_coefficients(const BinProblem& problem,
       term.profile = true;
     }
   }
-  if (all.any) report_in_all(problem, all, fit.term);
+  report_in_all(problem, all, fit.term);
   if (decision.flicker_or_walk) {
     fit.sentences.push_back(
         "The record shows slow noise but cannot tell bias instability from random walk: each could "

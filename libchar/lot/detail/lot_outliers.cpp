@@ -67,7 +67,9 @@ void add_outliers(const Fleet& fleet, double probability, Statistic& s) {
 }  // namespace
 
 void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics) {
-  const auto searched = [](const Statistic& s) { return !s.lot.of_kind && s.lot.effects; };
+  const auto searched = [](const Statistic& s) {
+    return !s.lot.of_kind && s.lot.effects && 3 * s.lot.counts.counted >= 2 * s.lot.counts.members;
+  };
   const auto count = std::count_if(statistics.begin(), statistics.end(), searched);
   if (count == 0) return;
   tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {

@@ -26,6 +26,19 @@ void add_quantiles(const std::vector<double>& y, bool logarithm, QuantityLot& ou
   }
 }
 
+void add_figures(Statistic& s) {
+  QuantityLot& lot = s.lot;
+  const bool logarithm = in_logarithm(lot.quantity);
+  const auto found = effects_of(s.values, logarithm);
+  if (!found) return;
+  lot.effects = found->effects;
+  lot.figures = lot_figures(found->effects, logarithm);
+  lot.arithmetic = found->arithmetic;
+  lot.of_all = found->of_all;
+  if (!lot.of_all)
+    lot.left_out = left_out(lot.quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
+}
+
 void add_chart(const Statistic& s, QuantityLot& out) {
   if (s.values.y.size() < kLeastForChart) return;
   out.chart = control_chart(s.values.y);
@@ -71,10 +84,7 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   const bool usual = quantity < DeviceQuantity::quantization;
   const bool something = lot.counts.counted > 0 || (usual && lot.counts.not_detected > 0);
   if (!something && !s.limited) return std::nullopt;
-  lot.effects = effects_of(s.values);
-  if (lot.effects) lot.figures = lot_figures(*lot.effects, logarithm);
-  if (lot.effects)
-    lot.left_out = left_out(quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
+  add_figures(s);
   lot.repeats = s.values.repeats;
   lot.temperatures = std::move(s.values.temperatures);
   add_quantiles(s.values.y, logarithm, lot);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/characterize/lot_figures.hpp"
 #include "libchar/core/not_known.hpp"
 
 namespace libchar {
@@ -41,6 +40,34 @@ double temperature_of(const DeviceRecord& record) {
   return t >= -273.15 && t <= 1e4 ? t : kNone;
 }
 
+/// Sums over the recordings of a member.
+struct SquareSums {
+  double count = 0, square = 0, variance = 0, third = 0, samples = 0;
+};
+
+/// False where its record was fitted and it has no square.
+bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, SquareSums& sums) {
+  const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
+  if (value == nullptr || value->status == Status::misfit || value->status == Status::not_fitted)
+    return true;
+  const auto one = square_in_lot(coefficient_of(*value));
+  if (!one) return false;
+  sums.count += 1;
+  sums.square += one->square;
+  sums.variance += one->sd * one->sd;
+  sums.third += one->skewness * one->sd * one->sd * one->sd;
+  sums.samples += static_cast<double>(channel.samples);
+  return std::abs(one->square) < kLargest && one->sd < kLargest && one->sd > 1 / kLargest;
+}
+
+void add_member(const SquareSums& sums, LotSquares& out) {
+  if (sums.count == 0) return;
+  out.square.push_back(sums.square / sums.count);
+  out.sd.push_back(std::sqrt(sums.variance) / sums.count);
+  out.skewness.push_back(sums.third / std::pow(sums.variance, 1.5));
+  out.samples.push_back(sums.samples);
+}
+
 void count(Known known, LotCounts& out) {
   ++out.members;
   out.counted += known == Known::counted;
@@ -58,14 +85,17 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
                                    std::size_t batches) {
   MemberRecordings out;
   out.batch_counts.resize(batches);
+  bool squared = term_of(quantity).has_value();
   for (std::size_t i = 0; i < group.places.size();) {
     const std::uint32_t member = group.member[i];
     Known best = Known::no_result;
+    SquareSums squares;
     for (; i < group.places.size() && group.member[i] == member; ++i) {
       const LotPlace& place = group.places[i];
       const DeviceRecord& record = records[place.recording];
       const Measured one = measured(record.channels[place.channel], quantity);
       best = std::max(best, one.known);
+      squared = squared && add_square(record.channels[place.channel], quantity, squares);
       if (one.known != Known::counted) continue;
       out.y.push_back(one.y);
       out.v.push_back(one.v);
@@ -75,9 +105,11 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
       out.member.push_back(out.members.size());
     }
     if (best == Known::counted) out.members.push_back(member);
+    if (squared) add_member(squares, out.squares);
     count(best, out.counts);
     count(best, out.batch_counts[batch_of[group.devices[member]]]);
   }
+  if (!squared) out.squares = {};
   return out;
 }
 

@@ -117,6 +117,7 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
   out.counts = found.counts;
   out.batch_counts = found.batch_counts;
   out.member = found.members;
+  out.squares = found.squares;
   auto at = quantity == DeviceQuantity::turn_on_bias ? temperature_lines(found) : std::nullopt;
   if (at)
     take_lines(*std::move(at), out);
@@ -130,7 +131,9 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
   return out;
 }
 
-std::optional<RandomEffects> effects_of(const QuantityValues& values) {
+namespace {
+
+std::optional<RandomEffects> effects_of_counted(const QuantityValues& values) {
   if (!values.samples.empty())
     return coefficient_effects(values.y, values.v, values.samples, values.counts.members);
   auto out = lot_effects(values.y, values.v, values.counts.members);
@@ -142,6 +145,25 @@ std::optional<RandomEffects> effects_of(const QuantityValues& values) {
   Interval& ci95 = out->spread_ci95;
   ci95 = {std::sqrt(std::max(0.0, p - std::hypot(p - square(ci95.low), below))),
           std::sqrt(p + std::hypot(square(ci95.high) - p, above))};
+  return out;
+}
+
+}  // namespace
+
+std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms) {
+  if (const auto all = effects_of_all(values.squares, values.counts.counted, values.counts.members))
+    return QuantityEffects{
+        {all->count, all->mean, all->mean_ci95, all->spread, all->spread_ci95, kNone},
+        arithmetic_figures(*all),
+        true};
+  const auto counted = effects_of_counted(values);
+  if (!counted) return std::nullopt;
+  QuantityEffects out{*counted, std::nullopt, false};
+  if (!of_logarithms) return out;
+  // Records of a process's parameters are taken as alike.
+  const std::vector<double> alike(values.y.size(), 1.0);
+  out.arithmetic =
+      arithmetic_figures(values.y, values.v, values.samples.empty() ? alike : values.samples);
   return out;
 }
 

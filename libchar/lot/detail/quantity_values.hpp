@@ -7,6 +7,7 @@
 
 #include "libchar/core/random_effects.hpp"
 #include "libchar/lot/detail/lot_groups.hpp"
+#include "libchar/lot/detail/member_recordings.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
@@ -19,6 +20,7 @@ struct QuantityValues {
   std::vector<double> samples;
   /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
   std::vector<double> v_low, v_high;
+  LotSquares squares;  ///< of noise terms, also of those that do not count
   std::optional<RepeatedDevices> repeats;
   std::optional<TemperatureRuns> temperatures;
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
@@ -31,7 +33,16 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
                                const std::vector<std::size_t>& batch_of,
                                std::size_t batches);
 
-/// Mean and spread of those that count, where they are enough (characterize/lot_figures.hpp).
-std::optional<RandomEffects> effects_of(const QuantityValues& values);
+/// Mean and spread of a quantity over its members.
+struct QuantityEffects {
+  RandomEffects effects;
+  std::optional<ArithmeticFigures> arithmetic;  ///< of what is compared as logarithm
+  bool of_all =
+      false;  ///< also of members that do not count, by the squares of what their records show
+};
+
+/// Of those that count, where they are enough (characterize/lot_figures.hpp); of a noise term that some have and others do not, of all where
+/// their squares are known and a third of them was detected.
+std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms);
 
 }  // namespace libchar

@@ -96,9 +96,13 @@ bool scan_value(Scanner& in, RecordedValue& out) {
         !in.word(",") || !in.number_or_null(out.ci95.high, kInfinity) || !in.word("],\"sd\":") ||
         !in.number_or_null(out.sd, kNone) || out.sd < 0)
       return false;
-    if (in.word(",\"in_all\":[") && (!in.not_negative(out.value_in_all) || !in.word(",") ||
-                                     !in.not_negative(out.sd_in_all) || !in.word("]")))
+  }
+  if (in.word(",\"square_in_all\":[")) {
+    SquareInAll of;
+    if (!in.number(of.square) || !in.word(",") || !in.not_negative(of.sd) || !(of.sd > 0) ||
+        !in.word(",") || !in.number(of.skewness) || !in.word("]"))
       return false;
+    out.in_all = of;
   }
   if (in.word(",\"upper95\":") && !in.not_negative(out.upper95)) return false;
   return in.word("}");

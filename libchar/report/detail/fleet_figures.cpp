@@ -49,8 +49,9 @@ std::string mean_text(const std::optional<LotFigures>& f, const std::string& uni
   return f ? number_text(f->mean) + " " + brackets(f->mean_ci95, 1, 4) + " " + unit : "–";
 }
 
-/// Behind a mean that is not of all.
+/// Behind a mean that is not of all, or not only of those counted.
 std::string off_text(const QuantityLot& q) {
+  if (q.of_all) return fmt::format(", of {}", count_text(q.effects->count));
   if (!q.left_out) return "";
   const double most = 100 * (q.left_out->factor - 1);
   return fmt::format(", too {} by up to {}",
@@ -228,10 +229,29 @@ std::string left_out_sentence(const QuantityLot& q) {
                     number_text(100 * left.spread_high, 3));
 }
 
+/// Whom the mean is of where not all have a value.
+std::string of_all_sentence(const QuantityLot& q) {
+  return fmt::format(
+      "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
+      "what their records show of the square, as values of a lognormal distribution. Not counted: "
+      "{}. Histogram, batches, chart and outliers are of the {} that count.",
+      count_text(q.effects->count),
+      count_text(q.counts.members),
+      not_counted(q.counts),
+      count_text(q.counts.counted));
+}
+
 std::string sentences(const QuantityLot& q) {
   const bool logarithm = in_logarithm(q.quantity);
   std::vector<std::string> out;
   if (q.left_out) out.push_back(left_out_sentence(q));
+  if (q.of_all) out.push_back(of_all_sentence(q));
+  if (q.arithmetic)
+    out.push_back(fmt::format("Arithmetic mean {} {} {}, standard deviation of the devices {}.",
+                              number_text(q.arithmetic->mean),
+                              brackets(q.arithmetic->mean_ci95, 1, 4),
+                              q.unit,
+                              spread_text(q.arithmetic->sd, q.arithmetic->sd_ci95, false, q.unit)));
   if (q.quantity == DeviceQuantity::temperature_coefficient)
     out.push_back(coefficient_sentence(q));
   else if (q.temperatures)
