@@ -134,8 +134,8 @@ struct Point {
 };
 
 std::vector<Point> points_of(const SquareEstimates& in) {
-  constexpr std::size_t kEach = 1000;  // up to so many every one stands for itself
-  constexpr double kTogether = 0.05;   // of an sd
+  constexpr std::size_t kEach = 1000;                 // up to so many every one stands for itself
+  constexpr double kTogether = 0.05, kAlike = 0.005;  // of an sd, or of the square
   std::vector<Point> out;
   for (auto& [length, records] : by_length(in.samples)) {
     const ErrorModel error = error_model(in, records);
@@ -143,11 +143,12 @@ std::vector<Point> points_of(const SquareEstimates& in) {
     std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
       return in.square[a] < in.square[b];
     });
-    double first = -kInfinity, sum = 0;
+    double first = -kInfinity;
     for (const std::size_t i : sorted) {
       const double square = in.square[i];
-      const bool joins = in.square.size() > kEach && out.size() > 0 && sum != 0 &&
-                         square - first < kTogether * error.sd_at(std::max(first, 0.0));
+      const bool joins =
+          in.square.size() > kEach &&
+          square - first < std::max(kTogether * error.sd_at(std::max(first, 0.0)), kAlike * first);
       if (!joins) {
         out.push_back({0, 0, error});
         first = square;
@@ -155,7 +156,6 @@ std::vector<Point> points_of(const SquareEstimates& in) {
       Point& at = out.back();
       at.count += 1;
       at.square += (square - at.square) / at.count;
-      sum = at.count;
     }
   }
   return out;

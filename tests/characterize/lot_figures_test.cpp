@@ -90,8 +90,8 @@ TEST_CASE("a coefficient in a lot is that of the model of all terms") {
 TEST_CASE(
     "values that are known well have the arithmetic mean and standard deviation of a sample") {
   const std::vector<double> value = {1, 2, 4, 3, 2.5}, samples(5, 100), v(5, 1e-12);
-  std::vector<double> y;
-  for (const double x : value) y.push_back(std::log(x));
+  std::vector<double> y = value;
+  for (double& x : y) x = std::log(x);
   const ArithmeticFigures found = arithmetic_figures(y, v, samples);
   CHECK(found.mean == Approx(2.5));
   CHECK(found.sd == Approx(std::sqrt(1.25)));

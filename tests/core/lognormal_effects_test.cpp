@@ -129,6 +129,20 @@ TEST_CASE(
   CHECK(found.spread_ci95.high < 0.35);
 }
 
+TEST_CASE("a hundred thousand squares that are well known keep a small spread") {
+  test::Gaussian gauss(19);
+  Squares in;
+  for (int i = 0; i < 100000; ++i) {
+    in.square.push_back(std::exp(2 * 0.01 * gauss()) * (1 + 1e-3 * gauss()));
+    in.sd.push_back(1e-3 * in.square.back());
+    in.skewness.push_back(0.01);
+    in.samples.push_back(1e6);
+  }
+  const LognormalEffects known = lognormal_effects(in.estimates());
+  CHECK(known.spread == Approx(0.01).epsilon(0.02));
+  CHECK(known.mean == Approx(0).margin(2e-4));
+}
+
 TEST_CASE("squares that show no spread, or hardly a value, say so by their intervals") {
   test::Gaussian gauss(23);
   const LognormalEffects alike = lognormal_effects(made(30, 0, 0, 1, 20, gauss).estimates());

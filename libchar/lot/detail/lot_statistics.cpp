@@ -30,6 +30,7 @@ void add_figures(Statistic& s) {
   QuantityLot& lot = s.lot;
   const bool logarithm = in_logarithm(lot.quantity);
   const auto found = effects_of(s.values, logarithm);
+  s.values.squares = {};  // of a hundred thousand devices, many megabytes
   if (!found) return;
   lot.effects = found->effects;
   lot.figures = lot_figures(found->effects, logarithm);
