@@ -98,7 +98,7 @@ struct Values {
 
 void add_square(const Coefficient& found, std::uint64_t samples, bool& known, LotSquares& out) {
   const auto one = square_in_lot(found);
-  known = known && (one || found.status == Status::misfit);
+  known = known && (one || !was_sought(found.status));
   if (!one) return;
   out.square.push_back(one->square);
   out.sd.push_back(one->sd);

@@ -11,6 +11,7 @@
 #include <map>
 #include <vector>
 
+#include "libchar/core/length_class.hpp"
 #include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
 
@@ -20,18 +21,16 @@ namespace {
 /// Of a value that is hardly known, v is hardly known as well.
 constexpr double kMostOfTypical = 4;
 
-/// Medians over the records of about the same length, within a factor of sqrt 2.
+/// Medians over the records of about the same length.
 std::vector<double> typical_variances(std::span<const double> variance,
                                       std::span<const double> samples) {
-  const auto length = [&](std::size_t i) {
-    return std::lround(2 * std::log2(std::max(1.0, samples[i])));
-  };
   std::map<long, std::vector<double>> alike;
-  for (std::size_t i = 0; i < variance.size(); ++i) alike[length(i)].push_back(variance[i]);
+  for (std::size_t i = 0; i < variance.size(); ++i)
+    alike[length_class(samples[i])].push_back(variance[i]);
   std::map<long, double> typical;
   for (auto& [key, values] : alike) typical[key] = median_in_place(values);
   std::vector<double> out(variance.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = typical[length(i)];
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = typical[length_class(samples[i])];
   return out;
 }
 
@@ -68,10 +67,12 @@ LogCoefficient log_coefficient(const Coefficient& found) {
   return {std::log(square) / 2, sd * sd};
 }
 
+bool was_sought(Status status) {
+  return status != Status::misfit && status != Status::not_fitted;
+}
+
 std::optional<SquareInAll> square_in_lot(const Coefficient& found) {
-  if (found.status == Status::misfit || found.status == Status::given ||
-      found.status == Status::not_fitted)
-    return std::nullopt;
+  if (!was_sought(found.status) || found.status == Status::given) return std::nullopt;
   if (found.in_all) {
     SquareInAll out = *found.in_all;
     out.sd = std::max(out.sd, 2 * found.relative_sd * std::max(0.0, out.square));

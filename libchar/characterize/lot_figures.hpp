@@ -47,6 +47,9 @@ struct LogCoefficient {
 };
 LogCoefficient log_coefficient(const Coefficient& found);
 
+/// Whether a record says something of the coefficient: it was fitted, by a model that describes the record.
+bool was_sought(Status status);
+
 /// The square of a noise coefficient, whether it was detected or not. Nothing where the model does not describe the record, or the
 /// coefficient was not fitted.
 std::optional<SquareInAll> square_in_lot(const Coefficient& found);

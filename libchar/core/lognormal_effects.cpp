@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "libchar/core/distributions.hpp"
+#include "libchar/core/length_class.hpp"
 
 namespace libchar {
 namespace {
@@ -51,8 +52,7 @@ using Indices = std::vector<std::size_t>;
 
 std::map<long, Indices> by_length(std::span<const double> samples) {
   std::map<long, Indices> out;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    out[std::lround(2 * std::log2(std::max(1.0, samples[i])))].push_back(i);
+  for (std::size_t i = 0; i < samples.size(); ++i) out[length_class(samples[i])].push_back(i);
   return out;
 }
 
@@ -172,7 +172,7 @@ double log_density(const Point& point, double square) {
 class Likelihood {
  public:
   explicit Likelihood(const std::vector<Point>& points) {
-    double top = 0, bottom = kInfinity, narrowest = kInfinity;
+    double top = 0, bottom = kInfinity, narrowest = kCoarsest;
     for (const Point& p : points) {
       const double sd = p.error.sd_at(std::max(p.square, 0.0));
       top = std::max(top, p.square + 6 * sd);
@@ -216,12 +216,14 @@ class Likelihood {
  private:
   static constexpr double kFlat = 1e-2;  ///< of an sd: squares that small are all alike
   static constexpr double kCellsASd = 6, kMostCells = 400;
+  static constexpr double kCoarsest =
+      0.5;  ///< sd of ln c for which cells are made, however little is known
   Eigen::ArrayXd edges_, count_;
   Eigen::MatrixXd table_;
 };
 
-constexpr double kMostSpread = 4;  ///< of ln c
-constexpr int kBits = 20;          ///< of an abscissa
+constexpr double kMostSpread = 20;  ///< of ln c
+constexpr int kBits = 20;           ///< of an abscissa
 
 template <class Function>
 std::pair<double, double> least(Function&& f, double low, double high) {
@@ -267,47 +269,61 @@ struct Profile {
   }
 };
 
+/// Where the likelihood is largest at a spread, and -ln L there.
+std::pair<double, double> best_mean(const Likelihood& likelihood, double spread) {
+  return least(
+      [&](double mean) { return likelihood(mean, spread); }, likelihood.low(), likelihood.high());
+}
+/// Of -ln L over the mean; above zero.
+double curvature(const Likelihood& likelihood, double mean, double spread, double n) {
+  const double step = 0.5 * std::hypot(spread, 0.1) / std::sqrt(n);
+  const double second = (likelihood(mean - step, spread) - 2 * likelihood(mean, spread) +
+                         likelihood(mean + step, spread)) /
+                        (step * step);
+  return std::max(second, 1e-6 * n);
+}
+
+/// Fills spread and its interval; returns the spread that the means are taken at, not zero.
+double add_spread(const Likelihood& likelihood, LognormalEffects& out) {
+  const double n = static_cast<double>(out.count);
+  const auto adjusted = [&](double ln_spread) {
+    const double spread = std::exp(ln_spread);
+    const auto [mean, value] = best_mean(likelihood, spread);
+    return value + std::log(curvature(likelihood, mean, spread, n)) / 2;
+  };
+  constexpr double kStep = 0.2;
+  const double floor = std::log(likelihood.least_spread()), ceiling = std::log(kMostSpread);
+  const double best = least(adjusted, floor, ceiling).first;
+  const double low = rises(adjusted, best, -kStep, floor, kFall95),
+               high = rises(adjusted, best, kStep, ceiling, kFall95);
+  out.spread = best < floor + 1e-3 ? 0 : std::exp(best);
+  out.spread_ci95 = {std::isfinite(low) ? std::exp(low) : 0, std::exp(high)};
+  return std::exp(best);
+}
+
+void add_means(const Likelihood& likelihood, double spread, LognormalEffects& out) {
+  const double n = static_cast<double>(out.count), dof = n - 1;
+  out.mean = best_mean(likelihood, spread).first;
+  out.arithmetic = out.mean + spread * spread / 2;
+  const double t = student_quantile(0.975, dof), fall = n / 2 * std::log1p(t * t / dof);
+  const double sd = 1 / std::sqrt(curvature(likelihood, out.mean, spread, n));
+  const auto interval = [&](const Profile& profile, double at) {
+    const double top = least(profile, at - 3 * sd, at + 3 * sd).first;
+    // A mean of few unlike values can lie beyond all of them.
+    return Interval{rises(profile, top, -sd, likelihood.low() - kMostSpread, fall),
+                    rises(profile, top, sd, likelihood.high() + kMostSpread, fall)};
+  };
+  out.mean_ci95 = interval({likelihood, 0}, out.mean);
+  out.arithmetic_ci95 = interval({likelihood, 0.5}, out.arithmetic);
+}
+
 }  // namespace
 
 LognormalEffects lognormal_effects(const SquareEstimates& in) {
   const Likelihood likelihood(points_of(in));
   LognormalEffects out;
   out.count = in.square.size();
-  const double n = static_cast<double>(out.count), dof = n - 1;
-  const auto mean_at = [&](double spread) {
-    return least(
-        [&](double mean) { return likelihood(mean, spread); }, likelihood.low(), likelihood.high());
-  };
-  const auto curvature = [&](double mean, double spread) {
-    const double step = 0.5 * std::hypot(spread, 0.1) / std::sqrt(n);
-    return (likelihood(mean - step, spread) - 2 * likelihood(mean, spread) +
-            likelihood(mean + step, spread)) /
-           (step * step);
-  };
-  const auto of_spread = [&](double ln_spread) {
-    const double spread = std::exp(ln_spread);
-    const auto [mean, value] = mean_at(spread);
-    return value + std::log(std::max(curvature(mean, spread), 1e-6 * n)) / 2;
-  };
-  const double floor = std::log(likelihood.least_spread()), ceiling = std::log(kMostSpread);
-  const double best = least(of_spread, floor, ceiling).first;
-  const double step = 0.2;
-  const double low = rises(of_spread, best, -step, floor, kFall95),
-               high = rises(of_spread, best, step, ceiling, kFall95);
-  out.spread = best < floor + 1e-3 ? 0 : std::exp(best);
-  out.spread_ci95 = {std::isfinite(low) ? std::exp(low) : 0, std::exp(high)};
-  const double spread = std::exp(best);
-  out.mean = mean_at(spread).first;
-  out.arithmetic = out.mean + spread * spread / 2;
-  const double t = student_quantile(0.975, dof), fall = n / 2 * std::log1p(t * t / dof);
-  const double sd = 1 / std::sqrt(std::max(curvature(out.mean, spread), 1e-6 * n));
-  const auto interval = [&](const Profile& profile, double at) {
-    const double top = least(profile, at - 3 * sd, at + 3 * sd).first;
-    return Interval{rises(profile, top, -sd, likelihood.low(), fall),
-                    rises(profile, top, sd, likelihood.high() + 1, fall)};
-  };
-  out.mean_ci95 = interval({likelihood, 0}, out.mean);
-  out.arithmetic_ci95 = interval({likelihood, 0.5}, out.arithmetic);
+  add_means(likelihood, add_spread(likelihood, out), out);
   return out;
 }
 

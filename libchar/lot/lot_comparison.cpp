@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -64,13 +65,19 @@ void compare_means(const RandomEffects& a,
                    bool logarithm,
                    LotDifference& out) {
   const double va = std::pow(standard_error(a), 2), vb = std::pow(standard_error(b), 2);
+  out.change = logarithm ? std::exp(b.mean - a.mean) : b.mean - a.mean;
+  if (!std::isfinite(va + vb)) {  // a mean that has no end differs from nothing
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    out.p_mean = 1;
+    out.change_ci95 = {logarithm ? 0 : -kInfinity, kInfinity};
+    return;
+  }
   const double dof =
       (va + vb) * (va + vb) /
       (va * va / (static_cast<double>(a.count) - 1) + vb * vb / (static_cast<double>(b.count) - 1));
   const double sd = std::sqrt(va + vb), difference = b.mean - a.mean;
   const double half = student_quantile(0.975, dof) * sd;
   out.p_mean = 2 * student_tail(std::abs(difference) / sd, dof);
-  out.change = logarithm ? std::exp(difference) : difference;
   out.change_ci95 = {difference - half, difference + half};
   if (logarithm) out.change_ci95 = {std::exp(difference - half), std::exp(difference + half)};
 }

@@ -23,9 +23,7 @@ Fits made_fits(std::size_t devices, double spread, int dof, test::Gaussian& gaus
     const double truth = std::exp(2 * spread * gauss());
     // A background that is known adds to what is measured: who is found large is believed to be known well.
     const double background = 1;
-    double squares = 0;
-    for (int k = 0; k < dof; ++k) squares += std::pow(gauss(), 2);
-    const double found = (truth + background) * squares / dof - background;
+    const double found = (truth + background) * gauss.mean_square(dof) - background;
     if (!(found > 0.05)) continue;
     const double sd = std::sqrt(2.0 / dof) * (found + background);
     out.y.push_back(0.5 * std::log(found));
@@ -114,9 +112,8 @@ TEST_CASE(
       for (int i = 0; i < 200; ++i) {
         const double own = kSpread * gauss();
         const double truth = lognormal ? std::exp(own) : std::max(0.05, 1 + own);
-        double squares = 0;  // c² is found without bias
-        for (int k = 0; k < 100; ++k) squares += std::pow(gauss(), 2) / 100;
-        y.push_back(std::log(truth) + std::log(squares) / 2);
+        // c² is found without bias.
+        y.push_back(std::log(truth) + std::log(gauss.mean_square(100)) / 2);
         v.push_back(1.0 / 200);
       }
       const ArithmeticFigures found = arithmetic_figures(y, v, samples);

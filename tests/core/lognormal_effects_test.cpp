@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/support/noise.hpp"
@@ -29,12 +30,7 @@ Squares made(std::size_t count,
   Squares out;
   for (std::size_t i = 0; i < count; ++i) {
     const double square = std::exp(2 * (mean + spread * gauss()));
-    double chi = 0;
-    for (int k = 0; k < dof; ++k) {
-      const double z = gauss();
-      chi += z * z / dof;
-    }
-    const double found = (square + beneath) * chi - beneath;
+    const double found = (square + beneath) * gauss.mean_square(dof) - beneath;
     out.square.push_back(found);
     out.sd.push_back((std::max(found, 0.0) + beneath) * std::sqrt(2.0 / dof));
     out.skewness.push_back(2 * std::sqrt(2.0 / dof));
@@ -143,6 +139,22 @@ TEST_CASE("a hundred thousand squares that are well known keep a small spread") 
   CHECK(known.mean == Approx(0).margin(2e-4));
 }
 
+TEST_CASE("few values of unlike sizes have intervals with both ends") {
+  const std::vector<double> ln = {-3, -3.2, -2.9, -7.8, -7.6, -7.9};
+  std::vector<double> square, sd;
+  for (const double y : ln) square.push_back(std::exp(2 * y));
+  for (const double q : square) sd.push_back(0.01 * q);
+  const std::vector<double> skewness(6, 0.02), samples(6, 1e6);
+  const LognormalEffects found = lognormal_effects({square, sd, skewness, samples});
+  // Of the logarithms: mean -5.4, standard deviation 2.603; Student's t of 5 degrees of freedom, chi-square by its likelihood.
+  const double half = 2.5706 * 2.603 / std::sqrt(6.0);
+  CHECK(found.mean == Approx(-5.4).margin(0.1));
+  CHECK(found.mean_ci95.low == Approx(-5.4 - half).epsilon(0.05));
+  CHECK(found.mean_ci95.high == Approx(-5.4 + half).epsilon(0.1));
+  CHECK(found.spread == Approx(2.603).epsilon(0.05));
+  CHECK(found.spread_ci95.high < 9);
+}
+
 TEST_CASE("squares that show no spread, or hardly a value, say so by their intervals") {
   test::Gaussian gauss(23);
   const LognormalEffects alike = lognormal_effects(made(30, 0, 0, 1, 20, gauss).estimates());
@@ -154,4 +166,8 @@ TEST_CASE("squares that show no spread, or hardly a value, say so by their inter
   CHECK(std::isfinite(few.mean));
   CHECK(few.mean_ci95.high > 0.5);
   CHECK(std::isfinite(few.spread));
+  const std::vector<double> hardly = {-0.5, 1e-4, -0.3};
+  const LognormalEffects nothing = lognormal_effects({hardly, sd, skewness, samples});
+  CHECK(std::isfinite(nothing.mean));
+  CHECK(nothing.mean_ci95.low == -std::numeric_limits<double>::infinity());
 }

@@ -24,9 +24,7 @@ std::vector<DeviceRecord> made_walks(std::size_t devices,
   std::vector<DeviceRecord> records = test::made_lot(made, 1);
   for (DeviceRecord& r : records) {
     const double truth = std::pow(mean * std::exp(spread * gauss()), 2), beneath = mean * mean;
-    double chi = 0;
-    for (int k = 0; k < kDof; ++k) chi += std::pow(gauss(), 2) / kDof;
-    const double found = (truth + beneath) * chi - beneath;
+    const double found = (truth + beneath) * gauss.mean_square(kDof) - beneath;
     const double sd = (std::max(found, 0.0) + beneath) * std::sqrt(2.0 / kDof);
     RecordedValue value;
     value.quantity = DeviceQuantity::random_walk;

@@ -36,6 +36,15 @@ class Gaussian {
     has_spare_ = true;
     return x * factor;
   }
+  /// Mean of the squares of so many: chi-square over its degrees of freedom.
+  double mean_square(int count) {
+    double sum = 0;
+    for (int k = 0; k < count; ++k) {
+      const double one = (*this)();
+      sum += one * one;
+    }
+    return sum / count;
+  }
 
  private:
   std::mt19937_64 engine_;

@@ -48,8 +48,7 @@ struct SquareSums {
 /// False where its record was fitted and it has no square.
 bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, SquareSums& sums) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-  if (value == nullptr || value->status == Status::misfit || value->status == Status::not_fitted)
-    return true;
+  if (value == nullptr || !was_sought(value->status)) return true;
   const auto one = square_in_lot(coefficient_of(*value));
   if (!one) return false;
   sums.count += 1;
