@@ -77,14 +77,15 @@ void read_still(const std::string& text, StillOptions& still) {
 
 // "4096" counts samples; "20s" is a time, which becomes samples when the rate is known; "N/4" is a
 // quarter of the record.
-void read_segment(const std::string& text, WelchOptions& spectrum, double& segment_s) {
+bool read_segment(const std::string& text, WelchOptions& spectrum, double& segment_s) {
   spectrum.segment = 0;
   segment_s = 0;
-  if (text.empty() || text == "N/4") return;
+  if (text.empty() || text == "N/4") return text == "N/4";
   if (text.find_first_not_of("0123456789") == std::string::npos)
     spectrum.segment = parse_count(text, 8);
   else
     segment_s = parse_duration_s(text);
+  return false;
 }
 
 void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
@@ -109,8 +110,8 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,
-      "samples kept in memory at most; a longer log streams through fixed-size stages, and an "
-      "option that takes all samples is refused "
+      "samples kept in memory at most: with less, a log of many channels is read several times, "
+      "and an option that needs all samples of a long log is refused; no result changes "
       "(default: 1GiB)");
 }
 
@@ -139,20 +140,29 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
       "--full-overlap",
       a.options.full_overlap,
       "use every term however long the record is (default: octaves and dense times take every "
-      "(m/4)th term beyond 4 million samples, all times beyond 131072; Theo1 and the total "
+      "(m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total "
       "deviations of windows every (m/16)th or less where they would take seconds a time)");
 }
 
-void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s) {
+void add_spectrum_options(VerbOptions& verb,
+                          WelchOptions& spectrum,
+                          double& segment_s,
+                          bool* quarter) {
   verb.add_enum("--sides", spectrum.sides, "one- or two-sided spectrum (default: one)");
   verb.add_enum(
       "--scaling", spectrum.scaling, "density U²/Hz, power U², and their roots (default: psd)");
   verb.add_parsed(
       "--segment",
       "N|TIME",
-      [&spectrum, &segment_s](const std::string& text) { read_segment(text, spectrum, segment_s); },
-      "samples per segment, or a time such as 20s; a log of any length then streams through "
-      "(default: N/4, a quarter of the record)");
+      [&spectrum, &segment_s, quarter](const std::string& text) {
+        const bool asked = read_segment(text, spectrum, segment_s);
+        if (quarter != nullptr) *quarter = asked;
+      },
+      quarter == nullptr
+          ? "samples per segment, or a time such as 20s; a log of any length then streams through "
+            "(default: N/4, a quarter of the record)"
+          : "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: "
+            "N/4 up to 1048576 samples, 65536 samples of a longer record)");
   verb.add_number(
       "--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
   verb.add_enum("--window", spectrum.window, "window (default: hann)");
@@ -188,7 +198,8 @@ void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptio
   add_still_option(verb, a);
   add_data_options(verb, a);
   add_allan_options(verb, a);
-  add_spectrum_options(verb, a.options.spectrum, a.options.segment_s);
+  add_spectrum_options(
+      verb, a.options.spectrum, a.options.segment_s, &a.options.quarter_segments);
   add_fit_options(verb, a);
 }
 

@@ -25,9 +25,13 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
 void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
 /// segment when a time was given for it, 0 otherwise.
-void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s);
-/// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or "N/4".
-void read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
+/// `quarter`: where N/4 of a log of any length is told from the default.
+void add_spectrum_options(VerbOptions& verb,
+                          libchar::WelchOptions& spectrum,
+                          double& segment_s,
+                          bool* quarter = nullptr);
+/// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or "N/4" (true).
+bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
 /// --terms, --threshold, --no-remedies, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 

@@ -189,6 +189,12 @@ void join(AllanSums& sums, const AllanSums& later) {
   if (later.levels[top].count == 1) hand_up_pair(sums, top);
 }
 
+void scale(AllanSums& sums, double factor) {
+  const long double square = static_cast<long double>(factor) * static_cast<long double>(factor);
+  for (AllanLevel& level : sums.levels)
+    for (PresentTerms& terms : level.terms) terms.squares *= square;
+}
+
 AllanCurve octave_curve(const AllanSums& sums, double dt_s) {
   AllanCurve curve;
   curve.dt_s = dt_s;

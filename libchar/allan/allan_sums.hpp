@@ -48,6 +48,9 @@ struct AllanSums {
 /// below those of `later`, or be empty: then no sum of `later` straddles the boundary. Else std::logic_error.
 void join(AllanSums& sums, const AllanSums& later);
 
+/// Of the record times a factor, for its curve: no part is joined to them any more.
+void scale(AllanSums& sums, double factor);
+
 /// The curve of the record. Throws Error(numeric) where no term fits it.
 AllanCurve octave_curve(const AllanSums& sums, double dt_s);
 

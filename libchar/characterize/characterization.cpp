@@ -1,5 +1,4 @@
-// The main job as a table of contents: read once → per channel keep or stream → curves → fit →
-// intervals.
+// The main job as a table of contents: read → per channel its leaves → curves → fit → intervals.
 #include "libchar/characterize/characterization.hpp"
 
 #include <fmt/format.h>
@@ -32,15 +31,18 @@ Characterization characterize_source(const Source& source,
   const WorkMeter work;
   CharacterizeWorkspace workspace;
   Characterization result;
-  ChannelStages stages(options, workspace);
-  result.log = source.read(stages);
-  const std::vector<std::size_t> again = stages.need_second_pass();
-  if (!again.empty() && source.read_again) {
-    SecondPass second(stages, again, options.reading.threads);
-    source.read_again(second);
+  for (std::size_t next = 0; next == 0 || next < result.log.channels.size();) {
+    ChannelStages stages(options, workspace, next, !source.read_again);
+    if (next == 0)
+      result.log = source.read(stages);
+    else
+      source.read_again(stages);
+    for (ChannelResult& channel : stages.finish(result.log, progress))
+      result.channels.push_back(std::move(channel));
+    result.temperature = stages.temperature();
+    if (stages.end() == next) break;
+    next = stages.end();
   }
-  result.channels = stages.finish(result.log, progress);
-  result.temperature = stages.temperature();
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

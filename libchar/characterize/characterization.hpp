@@ -67,16 +67,14 @@ struct CharacterizeOptions {
   AllanOptions allan;
   std::vector<DeviationType> more_types;  ///< besides `allan.type`, of the same samples
   WelchOptions spectrum;
-  double segment_s =
-      0;  ///< length of a segment where spectrum.segment is 0; 0 = a quarter of the record
+  /// length of a segment where spectrum.segment is 0; 0 = a quarter of a record of at most a leaf (2^20 samples), 2^16 samples of a longer one
+  double segment_s = 0;
+  bool quarter_segments = false;  ///< a quarter of a longer record too
   FitOptions fit;
-  std::uint64_t memory_bytes =
-      std::uint64_t{1}
-      << 30U;  ///< samples kept in memory at most; a longer log streams through fixed-size stages
-  std::uint64_t exact_samples =
-      std::uint64_t{1}
-      << 22U;  ///< kept records up to this length get full overlap and one DCT; longer ones the streaming forms
-  /// where `allan` asks for octaves and the samples are kept: ten averaging times a decade besides, for plots
+  /// Samples kept at a time at most, but for a leaf of one channel: a log of many channels is read several times, and what needs all samples
+  /// of a longer one (a deviation other than oadev at octaves, a temperature) is refused beyond. Changes no result.
+  std::uint64_t memory_bytes = std::uint64_t{1} << 30U;
+  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade besides, for plots
   bool ten_a_decade = false;
   bool full_overlap =
       false;  ///< every term of the overlapping Allan deviation whatever the record's length
@@ -107,8 +105,8 @@ struct ChannelResult {
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<NoiseType>
-      noise_types;        ///< by averaging time; of phase and frequency that are kept only
-  DigitalFaults digital;  ///< rails, held values, a staircase (of samples that are kept)
+      noise_types;        ///< by averaging time; of phase and frequency
+  DigitalFaults digital;  ///< rails, held values, a staircase
   std::vector<std::string> problems;  ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
@@ -126,7 +124,7 @@ struct Characterization {
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs, NaN: left out
 };
 
-/// Reads the log once (a second time only when a remedy asks for it) and computes what the report
+/// Reads the log once (several times where its channels together are more than `memory_bytes`) and computes what the report
 /// shows. Throws Error(input) about the log, Error(usage) about options that do not fit it; what the
 /// numbers of a channel do not allow is a sentence in its `problems`.
 Characterization characterize(const std::string& path,
@@ -142,6 +140,9 @@ Characterization characterize(const RecordingView& recording,
 Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
+
+/// What of these options needs every sample of a log of more than a leaf ("the deviation mdev"); empty: nothing does.
+std::string what_needs_all_samples(const CharacterizeOptions& options);
 
 /// Which channel `wanted` (a name that it has in the end, a place c0, c1…, a pattern) makes the temperature; none: no channel. Throws
 /// Error(usage) for a pattern that several match.

@@ -115,6 +115,7 @@ const Fields<CharacterizeOptions>& characterize_fields() {
     };
     all = always(all);
     all.rows.push_back(field<&Options::segment_s>("spectrum_segment_s", {.unit = "s"}).field);
+    all.rows.push_back(field<&Options::quarter_segments>("spectrum_quarter").field);
     all.rows.push_back(field<&Options::temperature>("temperature").field);
     all.rows.push_back(field<&Options::still, &StillOptions::search>("still_search").field);
     all.rows.push_back(

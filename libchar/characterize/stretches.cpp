@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "libchar/characterize/detail/channel_stage.hpp"
-#include "libchar/characterize/detail/leaf_tree.hpp"
+#include "libchar/characterize/detail/channel_finish.hpp"
 #include "libchar/characterize/detail/stretch_order.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
@@ -29,12 +28,11 @@ namespace {
 /// more passes.
 constexpr std::size_t kAtOnce = 3;
 
-/// As a streamed log has them: the segment in samples.
+/// The segment in samples.
 CharacterizeOptions in_samples(const LogInfo& log, CharacterizeOptions options) {
   const double rate_hz = options.reading.rate_hz.value_or(log.time.rate_hz);
   if (options.wanted.spectrum && options.spectrum.segment == 0 && options.segment_s > 0)
     options.spectrum.segment = segment_samples(options.segment_s, rate_hz);
-  options.spectrum = streamed_spectrum(options.spectrum);
   return options;
 }
 
@@ -74,21 +72,34 @@ void keep_head(LogInfo read, LogInfo& log) {
   log.warnings = std::move(warnings);
 }
 
+/// Every part is of as many samples as the node has, or of what was not asked for.
+void check_samples(const ChannelSums& sums,
+                   std::uint64_t samples,
+                   std::uint64_t whole,
+                   const StateReader& from) {
+  std::vector<std::uint64_t> seen = {sums.meters.trace.samples(), sums.kept.size()};
+  // Differences of a phase: the last leaf has one less.
+  for (const std::uint64_t n : {sums.spectrum.samples,
+                                sums.record.plain.allan.samples,
+                                sums.record.plain.means.samples(),
+                                sums.record.cleaned ? sums.record.cleaned->allan.samples : 0})
+    seen.push_back(n + 1 == samples ? samples : n);
+  for (const std::uint64_t n : seen)
+    if (n != samples && n != 0) from.refuse("a node has another number of samples than its leaves");
+  if (whole <= kLeafSamples && samples > 0 && sums.kept.empty())
+    from.refuse("a log of one leaf has no samples");
+}
+
 /// The nodes of a state into the tree; they are of its range, and follow each other.
-void add_nodes(StateReader& from, const StretchHead& head, const LeafStage& stage, LeafTree& tree) {
+void add_nodes(StateReader& from, const StretchHead& head, const LeafStage& stage, ChannelTree& tree) {
   std::uint64_t next = head.range.first_leaf;
   for (std::size_t left = read_node_count(from); left > 0; --left) {
-    LeafNode node = read_node(from, stage);
+    ChannelNode node = read_node(from, stage);
     if (node.first_leaf() != next) from.refuse("its nodes do not follow each other");
     next = std::min(node.end_leaf(), leaves_of(head.samples));
     const std::uint64_t samples =
         std::min(next * kLeafSamples, head.samples) - node.first_leaf() * kLeafSamples;
-    for (const std::uint64_t seen : {node.sums.allan.samples,
-                                     node.sums.spectrum.samples,
-                                     node.sums.trace.samples(),
-                                     node.sums.cleaned ? node.sums.cleaned->allan.samples : 0})
-      if (seen != samples && seen != 0)  // 0: of what was not asked for
-        from.refuse("a node has another number of samples than its leaves");
+    check_samples(node.sums, samples, head.samples, from);
     tree.add(std::move(node));
   }
   if (next != head.range.end_leaf) from.refuse("its nodes are not those of its range");
@@ -100,7 +111,7 @@ ChannelSums joined(const std::vector<OrderedState>& states,
                    LeafStage& stage,
                    LogInfo& log,
                    Progress& progress) {
-  LeafTree tree(stage);
+  ChannelTree tree(stage);
   for (const OrderedState& one : states) {
     progress.update(-1, "reading " + one.state->name);
     const std::string bytes = one.state->bytes();
@@ -123,6 +134,14 @@ LogInfo head_in(const OrderedState& one) {
   return log;
 }
 
+/// A log of one leaf is looked at as a whole.
+ChannelSums kept_leaf(std::vector<double> samples) {
+  ChannelSums sums;
+  sums.meters.push(samples);
+  sums.kept = std::move(samples);
+  return sums;
+}
+
 /// A pass over a stretch: the states of a few channels.
 void take_channels(const std::string& path,
                    const CharacterizeOptions& options,
@@ -134,18 +153,22 @@ void take_channels(const std::string& path,
   const std::uint64_t samples = state.head.samples, leaves = leaves_of(samples);
   std::vector<LeafStage> stages;
   for (std::size_t c = channels.first; c < channels.end; ++c)
-    stages.emplace_back(options, workspace.welch, samples);
-  std::vector<LeafTree> trees(stages.begin(), stages.end());
+    stages.emplace_back(options, workspace.welch);
+  std::vector<ChannelTree> trees(stages.begin(), stages.end());
   LeafSamples read(channels);
   for (std::uint64_t leaf = state.head.range.first_leaf; leaf < state.head.range.end_leaf; ++leaf) {
     at(leaf);
     const std::uint64_t first = leaf * kLeafSamples;
     keep_head(
         read_rows(
-            path, options.reading, first, std::min(first + kLeafSamples, samples), read, channels),
+            path, options.reading, first, std::min(first + stages[0].rows(), samples), read, channels),
         state.log);
+    const bool last = leaf + 1 == leaves;
     tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t c) {
-      trees[c].add({0, leaf, stages[c].take(read.channels[c], leaf + 1 == leaves)});
+      trees[c].add({0,
+                    leaf,
+                    last && leaf == 0 ? kept_leaf(std::move(read.channels[c]))
+                                      : stages[c].take(read.channels[c], last)});
     });
   }
   read.channels.clear();
@@ -170,8 +193,7 @@ std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& optio
     why = "a still stretch is a part of it already";
   if (why.empty() && (options.reading.from_s || options.reading.to_s))
     why = "`from_s` and `to_s` are a part of it already";
-  if (why.empty() && options.wanted.spectrum)
-    why = WelchParts::why_not(in_samples(log, options).spectrum, kLeafSamples);
+  if (why.empty()) why = why_not_in_leaves(in_samples(log, options));
   return why;
 }
 
@@ -245,23 +267,20 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
   Characterization result;
   result.log = head_in(ordered.front().front());
   const CharacterizeOptions chosen = in_samples(result.log, options);
-  CharacterizeOptions said = chosen;
-  // The result says where nothing was asked for.
-  if (options.spectrum.segment == 0 && !(options.segment_s > 0)) said.spectrum.segment = 0;
   CharacterizeWorkspace workspace;
   std::size_t with_values = 0;
   for (std::size_t c = 0; c < ordered.size(); ++c) {
     const Channel& channel = result.log.channels[c];
-    LeafStage leaves(chosen, workspace.welch, result.log.samples);
-    ChannelSums sums = joined(ordered[c], leaves, result.log, progress);
-    if (sums.quality.finish().samples > 0)
+    LeafStage leaves(chosen, workspace.welch);
+    ReadChannel read;
+    read.sums = joined(ordered[c], leaves, result.log, progress);
+    if (read.sums.meters.quality.finish().samples > 0)
       ++with_values;
     else
       result.log.warnings.add(
           "no_finite_value", "channels without any finite value", "channel " + channel.name);
-    ChannelStage stage(said, workspace);
-    stage.take_leaves(std::move(sums));
-    result.channels.push_back(stage.finish(channel, result.log.time.rate_hz));
+    result.channels.push_back(finish_channel(
+        std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
     give_back_free_memory();
   }
   if (with_values == 0)

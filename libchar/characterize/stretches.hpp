@@ -19,10 +19,9 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/core/leaf_tree.hpp"
 
 namespace libchar {
-
-inline constexpr std::uint64_t kLeafSamples = std::uint64_t{1} << 20U;
 
 /// Leaves first_leaf … end_leaf - 1.
 struct StretchRange {

@@ -60,8 +60,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
                                 CharacterizeWorkspace& workspace,
                                 const VerifyOptions& how,
                                 std::uint64_t index,
-                                const std::shared_ptr<const TemperatureRecord>& temperature,
-                                bool kept) {
+                                const std::shared_ptr<const TemperatureRecord>& temperature) {
   ArraySimulation simulation;
   simulation.rate_hz = log.time.rate_hz;
   simulation.samples = std::max<std::uint64_t>(recorded.fit->samples, 2);
@@ -71,8 +70,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   same.data = SampleKind::rate;  // phase and frequency have become rates before the fit
   same.wanted.quality = false;
   same.ten_a_decade = false;  // octaves are compared
-  ChannelStage stage(same, workspace);
-  if (!kept) stage.stop_keeping();
+  ChannelStage stage(same, workspace, !what_needs_all_samples(same).empty());
   if (recorded.fit->temperature) stage.set_temperature(temperature);
   ArraySimulator simulator(simulation);
   MeansAdded means(*recorded.fit, simulation);
@@ -265,9 +263,6 @@ bool verify(Characterization& recorded,
             const CharacterizeOptions& options,
             const VerifyOptions& how,
             Progress& progress) {
-  const std::uint64_t bytes = recorded.log.samples * sizeof(double);
-  // What needs all samples has had those of the recording, and a simulated channel has no more.
-  const bool kept = !what_needs_all_samples(options).empty() || bytes * 2 <= options.memory_bytes;
   CharacterizeWorkspace workspace;
   auto& channels = recorded.channels;
   const std::size_t group =
@@ -282,7 +277,7 @@ bool verify(Characterization& recorded,
       channel.verification = std::make_shared<ChannelVerification>(compared(
           channel,
           simulated_channel(
-              channel, recorded.log, options, workspace, how, c, recorded.temperature, kept),
+              channel, recorded.log, options, workspace, how, c, recorded.temperature),
           how));
     });
   }

@@ -26,14 +26,14 @@ constexpr std::uint64_t kFewestAtRail = 8;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
-std::optional<Rail> rail_of(std::span<const double> record,
+DigitalSums::AtRail rail_of(std::span<const double> record,
                             const ValueCensus& census,
                             bool high,
                             double present) {
   const double at = high ? census.high : census.low, range = census.high - census.low;
   const auto count = static_cast<double>(high ? census.at_high : census.at_low);
   if (count < static_cast<double>(kFewestAtRail) || count > kMostAtRail * present)
-    return std::nullopt;
+    return {at, 0};
   const auto inwards = [&](double x) { return high ? at - x : x - at; };
   double next = range;
   for (const double x : record)
@@ -41,33 +41,30 @@ std::optional<Rail> rail_of(std::span<const double> record,
   const double inside = std::max(1.5 * next, range / 1000);
   double near = 0;
   for (const double x : record) near += inwards(x) > 0 && inwards(x) <= inside ? 1 : 0;
-  if (count <= 2 * near + static_cast<double>(kFewestAtRail)) return std::nullopt;
-  return Rail{at, high, count / present};
+  return {at, count <= 2 * near + static_cast<double>(kFewestAtRail) ? 0 : count};
 }
 
-/// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
-struct Runs {
-  std::array<double, kLongestHold + 1> of_length{};
-  double runs = 0, samples = 0;
-  double repeats = 0, spacing = 0, spacing2 = 0;
+/// The length that a share of the runs does not pass.
+std::uint64_t quantile(const ValueRuns& runs, double share) {
+  double sum = 0;
+  for (std::uint64_t length = 1; length <= kLongestHold; ++length)
+    if ((sum += runs.of_length[length]) >= share * runs.runs) return length;
+  return kLongestHold;
+}
 
-  /// The length that a share of the runs does not pass.
-  std::uint64_t quantile(double share) const {
-    double sum = 0;
-    for (std::uint64_t length = 1; length <= kLongestHold; ++length)
-      if ((sum += of_length[length]) >= share * runs) return length;
-    return kLongestHold;
-  }
-  double mean_length() const { return samples / runs; }
-  /// Standard deviation over mean of the distance between repeats: near 1 by chance.
-  double unevenness() const {
-    const double mean = spacing / repeats;
-    return std::sqrt(std::max(0.0, spacing2 / repeats - mean * mean)) / mean;
-  }
-};
+double mean_length(const ValueRuns& runs) {
+  return runs.samples / runs.runs;
+}
 
-Runs runs_of_values(std::span<const double> record) {
-  Runs runs;
+/// Standard deviation over mean of the distance between repeats: near 1 by chance.
+double unevenness(const ValueRuns& runs) {
+  const double mean = runs.spacing / runs.repeats;
+  return std::sqrt(std::max(0.0, runs.spacing2 / runs.repeats - mean * mean)) / mean;
+}
+
+ValueRuns runs_of_values(std::span<const double> record) {
+  ValueRuns runs;
+  runs.of_length.assign(kLongestHold + 1, 0.0);
   std::uint64_t length = 1, since = 0;
   bool first = true;
   for (std::size_t t = 1; t < record.size(); ++t) {
@@ -91,15 +88,15 @@ Runs runs_of_values(std::span<const double> record) {
   return runs;
 }
 
-std::optional<HeldValues> held_values(const Runs& runs, double rate_hz) {
+std::optional<HeldValues> held_values(const ValueRuns& runs, double rate_hz) {
   if (static_cast<double>(kFewestRuns) > runs.runs ||
       static_cast<double>(kFewestRuns) > runs.repeats)
     return std::nullopt;
-  const std::uint64_t shortest = runs.quantile(0.01), longest = runs.quantile(0.99);
+  const std::uint64_t shortest = quantile(runs, 0.01), longest = quantile(runs, 0.99);
   const bool every = shortest >= 2 && longest <= 2 * shortest + 1;
-  const bool some = shortest == 1 && longest <= 2 && runs.unevenness() < 0.35;
+  const bool some = shortest == 1 && longest <= 2 && unevenness(runs) < 0.35;
   if (!every && !some) return std::nullopt;
-  const double times = runs.mean_length();
+  const double times = mean_length(runs);
   return HeldValues{times, rate_hz / times};
 }
 
@@ -109,8 +106,8 @@ double chance_of_repeat(double noise_over_step) {
          s * std::sqrt(2 / std::numbers::pi) * -std::expm1(-1 / (2 * s * s));
 }
 
-std::optional<Staircase> staircase(const Runs& runs, double step) {
-  const double repeats = 1 - 1 / std::max(1.0, runs.mean_length());
+std::optional<Staircase> staircase(const ValueRuns& runs, double step) {
+  const double repeats = 1 - 1 / std::max(1.0, mean_length(runs));
   if (!(runs.runs > 0) || repeats <= chance_of_repeat(1)) return std::nullopt;
   double low = 0.3, high = 1;
   if (repeats >= chance_of_repeat(low)) return Staircase{step, low * step, true};
@@ -170,30 +167,89 @@ ValueCensus value_census(std::span<const double> record) {
   return census;
 }
 
+DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census) {
+  DigitalSums sums;
+  sums.present = static_cast<double>(samples.size() - count_missing(samples));
+  if (!(census.low < census.high)) return sums;
+  if (census.repeats >= kFewestRuns) sums.runs = runs_of_values(samples);
+  sums.low = rail_of(samples, census, false, sums.present);
+  sums.high = rail_of(samples, census, true, sums.present);
+  return sums;
+}
+
+void join(DigitalSums& sums, const DigitalSums& later) {
+  const auto add_rail = [](DigitalSums::AtRail& rail, const DigitalSums::AtRail& other, bool high) {
+    if (other.count == 0) return;
+    const bool beyond = high ? other.value > rail.value : other.value < rail.value;
+    if (rail.count == 0 || beyond) rail = {other.value, 0};
+    if (rail.value == other.value) rail.count += other.count;
+  };
+  add_rail(sums.low, later.low, false);
+  add_rail(sums.high, later.high, true);
+  sums.present += later.present;
+  ValueRuns& runs = sums.runs;
+  const ValueRuns& more = later.runs;
+  if (more.of_length.empty()) return;
+  if (runs.of_length.empty()) runs.of_length.assign(kLongestHold + 1, 0.0);
+  for (std::size_t length = 0; length < more.of_length.size(); ++length)
+    runs.of_length[length] += more.of_length[length];
+  runs.runs += more.runs;
+  runs.samples += more.samples;
+  runs.repeats += more.repeats;
+  runs.spacing += more.spacing;
+  runs.spacing2 += more.spacing2;
+}
+
+void write_state(const DigitalSums& sums, StateWriter& to) {
+  const ValueRuns& runs = sums.runs;
+  to.reals(std::array{sums.present,
+                      sums.low.value,
+                      sums.low.count,
+                      sums.high.value,
+                      sums.high.count,
+                      runs.runs,
+                      runs.samples,
+                      runs.repeats,
+                      runs.spacing,
+                      runs.spacing2});
+  to.reals(runs.of_length);
+}
+
+DigitalSums read_digital_sums(StateReader& from) {
+  const std::vector<double> all = from.reals();
+  if (all.size() != 10) from.refuse("the digital faults of a channel");
+  DigitalSums sums{all[0], {all[1], all[2]}, {all[3], all[4]}, {}};
+  sums.runs = {from.reals(), all[5], all[6], all[7], all[8], all[9]};
+  if (!sums.runs.of_length.empty() && sums.runs.of_length.size() != kLongestHold + 1)
+    from.refuse("the runs of a channel");
+  return sums;
+}
+
 DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step,
                                   std::string_view unit) {
-  return find_digital_faults(record, value_census(record), rate_hz, step, unit);
+  const ValueCensus census = value_census(record);
+  return find_digital_faults(digital_sums(record, census), census, rate_hz, step, unit);
 }
 
-DigitalFaults find_digital_faults(std::span<const double> record,
+DigitalFaults find_digital_faults(const DigitalSums& sums,
                                   const ValueCensus& census,
                                   double rate_hz,
                                   std::optional<double> step,
                                   std::string_view unit) {
   DigitalFaults faults;
   if (!(census.low < census.high)) return faults;
-  if (census.repeats >= kFewestRuns) {
-    const Runs runs = runs_of_values(record);
-    faults.held = held_values(runs, rate_hz);
-    if (step && !faults.held) faults.staircase = staircase(runs, *step);
+  if (!sums.runs.of_length.empty()) {
+    faults.held = held_values(sums.runs, rate_hz);
+    if (step && !faults.held) faults.staircase = staircase(sums.runs, *step);
   }
   // A staircase may stand on its last step for long.
-  if (!faults.staircase && std::max(census.at_low, census.at_high) >= kFewestAtRail) {
-    const auto present = static_cast<double>(record.size() - count_missing(record));
-    for (const bool top : {false, true})
-      if (const auto rail = rail_of(record, census, top, present)) faults.rails.push_back(*rail);
+  if (!faults.staircase) {
+    if (sums.low.count > 0 && sums.low.value == census.low)
+      faults.rails.push_back({census.low, false, sums.low.count / sums.present});
+    if (sums.high.count > 0 && sums.high.value == census.high)
+      faults.rails.push_back({census.high, true, sums.high.count / sums.present});
   }
   describe_faults(faults, rate_hz, unit);
   return faults;

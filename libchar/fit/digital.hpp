@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/state_archive.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
@@ -47,15 +48,40 @@ struct ValueCensus {
 
 ValueCensus value_census(std::span<const double> record);
 
+/// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
+struct ValueRuns {
+  std::vector<double> of_length;  ///< [length], up to 1024; empty: nothing was counted
+  double runs = 0, samples = 0;
+  double repeats = 0, spacing = 0, spacing2 = 0;
+};
+
+/// What is looked at of the samples of a leaf, or of several: their runs, where values repeat at all, and rails.
+struct DigitalSums {
+  struct AtRail {
+    double value = 0;
+    double count = 0;  ///< 0: no rail
+  };
+  double present = 0;
+  AtRail low, high;
+  ValueRuns runs;
+};
+
+/// `census` of the same samples.
+DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census);
+/// Adds those of the leaf that follows.
+void join(DigitalSums& sums, const DigitalSums& later);
+void write_state(const DigitalSums& sums, StateWriter& to);
+DigitalSums read_digital_sums(StateReader& from);
+
 /// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`). `census` of the record.
 /// No finding in a record of noise that is sampled and rounded finely, whatever its length.
-DigitalFaults find_digital_faults(std::span<const double> record,
+DigitalFaults find_digital_faults(const DigitalSums& sums,
                                   const ValueCensus& census,
                                   double rate_hz,
                                   std::optional<double> step = {},
                                   std::string_view unit = {});
 
-/// The same where nobody has counted yet.
+/// The same of samples in memory.
 DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step = {},

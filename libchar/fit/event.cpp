@@ -29,6 +29,25 @@ void subtract_events(std::span<const Event> events, double rate_hz, std::span<do
   }
 }
 
+double event_mean(std::span<const Event> events, double rate_hz, double first, double count) {
+  double sum = 0;
+  for (const Event& event : events) {
+    const double at = std::round(event.at_s * rate_hz);
+    if (event.kind == EventKind::step)
+      sum += event.size * std::clamp((first + count - at) / count, 0.0, 1.0);
+    if (event.kind == EventKind::ramp)
+      sum += event.slope / rate_hz * (first + 0.5 * (count - 1));
+    if (event.kind == EventKind::warm_up) {
+      // of the decay e^(-t/tau): q^k for k = 0 … count - 1, q = e^(-1/tau)
+      const double tau = event.tau_s * rate_hz;
+      const double since = std::max(0.0, first - event.from_s * rate_hz);
+      sum += event.size * std::exp(-since / tau) * std::expm1(-count / tau) /
+             (count * std::expm1(-1 / tau));
+    }
+  }
+  return sum;
+}
+
 std::string event_sentence(const Event& event, std::string_view unit) {
   const double relative = event.sd / std::max(std::abs(event.size), 1e-300);
   const std::string size = fmt::format("{} ± {}{}{}",

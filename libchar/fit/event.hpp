@@ -35,6 +35,9 @@ struct Event {
 /// Takes the events out of a record at its full rate (its mean is not kept).
 void subtract_events(std::span<const Event> events, double rate_hz, std::span<double> record);
 
+/// Mean of the events over `count` samples from `first` on, both of them in samples of the record and not necessarily whole.
+double event_mean(std::span<const Event> events, double rate_hz, double first, double count);
+
 /// "A step of 0.125 ± 0.004 deg/s at 740 s (between 739.8 and 740.3 s)."
 std::string event_sentence(const Event& event, std::string_view unit);
 

@@ -352,86 +352,23 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   return fit_offered(lent, rate_hz, samples, allan, offered, workspace);
 }
 
-namespace {
-
-/// The fit of what a binner has seen, of which temperature has taken degrees of freedom.
-NoiseFit fit_bins_beside(const PowerBinner& binner,
-                         double rate_hz,
-                         std::uint64_t samples,
-                         const AllanCurve* allan,
-                         const FitOptions& options,
-                         FitWorkspace* workspace,
-                         const std::optional<TemperatureEffect>& temperature) {
+NoiseFit fit_powers(std::span<const PooledPower> powers,
+                    double rate_hz,
+                    std::uint64_t samples,
+                    const AllanCurve* allan,
+                    const FitOptions& options,
+                    FitWorkspace* workspace,
+                    const std::optional<TemperatureEffect>& temperature) {
   ClippedBins lines;
   if (options.remedies)
-    lines = binner.finish_clipped(rate_hz);
+    lines = clipped_power_bins(powers, rate_hz);
   else
-    lines.bins = binner.finish(rate_hz);
+    lines.bins = power_bins(powers, rate_hz);
   if (temperature) count_spent(*temperature, static_cast<double>(samples) / rate_hz, lines.bins);
   NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, options, workspace);
   if (lines.clipped == 0) return fit;
   add_lines(lines.bins, lines.all, fit);
   fit.remedies.insert(fit.remedies.begin(), lines_remedy(lines.clipped));
-  return fit;
-}
-
-}  // namespace
-
-NoiseFit fit_binned(const PowerBinner& binner,
-                    double rate_hz,
-                    std::uint64_t samples,
-                    const AllanCurve* allan,
-                    const FitOptions& options,
-                    FitWorkspace* workspace) {
-  NoiseFit fit = fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, {});
-  if (options.difference_kurtosis && !options.clock)
-    widen_for_tails(*options.difference_kurtosis, samples, fit);
-  return fit;
-}
-
-NoiseFit fit_record(std::span<const double> record,
-                    double rate_hz,
-                    const AllanCurve* allan,
-                    const FitOptions& options,
-                    FitWorkspace* workspace,
-                    const RecordKnowledge& known) {
-  const DespikedRecord despiked =
-      options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
-  std::span<const double> data =
-      despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
-  const EventSeries* series = despiked.samples.empty() ? known.series : nullptr;
-  const RecordMeans means = without_means(data, rate_hz, options, known.temperature, series);
-  if (!means.samples.empty()) data = means.samples;
-  AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
-  if (allan != nullptr && data.data() != record.data()) {
-    own = pyramid_deviation(data, 1 / rate_hz);
-    allan = &own;
-  }
-  // One exact transform while it is cheap; a longer record goes by blocks.
-  constexpr std::uint64_t kWhole = std::uint64_t{1} << 21U;
-  const std::uint64_t block =
-      data.size() <= kWhole ? std::max<std::uint64_t>(data.size(), 64) : std::uint64_t{1} << 16U;
-  PowerBinner binner(block);
-  std::vector<double> filled;
-  const bool as_recorded = data.data() == record.data();
-  const std::uint64_t missing = known.missing ? *known.missing : count_missing(record);
-  const std::uint64_t samples = record.size() - missing;
-  const bool whole = despiked.samples.empty() ? missing == 0 : present_run(data) == data.size();
-  if (options.remedies && !whole) filled = bridged(data);
-  binner.push(filled.empty() ? data : filled);
-  NoiseFit fit =
-      fit_bins_beside(binner, rate_hz, samples, allan, options, workspace, means.temperature);
-  if (!options.clock) {
-    const bool counted = options.difference_kurtosis && as_recorded;
-    widen_for_tails(
-        counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
-  }
-  report_means(means, options, fit);
-  add_spike_answer(despiked.answer, fit);
-  if (options.remedies && options.stationarity) {
-    fit.stationarity = test_stationarity(data, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
-  }
   return fit;
 }
 

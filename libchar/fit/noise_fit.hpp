@@ -11,6 +11,7 @@
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/record_sums.hpp"
 #include "libchar/fit/temperature.hpp"
 
 namespace libchar {
@@ -28,14 +29,15 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         const FitOptions& options = {},
                         FitWorkspace* workspace = nullptr);
 
-/// The same on what a binner has seen, spectral lines clipped when remedies are on: the fit of a record that was streamed.
-/// `samples` without the missing ones. Spikes need the samples: SpikeCleaner before the binner.
-NoiseFit fit_binned(const PowerBinner& binner,
+/// The same on the powers of a record, spectral lines clipped when remedies are on, and temperature has taken degrees of freedom.
+/// `samples` without the missing ones.
+NoiseFit fit_powers(std::span<const PooledPower> powers,
                     double rate_hz,
                     std::uint64_t samples,
                     const AllanCurve* allan,
                     const FitOptions& options = {},
-                    FitWorkspace* workspace = nullptr);
+                    FitWorkspace* workspace = nullptr,
+                    const std::optional<TemperatureEffect>& temperature = {});
 
 /// What the caller of `fit_record` knows of its record; none of it is needed.
 struct RecordKnowledge {
@@ -45,12 +47,20 @@ struct RecordKnowledge {
   std::optional<std::uint64_t> missing;  ///< samples, counted already
 };
 
-/// Whole record in memory: bins, alarms, remedies, fit, second opinion.
+/// Alarms, remedies, bins, fit, second opinion, of samples in memory. A record of more than a leaf (2^20 samples) is fitted by its sums,
+/// unless a temperature is given.
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,
                     const FitOptions& options = {},
                     FitWorkspace* workspace = nullptr,
                     const RecordKnowledge& known = {});
+
+/// The same of a record of more than a leaf, whoever has the samples. `allan`: of `sums`.
+NoiseFit fit_sums(RecordSums sums,
+                  double rate_hz,
+                  const AllanCurve* allan,
+                  const FitOptions& options = {},
+                  FitWorkspace* workspace = nullptr);
 
 }  // namespace libchar

@@ -3,12 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/shared_blocks.hpp"
 
 namespace libchar {
 
@@ -23,7 +21,16 @@ struct PowerBin {
   std::uint64_t first = 0, end = 0, length = 0, spacing = 1;
 };
 
-struct PooledPower;
+/// Mean squared coefficients k = first.. of one transform length, pooled over `pooled` transforms.
+struct PooledPower {
+  std::uint64_t length = 0;   ///< points of the transform
+  std::uint64_t spacing = 1;  ///< samples averaged in a point
+  std::uint64_t first = 1;
+  std::uint64_t pooled = 1;
+  std::vector<double> mean;
+  /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become fewer; empty: nothing
+  std::vector<double> of_events = {};
+};
 
 /// Bins without the coefficients of spectral lines.
 struct ClippedBins {
@@ -32,32 +39,14 @@ struct ClippedBins {
   std::uint64_t clipped = 0;  ///< coefficients left out
 };
 
-/// Squared DCT-II coefficients of a record as log bins; streaming in constant memory for long records: blocks of `block`
-/// samples are transformed one by one (k >= 1) and their means as one more series (docs/theory/fit.md). A record of at most
-/// `block` samples gets one exact DCT. Missing samples: short ones are closed up (concatenated), at a long gap a new record
-/// starts and likelihoods add.
-class PowerBinner final : public BlockTaker {
- public:
-  /// Blocks that somebody else may transform: long enough for their sixteen coefficients left to the series of means to be few,
-  /// short enough for many of them in a record.
-  static bool suits(std::uint64_t block);
+/// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up (concatenated), at a long gap a new record starts and
+/// likelihoods add. A record in leaves: powers_of (power_sums.hpp).
+std::vector<PooledPower> whole_powers(std::span<const double> record);
 
-  explicit PowerBinner(std::uint64_t block = std::uint64_t{1} << 16U);
-  /// One that has seen a record elsewhere, of which these are the powers (power_sums.hpp).
-  explicit PowerBinner(std::vector<PooledPower> powers);
-  ~PowerBinner() override;
-  PowerBinner(PowerBinner&&) noexcept;
-  PowerBinner& operator=(PowerBinner&&) noexcept;
-  void push(std::span<const double> samples) override;
-  bool take_block(std::span<const double> samples) override;
-  void take_power(std::vector<double> power) override;
-  std::vector<PowerBin> finish(double rate_hz) const;
-  /// Same after clipping spectral lines: coefficients beyond 32 × the local median are left out.
-  ClippedBins finish_clipped(double rate_hz) const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
+std::vector<PowerBin> power_bins(std::span<const PooledPower> powers, double rate_hz);
+/// The same of a record as a whole.
+std::vector<PowerBin> power_bins(std::span<const double> record, double rate_hz);
+/// The same after clipping spectral lines: coefficients beyond 32 × the local median are left out.
+ClippedBins clipped_power_bins(std::span<const PooledPower> powers, double rate_hz);
 
 }  // namespace libchar

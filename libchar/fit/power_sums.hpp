@@ -9,6 +9,7 @@
 
 #include "libchar/core/shared_blocks.hpp"
 #include "libchar/core/state_archive.hpp"
+#include "libchar/fit/event.hpp"
 #include "libchar/fit/mean_powers.hpp"
 #include "libchar/fit/pooled_sums.hpp"
 #include "libchar/fit/power_bins.hpp"
@@ -24,9 +25,12 @@ struct PowerRun {
   std::vector<double> means;
   /// in place of `means` where these are settled: 512 * (mean of 2^18 samples less `shift`)
   std::vector<double> slow;
+  std::uint64_t at = 0;    ///< place of the first sample in the part
+  std::uint64_t rows = 0;  ///< from the first sample to the last, missing ones too
 };
 
 struct PowerSums {
+  std::uint64_t rows = 0;  ///< samples, missing ones too
   PooledSums blocks;
   std::array<PooledSums, 4> pieces;  ///< of 16384, 8192, 4096 and 2048 samples
   MeanPowers means;                  ///< of what is settled
@@ -34,7 +38,7 @@ struct PowerSums {
   std::vector<double> tail;  ///< samples behind the last block of the record's last part
 };
 
-/// One part of a record, as PowerBinner takes a record: in blocks of `kBlock`, whose squares a stage that transforms them anyway may
+/// One part of a record: in blocks of `kBlock`, whose squares a stage that transforms them anyway may
 /// add up.
 class PowerPart final : public BlockTaker {
  public:
@@ -56,14 +60,19 @@ class PowerPart final : public BlockTaker {
 /// Adds the part that follows directly.
 void join(PowerSums& sums, PowerSums later);
 
-/// Of a record of so many samples: is its series of means taken in blocks?
-bool is_long_record(std::uint64_t samples);
-/// The series of means of a part of a long record becomes powers of its blocks and a slow series. `samples_before`: in front of the
-/// part, present or missing; a gap inside it that is longer than a hundredth of those ends a segment.
+/// The series of means of a part of 2^29 samples becomes powers of its blocks and a slow series: nothing grows with a record but one
+/// value for 2^18 samples. `samples_before`: in front of the part, present or missing; a gap inside it that is longer than a hundredth of
+/// those ends a segment.
 void settle_means(PowerSums& sums, std::uint64_t samples_before);
 
-/// A binner that has seen the record.
-PowerBinner binner_of(PowerSums sums);
+/// Of the record times a factor.
+void scale(PowerSums& sums, double factor);
+
+/// The powers of the record. `events` are taken out of the series of means sample by sample, and out of the powers of blocks by
+/// their energy.
+std::vector<PooledPower> powers_of(PowerSums sums,
+                                   std::span<const Event> events = {},
+                                   double rate_hz = 1);
 
 void write_state(const PowerSums& sums, StateWriter& to);
 PowerSums read_power_sums(StateReader& from);

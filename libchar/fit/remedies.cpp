@@ -45,19 +45,10 @@ DespikedRecord without_spikes(std::span<const double> record, std::optional<doub
   const double kurtosis = known ? *known : kurtosis_of_differences(record);
   const double alarm = spike_alarm(record.size());
   if (!(kurtosis > alarm)) return {};
-  SpikeScan scan;
-  scan.push(record);
-  SpikeCleaner cleaner(scan.scale());
   DespikedRecord out;
-  out.samples.reserve(record.size());
-  const auto keep = [&](std::span<const double> cleaned) {
-    out.samples.insert(out.samples.end(), cleaned.begin(), cleaned.end());
-  };
-  constexpr std::size_t kPiece = 8192;
-  for (std::size_t from = 0; from < record.size(); from += kPiece)
-    keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
-  keep(cleaner.finish());
-  out.answer = spike_answer(kurtosis, alarm, cleaner.count());
+  SpikeCount count;
+  out.samples = cleaned_record(record, count);
+  out.answer = spike_answer(kurtosis, alarm, count);
   if (!out.answer.remedy) out.samples = std::vector<double>();  // `{}` would keep the memory
   return out;
 }

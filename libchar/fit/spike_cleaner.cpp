@@ -285,4 +285,21 @@ void SpikeCleaner::release(bool last) {
   base_ = keep;
 }
 
+std::vector<double> cleaned_record(std::span<const double> record, SpikeCount& count) {
+  SpikeScan scan;
+  scan.push(record);
+  SpikeCleaner cleaner(scan.scale());
+  std::vector<double> cleaned;
+  cleaned.reserve(record.size());
+  const auto keep = [&](std::span<const double> certain) {
+    cleaned.insert(cleaned.end(), certain.begin(), certain.end());
+  };
+  constexpr std::size_t kPiece = 8192;
+  for (std::size_t from = 0; from < record.size(); from += kPiece)
+    keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
+  keep(cleaner.finish());
+  count = cleaner.count();
+  return cleaned;
+}
+
 }  // namespace libchar

@@ -102,4 +102,7 @@ class SpikeCleaner {
   double good_ = 0;  ///< the last sample that belongs to no event
 };
 
+/// A record without its spikes (NaN), by their scale in it, and what was found.
+std::vector<double> cleaned_record(std::span<const double> record, SpikeCount& count);
+
 }  // namespace libchar

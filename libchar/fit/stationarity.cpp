@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -25,7 +27,9 @@
 #include "libchar/core/present.hpp"
 #include "libchar/core/random_effects.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/fit/event.hpp"
 #include "libchar/fit/fit_result.hpp"
+#include "libchar/fit/record_sums.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 
 namespace libchar {
@@ -66,21 +70,33 @@ const AllanPoint* point_of(const AllanCurve& curve, std::uint64_t m) {
   return nullptr;
 }
 
-std::optional<OctaveTest> test_pieces(const Curves& pieces, std::uint64_t m) {
+/// A record as the test sees it.
+struct Tested {
+  std::uint64_t samples = 0;
+  double dt_s = 0;
+  /// Allan deviations of the pieces at an averaging factor; empty: one of them has none
+  std::function<std::vector<double>(std::uint64_t m)> pieces;
+  std::uint64_t piece = 0;  ///< samples
+  std::span<const double> means;
+  std::uint64_t per_mean = 1;  ///< samples
+};
+
+std::optional<OctaveTest> test_pieces(const Tested& record, std::uint64_t m) {
+  const std::vector<double> deviations = record.pieces(m);
+  if (deviations.empty()) return std::nullopt;
   OctaveTest test;
   test.spread.stretches = kStretches;
+  test.spread.tau_s = static_cast<double>(m) * record.dt_s;
   test.log_variance.assign(kStretches, 0.0);
   double within = 0, mean = 0;
   for (std::size_t s = 0; s < kStretches; ++s) {
     std::array<double, kPiecesEach> y{};
     double variance = 0;
     for (std::size_t i = 0; i < kPiecesEach; ++i) {
-      const AllanPoint* point = point_of(pieces[s * kPiecesEach + i], m);
-      if (point == nullptr) return std::nullopt;
-      test.spread.tau_s = point->tau_s;
-      y[i] = 2 * std::log(point->deviation);
+      const double deviation = deviations[s * kPiecesEach + i];
+      y[i] = 2 * std::log(deviation);
       test.log_variance[s] += y[i] / kPiecesEach;
-      variance += point->deviation * point->deviation / kPiecesEach;
+      variance += deviation * deviation / kPiecesEach;
     }
     test.deviation.push_back(std::sqrt(variance));
     for (const double value : y)
@@ -169,35 +185,35 @@ Curves coarse_curves(std::span<const double> means,
 }
 
 /// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy tails.
-double excess_scatter(AllanCurve piece, double within, std::uint64_t m, const NoiseFit& fit) {
-  add_fit_intervals(piece, fit);
-  const AllanPoint* point = point_of(piece, m);
+double excess_scatter(const Tested& record, double within, std::uint64_t m, const NoiseFit& fit) {
+  // Degrees of freedom are those of any record as long as a piece.
+  AllanCurve curve = pyramid_deviation(std::vector<double>(record.piece), record.dt_s);
+  add_fit_intervals(curve, fit);
+  for (AllanPoint& point : curve.points) point.deviation = 1;
+  const AllanPoint* point = point_of(curve, m);
   return point != nullptr && point->edf > 0 ? std::max(1.0, within * point->edf / 2) : 1;
 }
 
-std::vector<OctaveTest> octaves_of(std::span<const double> record,
-                                   double rate_hz,
-                                   const NoiseFit& fit) {
+std::vector<OctaveTest> octaves_of(const Tested& record, const NoiseFit& fit) {
   std::vector<OctaveTest> tests;
   const auto keep = [&](std::optional<OctaveTest> test) {
     if (test) tests.push_back(*test);
   };
-  const Curves pieces = curves_of(record, kPieces, 1 / rate_hz);
   std::uint64_t m = 1;
-  for (; m * kWindows <= record.size() / kPieces; m *= 2) keep(test_pieces(pieces, m));
+  for (; m * kWindows <= record.samples / kPieces; m *= 2) keep(test_pieces(record, m));
   const double inflation =
-      tests.empty() ? 1 : excess_scatter(pieces[0], tests.back().within, m / 2, fit);
+      tests.empty() ? 1 : excess_scatter(record, tests.back().within, m / 2, fit);
   if (inflation > kTooHeavy) return tests;
   // From eight means on a pyramid's terms start often enough.
-  std::vector<double> means;
-  std::uint64_t r = 1;
+  std::vector<double> means(record.means.begin(), record.means.end());
+  std::uint64_t r = record.per_mean;
   for (const auto& [parts, windows] :
        {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
     const std::uint64_t before = r;
-    r = std::max<std::uint64_t>(1, m / 8);
-    means = means_of(means.empty() ? record : std::span<const double>(means), r / before);
-    const Curves stretches = coarse_curves(means, parts, r, 1 / rate_hz, fit);
-    for (; m * windows <= record.size() / parts; m *= 2)
+    r = std::max(before, m / 8);
+    if (r > before) means = means_of(means, r / before);
+    const Curves stretches = coarse_curves(means, parts, r, record.dt_s, fit);
+    for (; m * windows <= record.samples / parts; m *= 2)
       keep(test_stretches(stretches, m, inflation));
   }
   return tests;
@@ -252,16 +268,16 @@ std::string sentence_of(const Stationarity& found, double limit) {
 
 }  // namespace
 
-Stationarity test_stationarity(std::span<const double> record,
-                               double rate_hz,
-                               const NoiseFit& fit) {
+namespace {
+
+Stationarity test(const Tested& record, const NoiseFit& fit) {
   Stationarity out;
-  const double size = static_cast<double>(record.size());
-  if (record.size() < kShortest || static_cast<double>(fit.samples) < (1 - kMostMissing) * size)
+  const double size = static_cast<double>(record.samples);
+  if (record.samples < kShortest || static_cast<double>(fit.samples) < (1 - kMostMissing) * size)
     return out;
   std::vector<OctaveTest> tests;
   try {
-    tests = octaves_of(record, rate_hz, fit);
+    tests = octaves_of(record, fit);
   } catch (const Error& error) {
     // A piece that is missing as a whole has no curve.
     if (error.problem().kind != ErrorKind::numeric) throw;
@@ -279,9 +295,103 @@ Stationarity test_stationarity(std::span<const double> record,
     out.noticeable |= test.spread.relative_sd > kNoticeable;
   }
   if (out.steady) return out;
-  describe_clearest(*clearest, static_cast<double>(record.size()) / rate_hz, out);
+  describe_clearest(*clearest, size * record.dt_s, out);
   out.sentence = sentence_of(out, limit);
   return out;
+}
+
+/// Without what drifts put there; NaN where a step is in the piece.
+double without_events(double variance,
+                      std::span<const Event> events,
+                      double first,
+                      double length,
+                      double m,
+                      double rate_hz) {
+  std::vector<Event> drifts;
+  for (const Event& event : events) {
+    const double at = event.at_s * rate_hz;
+    if (event.kind == EventKind::step && at > first - 1 && at < first + length + 1) return kNoMean;
+    if (event.kind != EventKind::step) drifts.push_back(event);
+  }
+  const double middle = first + 0.5 * length;
+  const double d =
+      event_mean(drifts, rate_hz, middle, m) - event_mean(drifts, rate_hz, middle - m, m);
+  const double left = variance - 0.5 * d * d;
+  return left > 0 ? left : kNoMean;
+}
+
+/// A piece that has none gets the mean of the others of its stretch.
+void fill_missing(std::vector<double>& variance) {
+  for (std::size_t s = 0; s < kStretches; ++s) {
+    const std::span<double> stretch(variance.data() + s * kPiecesEach, kPiecesEach);
+    const double mean = mean_present(stretch);
+    for (double& v : stretch)
+      if (std::isnan(v)) v = mean;
+  }
+}
+
+}  // namespace
+
+Stationarity test_stationarity(std::span<const double> record,
+                               double rate_hz,
+                               const NoiseFit& fit) {
+  if (record.size() < kShortest) return {};
+  Tested tested{record.size(), 1 / rate_hz, {}, record.size() / kPieces, record, 1};
+  std::optional<Curves> curves;
+  tested.pieces = [&](std::uint64_t m) {
+    if (!curves) curves = curves_of(record, kPieces, 1 / rate_hz);
+    std::vector<double> deviations;
+    for (const AllanCurve& curve : *curves) {
+      const AllanPoint* point = point_of(curve, m);
+      if (point == nullptr) return std::vector<double>();
+      deviations.push_back(point->deviation);
+    }
+    return deviations;
+  };
+  return test(tested, fit);
+}
+
+Stationarity test_stationarity(const FittedSums& sums,
+                               std::span<const Event> events,
+                               double rate_hz,
+                               const NoiseFit& fit) {
+  std::vector<double> means = sums.means.means();
+  const auto per_mean = static_cast<double>(sums.means.per_mean());
+  if (!events.empty())
+    for (std::size_t i = 0; i < means.size(); ++i)
+      means[i] -= event_mean(events, rate_hz, static_cast<double>(i) * per_mean, per_mean);
+  const std::uint64_t samples = sums.means.samples();
+  Tested tested{samples,
+                1 / rate_hz,
+                {},
+                std::max(sums.pieces.shortest, samples / kPieces),
+                means,
+                sums.means.per_mean()};
+  tested.pieces = [&](std::uint64_t m) {
+    const auto octave = static_cast<std::size_t>(std::bit_width(m)) - 1;
+    if (octave >= sums.pieces.variance.size()) return std::vector<double>();
+    std::vector<double> each = sums.pieces.variance[octave];
+    const std::size_t together = each.size() / kPieces;
+    if (together == 0) return std::vector<double>();
+    const auto length = static_cast<double>(sums.pieces.length(octave));
+    for (std::size_t i = 0; i < each.size() && !events.empty(); ++i)
+      each[i] = without_events(each[i],
+                               events,
+                               static_cast<double>(i) * length,
+                               length,
+                               static_cast<double>(m),
+                               rate_hz);
+    std::vector<double> variance;
+    for (std::size_t i = 0; i < kPieces; ++i)
+      variance.push_back(mean_present(std::span(each).subspan(i * together, together)));
+    fill_missing(variance);
+    for (double& v : variance) {
+      if (!(v > 0)) return std::vector<double>();
+      v = std::sqrt(v);
+    }
+    return variance;
+  };
+  return test(tested, fit);
 }
 
 double spread_reach(const Stationarity& stationarity, double tau_s) {

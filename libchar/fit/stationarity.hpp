@@ -10,6 +10,8 @@
 
 namespace libchar {
 
+struct Event;
+struct FittedSums;
 struct NoiseFit;
 
 /// How much the Allan deviation at one averaging time differs between stretches of a record.
@@ -37,6 +39,11 @@ struct Stationarity {
 /// Compares sixteen stretches of a record (spikes, steps and drift taken out) at every octave that fits a stretch sixteen times, and four
 /// at longer ones that fit a stretch eight times. `fit`: what the degrees of freedom of long averaging times are computed with.
 Stationarity test_stationarity(std::span<const double> record, double rate_hz, const NoiseFit& fit);
+/// The same of sums over its leaves. `events`: that were taken out of it before `fit`.
+Stationarity test_stationarity(const FittedSums& sums,
+                               std::span<const Event> events,
+                               double rate_hz,
+                               const NoiseFit& fit);
 
 /// ln(Allan deviation) of another stretch at this averaging time is within so much of the record's (95 %, by Student's t, beyond chance):
 /// by the spread at the nearest octave; 0 where the record is steady.

@@ -1,6 +1,6 @@
 // Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao
 // bound, bias, coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene
-// letters = all] [block = 0 (whole record)]
+// letters = all] [blocks]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -14,6 +14,7 @@
 #include "libchar/fit/detail/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/record_sums.hpp"
 #include "tests/support/noise.hpp"
 
 namespace {
@@ -85,7 +86,7 @@ void add(Tally& tally, const Coefficient& c, double truth) {
   tally.covered += inside ? 1 : 0;
 }
 
-Row run(const Scene& scene, int records, std::uint64_t block) {
+Row run(const Scene& scene, int records, bool in_blocks) {
   Row row;
   test::NoiseSource source(scene.samples, scene.rate_hz, 20261121);
   test::Gaussian starts(7);
@@ -99,9 +100,9 @@ Row run(const Scene& scene, int records, std::uint64_t block) {
   for (int r = 0; r < records; ++r) {
     const std::vector<double> y = source.record(scene.q, scene.b, scene.k);
     auto from = Clock::now();
-    PowerBinner binner(block == 0 ? scene.samples : block);
-    binner.push(y);
-    const std::vector<PowerBin> bins = binner.finish(scene.rate_hz);
+    const std::vector<PowerBin> bins =
+        in_blocks ? power_bins(powers_of(record_sums(y, false).plain.bins), scene.rate_hz)
+                  : power_bins(y, scene.rate_hz);
     row.bins_ms += milliseconds(from);
     const NoiseFit fit = fit_power_bins(bins, scene.rate_hz, y.size(), nullptr, plain);
     from = Clock::now();
@@ -179,15 +180,15 @@ void print(const Scene& scene, const Row& row) {
 int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 400;
   const std::string chosen = argc > 2 ? argv[2] : "all";
-  const std::uint64_t block = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 0;
+  const bool in_blocks = argc > 3 && std::string(argv[3]) == "blocks";
   fmt::print(
-      "records {}; block {}\n", records, block == 0 ? "whole record" : std::to_string(block));
+      "records {}; {}\n", records, in_blocks ? "blocks" : "whole record");
   fmt::print(
       "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
       "cover all  "
       "optimum  worst    ms/fit  ms/bins  p<.05\n");
   for (const Scene& scene : kScenes) {
     if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos)
-      print(scene, run(scene, records, block));
+      print(scene, run(scene, records, in_blocks));
   }
 }

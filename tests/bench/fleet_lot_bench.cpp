@@ -218,9 +218,8 @@ std::vector<Coefficient> fits_of_lot(Term term, double mean, double spread, std:
     test::Gaussian gauss(99 + c);
     for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
       const double truth = mean * std::exp(spread * gauss());
-      PowerBinner binner(kSamples);
-      binner.push(source.record(1, walk ? 0 : truth, walk ? truth : 0));
-      out[i] = fit_power_bins(binner.finish(1), 1, kSamples, nullptr, options)[term];
+      const std::vector<double> y = source.record(1, walk ? 0 : truth, walk ? truth : 0);
+      out[i] = fit_power_bins(power_bins(y, 1), 1, kSamples, nullptr, options)[term];
     }
   });
   return out;
@@ -335,9 +334,8 @@ std::vector<NoiseFit> neighbour_fits(double walk, std::size_t count) {
   tbb::parallel_for(std::size_t{0}, count / kChunk, [&](std::size_t c) {
     test::NoiseSource source(kSamples, 50, 815 + c);
     for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
-      PowerBinner binner(kSamples);
-      binner.push(source.record(5e-3, 4e-3, walk));
-      out[i] = fit_power_bins(binner.finish(50), 50, kSamples, nullptr, options);
+      const std::vector<double> y = source.record(5e-3, 4e-3, walk);
+      out[i] = fit_power_bins(power_bins(y, 50), 50, kSamples, nullptr, options);
     }
   });
   return out;

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/core/leaf_tree.hpp"
 
 using namespace libchar;
 
@@ -35,34 +36,31 @@ const Remedy* spikes_of(const ChannelResult& channel) {
 
 }  // namespace
 
-TEST_CASE("spikes of a streamed record are those of the same record kept") {
-  std::vector<double> y = white_record(300000, 2);
-  for (double& value : y) value += 100;
-  for (std::size_t t = 77; t < y.size(); t += 501) y[t] += t % 2 == 0 ? 30 : -30;
-  for (std::size_t t = 0; t < 8; ++t) y[t] = 0;
-  const Recording recording = recording_of({y}, 100);
-  CharacterizeOptions kept, streamed;
-  kept.spectrum.segment = streamed.spectrum.segment = 8192;
-  streamed.memory_bytes = 1U << 18U;
-  const ChannelResult whole = characterize(recording, kept).channels[0],
-                      pieces = characterize(recording, streamed).channels[0];
-  REQUIRE(spikes_of(whole) != nullptr);
-  REQUIRE(spikes_of(pieces) != nullptr);
-  CHECK(spikes_of(whole)->count == 599 + 8);
-  CHECK(spikes_of(pieces)->count == spikes_of(whole)->count);
-  CHECK((*whole.fit)[Term::white].value.value() == Approx(0.1).epsilon(0.005));
-  CHECK((*pieces.fit)[Term::white].value.value() == Approx(0.1).epsilon(0.005));
+TEST_CASE("spikes of a record of leaves are those of a record of one") {
+  std::vector<double> y = white_record(kLeafSamples, 2), longer = white_record(2 * kLeafSamples + 7, 2);
+  const auto spikes_in = [](std::vector<double>& record) {
+    for (double& value : record) value += 100;
+    for (std::size_t t = 77; t < record.size(); t += 501) record[t] += t % 2 == 0 ? 30 : -30;
+    for (std::size_t t = 0; t < 8; ++t) record[t] = 0;
+    CharacterizeOptions options;
+    options.spectrum.segment = 8192;
+    const ChannelResult result = characterize(recording_of({record}, 100), options).channels[0];
+    REQUIRE(spikes_of(result) != nullptr);
+    CHECK((*result.fit)[Term::white].value.value() == Approx(0.1).epsilon(0.005));
+    return spikes_of(result)->count;
+  };
+  CHECK(spikes_in(y) == 2093 + 8);
+  CHECK(spikes_in(longer) == 4186 + 8);
 }
 
-TEST_CASE("heavy tails of a streamed record are left as they are") {
-  std::vector<double> y = white_record(300000, 3);
+TEST_CASE("heavy tails of a record of leaves are left as they are") {
+  std::vector<double> y = white_record(kLeafSamples + 300000, 3);
   std::mt19937_64 generator(4);
   std::chi_squared_distribution<double> square(5);
   for (double& value : y) value /= std::sqrt(square(generator) / 5);
   const Recording recording = recording_of({y}, 100);
   CharacterizeOptions with, without;
   with.spectrum.segment = without.spectrum.segment = 8192;
-  with.memory_bytes = without.memory_bytes = 1U << 18U;
   without.fit.remedies = false;
   const ChannelResult a = characterize(recording, with).channels[0],
                       b = characterize(recording, without).channels[0];

@@ -1,4 +1,4 @@
-// Every option of the analysis below and above the memory allowed: it changes the answer alike, or is refused with what would do.
+// Every option of the analysis, of a log of one leaf and of one of two: it changes the answer alike, or is refused with what would do.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,15 +9,18 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/welch.hpp"
 
 using Catch::Contains;
 using namespace libchar;
 
 namespace {
 
-constexpr std::uint64_t kSmall = std::uint64_t{1} << 18U;  // the record takes 937.5 KiB
+constexpr std::uint64_t kSmall = std::uint64_t{1} << 18U, kEnough = std::uint64_t{1} << 30U;
 
-Recording recording() {
+/// Two channels of less than a leaf, or of a little more.
+Recording recording(bool is_long) {
   Recording made;
   made.info.channels = {{"a", "deg/s", false}, {"b", "m/s^2", false}};
   made.info.time.rate_hz = 100;
@@ -25,7 +28,8 @@ Recording recording() {
   std::mt19937_64 generator(11);
   std::normal_distribution<double> normal;
   double walk = 0;
-  for (int i = 0; i < 60000; ++i) {
+  const int rows = is_long ? 1'075'000 : 60'000;
+  for (int i = 0; i < rows; ++i) {
     walk += 0.003 * normal(generator);
     made.samples[0].push_back(0.05 * normal(generator) + walk);
     made.samples[1].push_back(9.81 + normal(generator) + 0.5 * std::sin(0.7 * i));
@@ -36,13 +40,14 @@ Recording recording() {
 using Change = std::function<void(CharacterizeOptions&)>;
 
 std::vector<ChannelResult> run(const Change& change,
-                               std::uint64_t memory = std::uint64_t{1} << 30U) {
-  static const Recording made = recording();
+                               std::uint64_t memory = kEnough,
+                               bool is_long = false) {
+  static const Recording shorter = recording(false), longer = recording(true);
   CharacterizeOptions options;
   options.spectrum.segment = 4096;
   options.memory_bytes = memory;
   change(options);
-  return characterize(made, options).channels;
+  return characterize(is_long ? longer : shorter, options).channels;
 }
 
 std::vector<std::uint64_t> factors(const AllanCurve& curve) {
@@ -62,9 +67,8 @@ const Change kNothing = [](CharacterizeOptions&) {};
 
 }  // namespace
 
-TEST_CASE("options of the spectrum mean the same of a log that streams") {
+TEST_CASE("options of the spectrum change a log of one leaf and one of two") {
   const std::pair<const char*, Change> changes[] = {
-      {"none", kNothing},
       {"sides", [](auto& o) { o.spectrum.sides = Sides::two; }},
       {"scaling", [](auto& o) { o.spectrum.scaling = Scaling::ls; }},
       {"segment", [](auto& o) { o.spectrum.segment = 1000; }},
@@ -72,86 +76,91 @@ TEST_CASE("options of the spectrum mean the same of a log that streams") {
       {"overlap", [](auto& o) { o.spectrum.overlap = 0.75; }},
       {"window", [](auto& o) { o.spectrum.window = Window::flat_top; }},
       {"detrend", [](auto& o) { o.spectrum.detrend = Detrend::linear; }}};
-  const auto plain = run(kNothing);
-  for (const auto& [name, change] : changes) {
-    CAPTURE(name);
-    const auto kept = run(change), streamed = run(change, kSmall);
-    for (std::size_t c = 0; c < kept.size(); ++c) {
-      const Spectrum &a = kept[c].spectrum, &b = streamed[c].spectrum;
-      CHECK((name == std::string("none")) ==
-            (a.value == plain[c].spectrum.value && a.scaling == plain[c].spectrum.scaling));
-      REQUIRE(a.frequency_hz == b.frequency_hz);
-      for (std::size_t k = 0; k < a.value.size(); ++k)
-        CHECK(a.value[k] == Approx(b.value[k]).epsilon(1e-9));
-      CHECK(a.window == b.window);
-      CHECK(a.scaling == b.scaling);
-      CHECK(kept[c].lines.size() == streamed[c].lines.size());
+  for (const bool is_long : {false, true}) {
+    const auto plain = run(kNothing, kEnough, is_long);
+    for (const auto& [name, change] : changes) {
+      CAPTURE(name, is_long);
+      const auto changed = run(change, kEnough, is_long);
+      for (std::size_t c = 0; c < changed.size(); ++c) {
+        CHECK(changed[c].spectrum.value != plain[c].spectrum.value);
+        CHECK(changed[c].fit->theta == plain[c].fit->theta);
+      }
     }
   }
 }
 
-TEST_CASE(
-    "limits of the averaging time hold for a log that streams, and for a long one that is kept") {
+TEST_CASE("limits of the averaging time hold, of a short log and of one of two leaves") {
   const Change limits = [](auto& o) {
     o.allan.tau_min_s = 0.05;
     o.allan.tau_max_s = 20;
   };
-  const auto kept = run(limits), streamed = run(limits, kSmall), longer = run([&](auto&o) {
-                                                                   limits(o);
-                                                                   o.exact_samples = 1000;
-                                                                 });
-  CHECK(factors(kept[0].allan) == std::vector<std::uint64_t>{8, 16, 32, 64, 128, 256, 512, 1024});
-  CHECK(factors(streamed[0].allan) == factors(kept[0].allan));
-  same_bits(streamed[0].allan, longer[0].allan);
-  for (std::size_t k = 0; k < kept[0].allan.points.size(); ++k)
-    CHECK(streamed[0].allan.points[k].deviation ==
-          Approx(kept[0].allan.points[k].deviation).epsilon(0.03));
-  const auto none = run([](auto& o) { o.allan.tau_min_s = 1000; }, kSmall);
-  CHECK(none[0].allan.points.empty());
-  REQUIRE(none[0].problems.size() == 1);
-  CHECK_THAT(none[0].problems[0], Contains("no averaging time that was asked for"));
+  for (const bool is_long : {false, true}) {
+    const auto limited = run(limits, kEnough, is_long), all = run(kNothing, kEnough, is_long);
+    CHECK(factors(limited[0].allan) ==
+          std::vector<std::uint64_t>{8, 16, 32, 64, 128, 256, 512, 1024});
+    for (std::size_t k = 0; k < limited[0].allan.points.size(); ++k)
+      CHECK(limited[0].allan.points[k].deviation == all[0].allan.points[k + 3].deviation);
+    const auto none = run([](auto& o) { o.allan.tau_min_s = 1e5; }, kEnough, is_long);
+    CHECK(none[0].allan.points.empty());
+    REQUIRE(none[0].problems.size() == 1);
+    CHECK_THAT(none[0].problems[0], Contains("no averaging time that was asked for"));
+  }
 }
 
-TEST_CASE(
-    "what takes all samples is computed from all samples or refused with the memory that would "
-    "do") {
+TEST_CASE("what takes all samples of a long log is refused with the memory that would do") {
   std::vector<std::pair<std::string, Change>> changes = {
       {"decade", [](auto& o) { o.allan.grid = TauGrid::decade; }},
-      {"dense", [](auto& o) { o.allan.grid = TauGrid::dense, o.allan.tau_max_s = 0.3; }},
       {"list",
        [](auto& o) {
          o.allan.grid = TauGrid::list, o.allan.taus_s = {0.03, 7};
        }},
-      {"full_overlap", [](auto& o) { o.full_overlap = true, o.exact_samples = 1000; }},
-      {"phase", [](auto& o) { o.data = SampleKind::phase; }}};
-  for (const DeviationRow& row : deviation_rows())
-    if (row.type != DeviationType::oadev)
-      changes.emplace_back(row.word, [&row](auto& o) { o.allan.type = row.type; });
+      {"full_overlap", [](auto& o) { o.full_overlap = true; }},
+      {"quarter", [](auto& o) { o.spectrum.segment = 0, o.quarter_segments = true; }},
+      {"mdev", [](auto& o) { o.allan.type = DeviationType::mdev; }}};
   for (const auto& [name, change] : changes) {
     CAPTURE(name);
     std::string hint;
     try {
-      run(change, kSmall);
+      run(change, kSmall, true);
     } catch (const Error& error) {
       CHECK(error.problem().kind == ErrorKind::usage);
       CHECK(error.problem().code == "E0701");
-      CHECK_THAT(error.problem().what, Contains("938 KiB, and 256 KiB are allowed"));
+      CHECK_THAT(error.problem().what, Contains("16797 KiB, and 256 KiB are allowed"));
       hint = error.problem().hint;
     }
-    CHECK_THAT(hint, Contains("`memory_bytes` 938KiB"));
-    const auto enough = run(change, 938 * 1024), kept = run(change);
-    same_bits(enough[0].allan, kept[0].allan);
-    CHECK(enough[0].fit->theta == kept[0].fit->theta);
+    CHECK_THAT(hint, Contains("`memory_bytes` 16797KiB"));
+    const auto kept = run(change, 16797 * 1024, true), plain = run(kNothing, kEnough, true);
+    CHECK(kept[0].fit->theta == plain[0].fit->theta);
     CHECK_FALSE(kept[0].allan.points.empty());
+    CHECK(kept[0].spectrum.notes.empty());
+  }
+}
+
+TEST_CASE("a log of one leaf is computed whole, whatever memory is allowed") {
+  std::vector<std::pair<std::string, Change>> changes = {
+      {"nothing", kNothing},
+      {"decade", [](auto& o) { o.allan.grid = TauGrid::decade; }},
+      {"phase", [](auto& o) { o.data = SampleKind::phase; }}};
+  for (const DeviationRow& row : deviation_rows())
+    changes.emplace_back(row.word, [&row](auto& o) { o.allan.type = row.type; });
+  for (const auto& [name, change] : changes) {
+    CAPTURE(name);
+    const auto small = run(change, kSmall), enough = run(change);
+    same_bits(small[0].allan, enough[0].allan);
+    CHECK(small[0].fit->theta == enough[0].fit->theta);
   }
 }
 
 TEST_CASE("dense times of a long record take every (m/4)-th term, and every one on request") {
   const auto dense = [](bool full) {
-    return run([=](auto& o) {
-      o.allan.grid = TauGrid::dense, o.allan.tau_max_s = 3, o.exact_samples = 1000;
-      o.full_overlap = full;
-    });
+    return run(
+        [=](auto& o) {
+          o.allan.grid = TauGrid::dense, o.allan.tau_max_s = 0.5;
+          o.wanted.spectrum = false;
+          o.full_overlap = full;
+        },
+        kEnough,
+        true);
   };
   const auto few = dense(false), all = dense(true);
   CHECK(few[0].allan.stride_divisor == kPyramidStride);
@@ -174,12 +183,11 @@ TEST_CASE("what the fit checks itself with does not depend on what is plotted") 
       {"limits", [](auto& o) { o.allan.tau_min_s = 1, o.allan.tau_max_s = 2; }},
       {"nothing fits", [](auto& o) { o.allan.tau_min_s = 1e6; }},
       {"full overlap", [](auto& o) { o.full_overlap = true; }}};
-  for (const std::uint64_t exact : {1000UL, 100000UL}) {
-    const auto plain = run([&](auto& o) { o.exact_samples = exact; });
+  for (const bool is_long : {false, true}) {
+    const auto plain = run(kNothing, kEnough, is_long);
     for (const auto& [name, change] : changes) {
-      CAPTURE(name, exact);
-      const auto other =
-          run([&, &change = change](auto& o) { o.exact_samples = exact, change(o); });
+      CAPTURE(name, is_long);
+      const auto other = run(change, kEnough, is_long);
       for (std::size_t c = 0; c < plain.size(); ++c) {
         const NoiseFit &a = *plain[c].fit, &b = *other[c].fit;
         CHECK(a.theta == b.theta);
@@ -193,53 +201,22 @@ TEST_CASE("what the fit checks itself with does not depend on what is plotted") 
   }
 }
 
-TEST_CASE("options of the fit mean the same of a log that streams") {
-  const std::pair<const char*, Change> changes[] = {
-      {"none", kNothing},
-      {"terms",
-       [](auto& o) {
-         o.fit.terms = {true, false, true, false, false};
-       }},
-      {"threshold", [](auto& o) { o.fit.threshold = 1e9; }},
-      {"remedies", [](auto& o) { o.fit.remedies = false; }},
-      {"second_opinion", [](auto& o) { o.fit.second_opinion = false; }},
-      {"fit alone", [](auto& o) {
-         o.wanted = {false, false, false, true};
-       }}};
-  for (const auto& [name, change] : changes) {
-    CAPTURE(name);
-    const auto kept = run(change), streamed = run(change, kSmall);
-    for (std::size_t c = 0; c < kept.size(); ++c) {
-      const NoiseFit &a = *kept[c].fit, &b = *streamed[c].fit;
-      for (std::size_t t = 0; t < kTerms; ++t) {
-        CAPTURE(c, t);
-        CHECK(a.term[t].status == b.term[t].status);
-        REQUIRE(a.term[t].value.has_value() == b.term[t].value.has_value());
-        if (a.term[t].value)
-          CHECK(std::abs(*b.term[t].value / *a.term[t].value - 1) < 0.5 * a.term[t].relative_sd);
-      }
-      CHECK(a.second_opinion.has_value() == b.second_opinion.has_value());
-      CHECK(a.second_opinion.has_value() == (name != std::string("second_opinion")));
-      CHECK(kept[c].problems == streamed[c].problems);
-    }
-  }
+TEST_CASE("a spectrum without a segment is of quarters, and of a long log of 65536 samples, said") {
+  const Change automatic = [](auto& o) { o.spectrum.segment = 0; };
+  const auto whole = run(automatic), leaves = run(automatic, kEnough, true);
+  CHECK(whole[0].spectrum.notes.empty());
+  CHECK(whole[0].spectrum.segment == 15000);
+  REQUIRE(leaves[0].spectrum.notes.size() == 1);
+  CHECK_THAT(leaves[0].spectrum.notes[0], Contains("65536"));
 }
 
-TEST_CASE("a frequency means the same of a log that streams") {
-  const Change frequency = [](auto& o) {
-    o.data = SampleKind::frequency;
-    o.nominal_frequency = 10;
-  };
-  const auto kept = run(frequency), streamed = run(frequency, kSmall);
-  CHECK(streamed[1].channel.unit == kept[1].channel.unit);
-  CHECK(streamed[1].allan.points[0].deviation ==
-        Approx(kept[1].allan.points[0].deviation).epsilon(1e-12));
-  CHECK(streamed[1].quality.mean == Approx(kept[1].quality.mean).epsilon(1e-12));
-}
-
-TEST_CASE("a spectrum without a segment says that a log that streams gets another one") {
-  const Change quarter = [](auto& o) { o.spectrum.segment = 0; };
-  CHECK(run(quarter)[0].spectrum.notes.empty());
-  const auto streamed = run(quarter, kSmall);
-  CHECK(streamed[0].problems.size() + streamed[0].spectrum.notes.size() == 1);
+TEST_CASE("segments that do not divide a leaf are taken from leaves in turn") {
+  const Change odd = [](auto& o) { o.spectrum.segment = 5000; };
+  const Spectrum leaves = run(odd, kEnough, true)[0].spectrum;
+  WelchOptions options;
+  options.segment = 5000;
+  const Spectrum whole = log_binned(welch(recording(true).samples[0], 100, options), 400);
+  REQUIRE(leaves.value.size() == whole.value.size());
+  for (std::size_t k = 0; k < whole.value.size(); ++k)
+    CHECK(leaves.value[k] == Approx(whole.value[k]).epsilon(1e-9));
 }

@@ -201,9 +201,8 @@ TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the f
 }
 
 TEST_CASE("where no band passes every value is a misfit, its interval as wide as the scatter") {
-  PowerBinner binner(65536);
-  binner.push(filtered_record(5, [](const auto& u) { return u; }));
-  std::vector<PowerBin> bins = binner.finish(kRate);
+  const std::vector<double> y = filtered_record(5, [](const auto& u) { return u; });
+  std::vector<PowerBin> bins = power_bins(y, kRate);
   const NoiseFit clean = fit_power_bins(bins, kRate, kSamples, nullptr);
   for (std::size_t j = 0; j < bins.size(); ++j) bins[j].energy *= j % 2 == 0 ? 20 : 0.05;
   const NoiseFit fit = fit_power_bins(bins, kRate, kSamples, nullptr);

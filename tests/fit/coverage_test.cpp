@@ -55,9 +55,7 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       false_terms += any_false ? 1 : 0;
       // The likelihood looked at here is that of the whole spectrum.
       if (r >= 20 || !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none) continue;
-      PowerBinner binner(kCoverageSamples);
-      binner.push(y);
-      const BinProblem problem = bin_problem(binner.finish(scene.rate_hz));
+      const BinProblem problem = bin_problem(power_bins(y, scene.rate_hz));
       for (int s = 0; s < 4; ++s) {
         ModelPoint start;
         for (std::size_t i = 0; i < 3; ++i)
@@ -91,10 +89,8 @@ TEST_CASE("coverage near the limit: of everything that is said, and of what is c
   std::array<int, 3> covered{}, detected{}, detected_covered{};
   for (int r = 0; r < kNearRecords; ++r) {
     const std::vector<double> y = source.record(truth[0], truth[1], truth[2]);
-    PowerBinner binner(kNearSamples);
-    binner.push(y);
     const NoiseFit fit =
-        fit_power_bins(binner.finish(kNearRate), kNearRate, kNearSamples, nullptr, options);
+        fit_power_bins(power_bins(y, kNearRate), kNearRate, kNearSamples, nullptr, options);
     for (std::size_t i = 0; i < 3; ++i) {
       const Coefficient& c = fit.term[i];
       const int inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint64_t kPerMean = 512;
 constexpr double kRateHz = 1000;
+constexpr std::size_t kMostMeans = std::size_t{1} << 20U;  ///< of 2^29 samples
 
 /// sqrt(512) times means of 512 samples of white noise of deviation 1 and of a walk: of the walk the increments of the means' spacing, and
 /// what the mean over the spacing adds to them.
@@ -33,20 +34,6 @@ std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned s
     walk += step * a;
   }
   return means;
-}
-
-std::vector<PowerBin> bins_of(const std::vector<PooledPower>& powers) {
-  std::vector<PowerBin> bins;
-  for (const PooledPower& power : powers) append_power_bins(power, kRateHz, {}, bins);
-  return bins;
-}
-
-std::vector<PowerBin> series_bins(const std::vector<double>& means) {
-  MeanSeries series(kPerMean, PowerPart::kBlock);
-  for (const double mean : means) series.push(mean);
-  std::vector<PooledPower> powers;
-  series.append_to(powers);
-  return bins_of(powers);
 }
 
 /// Sum of squares of the bins' relative distances from what they should be, in their standard deviations; the largest bins.
@@ -73,7 +60,7 @@ PowerSums in_parts(const std::vector<double>& means, double shift_of_part) {
   for (std::size_t from = 0; from < means.size(); from += kMeansBlock) {
     const std::size_t count = std::min<std::size_t>(kMeansBlock, means.size() - from);
     const double shift = static_cast<double>(from) * shift_of_part;
-    PowerRun run{0, count * kPerMean, shift, {}, {}};
+    PowerRun run{0, count * kPerMean, shift, {}, {}, 0, count * kPerMean};
     for (std::size_t i = 0; i < count; ++i)
       run.means.push_back(means[from + i] - std::sqrt(static_cast<double>(kPerMean)) * shift);
     PowerSums part;
@@ -85,18 +72,11 @@ PowerSums in_parts(const std::vector<double>& means, double shift_of_part) {
   return all;
 }
 
-}  // namespace
-
-TEST_CASE("mean series: up to 2^20 means are one transform, and one more makes it slow") {
-  std::vector<double> means = white_walk_means(kMostMeans, 0, 1);
-  for (const PowerBin& bin : series_bins(means)) REQUIRE(bin.length == kMostMeans);
-  REQUIRE(!is_long_record(kMostMeans * kPerMean + kPerMean - 1));
-  means.push_back(0);
-  REQUIRE(is_long_record(means.size() * kPerMean));
-  std::uint64_t longest = 0;
-  for (const PowerBin& bin : series_bins(means)) longest = std::max(longest, bin.length);
-  REQUIRE(longest == kMeansBlock);
+std::vector<PowerBin> series_bins(const std::vector<double>& means) {
+  return power_bins(powers_of(in_parts(means, 0)), kRateHz);
 }
+
+}  // namespace
 
 TEST_CASE(
     "mean series: every coefficient of a long one is there once, slow ones with the whole "
@@ -131,7 +111,7 @@ TEST_CASE("mean series: bins of a long one have the expectations of white noise 
 TEST_CASE("mean series: parts of a long record, each less its own first sample, are the series") {
   const std::vector<double> means = white_walk_means(kMostMeans + 2 * kMeansBlock + 9999, 1e-4, 6);
   const std::vector<PowerBin> whole = series_bins(means);
-  const std::vector<PowerBin> parts = binner_of(in_parts(means, 1e-6)).finish(kRateHz);
+  const std::vector<PowerBin> parts = power_bins(powers_of(in_parts(means, 1e-6)), kRateHz);
   REQUIRE(parts.size() == whole.size());
   for (std::size_t i = 0; i < whole.size(); ++i) {
     CAPTURE(i, whole[i].frequency_hz);
@@ -151,15 +131,15 @@ TEST_CASE(
     const double* from = &means[part * kMeansBlock];
     PowerSums one;
     const std::size_t cut = part == 9 ? count / 3 : count;
-    one.runs.push_back({0, cut * kPerMean, 0, {from, from + cut}, {}});
+    one.runs.push_back({0, cut * kPerMean, 0, {from, from + cut}, {}, 0, cut * kPerMean});
     if (cut < count)
-      one.runs.push_back({5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}});
+      one.runs.push_back({5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}, 0, (count - cut) * kPerMean});
     settle_means(one, part << 24U);
     REQUIRE(one.runs.size() == 1);
     part == 0 ? void(all = std::move(one)) : join(all, std::move(one));
   }
   const Distance right =
-      distance(binner_of(std::move(all)).finish(kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
+      distance(power_bins(powers_of(std::move(all)), kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
   CAPTURE(right.chi2, right.bins);
   REQUIRE(right.bins > 100);
   REQUIRE(right.chi2 < right.bins + 5 * std::sqrt(2 * right.bins));
@@ -170,8 +150,8 @@ TEST_CASE(
   const std::vector<double> means = white_walk_means(kMeansBlock, 0, 8);
   PowerSums sums;
   const std::size_t half = kMeansBlock / 2;
-  sums.runs.push_back({0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}});
-  sums.runs.push_back({50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}});
+  sums.runs.push_back({0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}, 0, half * kPerMean});
+  sums.runs.push_back({50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}, 0, half * kPerMean});
   PowerSums later = sums;
   settle_means(sums, 0);
   REQUIRE(sums.runs.size() == 2);

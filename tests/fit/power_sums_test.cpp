@@ -1,4 +1,4 @@
-// Parts of a record joined against the binner of the whole: bins of clean records, gaps, missing samples.
+// Parts of a record joined against the record as one part: bins of clean records, gaps, missing samples.
 
 #include "libchar/fit/power_sums.hpp"
 
@@ -41,9 +41,10 @@ PowerSums power_in_parts(const std::vector<double>& y) {
 
 void check_bins(const std::vector<double>& y, double digits) {
   CAPTURE(y.size());
-  PowerBinner whole(PowerPart::kBlock);
+  PowerPart whole;
   whole.push(y);
-  const std::vector<PowerBin> a = whole.finish(100), b = binner_of(power_in_parts(y)).finish(100);
+  const std::vector<PowerBin> a = power_bins(powers_of(whole.finish(true)), 100),
+                              b = power_bins(powers_of(power_in_parts(y)), 100);
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     REQUIRE(b[i].frequency_hz == a[i].frequency_hz);
@@ -56,7 +57,7 @@ void check_bins(const std::vector<double>& y, double digits) {
 /// Lengths of the series of means.
 std::vector<std::uint64_t> series_of(const std::vector<double>& y) {
   std::vector<std::uint64_t> out;
-  for (const PowerBin& bin : binner_of(power_in_parts(y)).finish(100))
+  for (const PowerBin& bin : power_bins(powers_of(power_in_parts(y)), 100))
     if (bin.spacing > 1 && (out.empty() || out.back() != bin.length)) out.push_back(bin.length);
   return out;
 }
@@ -69,7 +70,7 @@ void blank(std::vector<double>& y, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-TEST_CASE("power sums: parts of a clean record are its binner, whatever the length of the last") {
+TEST_CASE("power sums: parts of a clean record are the record, whatever the length of the last") {
   for (const std::size_t n : {std::size_t{9},
                               std::size_t{5000},
                               kLeafOfFour + 1,
@@ -102,7 +103,7 @@ TEST_CASE(
   for (double& x : y)
     if (engine() % 50 == 0) x = std::nan("");
   double chi = 0, bins = 0;
-  for (const PowerBin& bin : binner_of(power_in_parts(y)).finish(100)) {
+  for (const PowerBin& bin : power_bins(powers_of(power_in_parts(y)), 100)) {
     if (bin.dof < 8) continue;
     chi += std::pow(bin.energy - 1, 2) * bin.dof / 2;
     ++bins;

@@ -58,9 +58,8 @@ TEST_CASE(
   double reported = 0, in_all = 0, variance = 0;
   int records = 0, other_model = 0;
   for (int r = 0; r < 300; ++r) {
-    PowerBinner binner(n);
-    binner.push(source.record(1, kFlicker, kWalk));
-    const NoiseFit fit = fit_power_bins(binner.finish(1), 1, n, nullptr, options);
+    const std::vector<double> y = source.record(1, kFlicker, kWalk);
+    const NoiseFit fit = fit_power_bins(power_bins(y, 1), 1, n, nullptr, options);
     const Coefficient& b = fit[Term::flicker];
     if (!b.value) continue;
     REQUIRE(b.in_all);
@@ -81,11 +80,10 @@ TEST_CASE(
 TEST_CASE("where all terms are reported the model of all terms is that of the report") {
   constexpr std::size_t n = 1 << 15;
   test::NoiseSource source(n, 1, 5);
-  PowerBinner binner(n);
-  binner.push(source.record(1, 0.4, 0.05));
+  const std::vector<double> y = source.record(1, 0.4, 0.05);
   FitOptions options;
   options.second_opinion = false;
-  const NoiseFit fit = fit_power_bins(binner.finish(1), 1, n, nullptr, options);
+  const NoiseFit fit = fit_power_bins(power_bins(y, 1), 1, n, nullptr, options);
   for (const Term term : {Term::white, Term::flicker, Term::walk}) {
     CHECK(fit[term].status == Status::detected);
     REQUIRE(fit[term].in_all);

@@ -42,22 +42,20 @@ NoiseEstimate whole_fit(std::span<const double> y, double rate_hz, const TermSet
   return estimate_of(fit_record(y, rate_hz, &curve));
 }
 
-NoiseEstimate whittle_in(std::span<const double> y,
+NoiseEstimate whittle_of(std::span<const PooledPower> powers,
+                         std::size_t samples,
                          double rate_hz,
-                         const TermSet& terms,
-                         std::uint64_t block) {
-  PowerBinner binner(block);
-  binner.push(y);
+                         const TermSet& terms) {
   return estimate_of(
-      fit_power_bins(binner.finish(rate_hz), rate_hz, y.size(), nullptr, plain(terms)));
+      fit_power_bins(power_bins(powers, rate_hz), rate_hz, samples, nullptr, plain(terms)));
 }
 
 NoiseEstimate whittle(std::span<const double> y, double rate_hz, const TermSet& terms) {
-  return whittle_in(y, rate_hz, terms, y.size());
+  return whittle_of(whole_powers(y), y.size(), rate_hz, terms);
 }
 
 NoiseEstimate whittle_blocks(std::span<const double> y, double rate_hz, const TermSet& terms) {
-  return whittle_in(y, rate_hz, terms, std::uint64_t{1} << 14U);
+  return whittle_of(powers_of(record_sums(y, false).plain.bins), y.size(), rate_hz, terms);
 }
 
 NoiseFit edf_fit(const AllanCurve& curve, double rate_hz, const TermSet& terms) {

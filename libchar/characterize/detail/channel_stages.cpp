@@ -13,9 +13,9 @@
 namespace libchar {
 namespace {
 
-// Where a segment was asked for nothing needs the whole record; short logs are still kept, because exact
-// forms cost nothing there.
-constexpr std::uint64_t kSmallLogBytes = std::uint64_t{64} << 20U;
+// What the leaves of a channel take: the one that is filled, what is made of it, and the nodes of the tree.
+constexpr std::uint64_t kChannelBytes = std::uint64_t{24} << 20U;
+constexpr std::uint64_t kMostOfPass = std::uint64_t{192} << 20U;
 
 constexpr std::size_t kFittedAtOnce = 2;
 
@@ -34,21 +34,27 @@ void refuse_too_many(const LogInfo& log) {
                  "choose some of them with `channels`"});
 }
 
-std::uint64_t budget_of(const CharacterizeOptions& options) {
-  const bool whole_record_needed =
-      options.wanted.spectrum && options.spectrum.segment == 0 && !(options.segment_s > 0);
-  return whole_record_needed || !what_needs_all_samples(options).empty()
-             ? options.memory_bytes
-             : std::min(options.memory_bytes, kSmallLogBytes);
-}
-
 }  // namespace
 
-ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
+ChannelStages::ChannelStages(const CharacterizeOptions& options,
+                             CharacterizeWorkspace& workspace,
+                             std::size_t first,
+                             bool all)
     : options_(options),
       workspace_(workspace),
-      budget_(budget_of(options)),
+      first_(first),
+      all_(all),
       needs_all_samples_(what_needs_all_samples(options)) {}
+
+// No value takes less than a byte of the file.
+std::size_t ChannelStages::channels_at_once(const LogInfo& so_far) const {
+  const std::size_t channels = so_far.channels.size();
+  if (all_ || !needs_all_samples_.empty()) return channels;
+  const std::uint64_t most_rows = so_far.samples > 0 ? so_far.samples : so_far.bytes / channels;
+  const std::uint64_t each = std::min(kChannelBytes, (most_rows + 1) * sizeof(double));
+  const std::uint64_t some = std::min(options_.memory_bytes, kMostOfPass) / each;
+  return std::clamp<std::size_t>(some, 1, channels);
+}
 
 void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t channels = so_far.channels.size();
@@ -56,27 +62,25 @@ void ChannelStages::begin(const LogInfo& so_far) {
   if (options_.wanted.spectrum && options_.spectrum.segment == 0 && options_.segment_s > 0)
     options_.spectrum.segment = segment_samples(options_.segment_s, so_far.time.rate_hz);
   if (!options_.temperature.empty()) find_temperature(so_far);
-  for (std::size_t c = 0; c < channels; ++c)
+  const std::size_t end = std::min(channels, first_ + channels_at_once(so_far));
+  for (std::size_t c = first_; c < end; ++c) {
+    const bool temperature = !options_.temperature.empty() && c == temperature_index_;
     stages_.emplace_back(
-        !options_.temperature.empty() && c == temperature_index_ ? temperature_options_ : options_,
-        workspace_);
+        temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
+    stages_.back().reserve(so_far.bytes / std::max<std::size_t>(channels, 1));
+  }
   arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
-  too_long_ = needs_all_samples_.empty() && surely_too_long(so_far);
-  if (too_long_) return;
-  // No value takes less than a byte of the file, and no more than the budget is kept.
-  const std::uint64_t most =
-      std::min(so_far.bytes, budget_ / sizeof(double)) / std::max<std::size_t>(channels, 1);
-  for (ChannelStage& stage : stages_) stage.reserve(most);
 }
 
 void ChannelStages::block(const SampleBlock& samples) {
-  bytes_ += samples.rows * samples.channels.size() * sizeof(double);
-  if (bytes_ > budget_) too_long_ = true;
-  if (refused()) return drop_all();
+  rows_ += samples.rows;
+  if (refused()) {
+    for (ChannelStage& stage : stages_) stage.drop();
+    return;
+  }
   arena_.execute([&] {
     tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
-      if (too_long_) stages_[c].stop_keeping();
-      stages_[c].push({samples.channels[c], samples.rows});
+      stages_[c].push({samples.channels[first_ + c], samples.rows});
     });
   });
 }
@@ -148,6 +152,7 @@ void ChannelStages::give_temperature(const LogInfo& log) {
   record->name = channel.name;
   const std::span<const double> kept = stages_[temperature_index_].kept();
   record->samples.assign(kept.begin(), kept.end());
+  LeafStage(temperature_options_, workspace_.welch).make_rate(record->samples);
   const auto unit = find_unit(channel.unit);
   record->unit = unit && unit->symbol == "K" ? "K" : "°C";
   if (unit && unit->symbol == "°F")
@@ -158,26 +163,18 @@ void ChannelStages::give_temperature(const LogInfo& log) {
     if (c != temperature_index_) stages_[c].set_temperature(temperature_);
 }
 
-std::vector<std::size_t> ChannelStages::need_second_pass() const {
-  std::vector<std::size_t> out;
-  for (std::size_t c = 0; c < stages_.size(); ++c)
-    if (stages_[c].needs_second_pass()) out.push_back(c);
-  return out;
-}
-
+// More than a leaf, of which something needs all samples, and more than is allowed.
 bool ChannelStages::refused() const {
-  return too_long_ && !needs_all_samples_.empty();
-}
-
-void ChannelStages::drop_all() {
-  for (ChannelStage& stage : stages_) stage.drop();
+  return !needs_all_samples_.empty() && rows_ > kLeafSamples &&
+         rows_ * stages_.size() * sizeof(double) > options_.memory_bytes;
 }
 
 // The log was read to its end for this sentence: only then is it known how much memory would do.
 void ChannelStages::refuse(const LogInfo& log) const {
-  const std::uint64_t unit = budget_ < (1U << 20U) ? 1U << 10U : 1U << 20U;
-  const std::string_view name = budget_ < (1U << 20U) ? "KiB" : "MiB";
-  const std::uint64_t needed = (bytes_ + unit - 1) / unit;
+  const std::uint64_t allowed = options_.memory_bytes;
+  const std::uint64_t unit = allowed < (1U << 20U) ? 1U << 10U : 1U << 20U;
+  const std::string_view name = allowed < (1U << 20U) ? "KiB" : "MiB";
+  const std::uint64_t needed = (rows_ * stages_.size() * sizeof(double) + unit - 1) / unit;
   throw Error({ErrorKind::usage,
                "E0701",
                log.file,
@@ -185,7 +182,7 @@ void ChannelStages::refuse(const LogInfo& log) const {
                            needs_all_samples_,
                            needed,
                            name,
-                           budget_ / unit,
+                           allowed / unit,
                            name),
                "",
                fmt::format("give `memory_bytes` {}{}, or read less with `channels`, `from_s`, "
@@ -199,41 +196,14 @@ std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& p
   if (!options_.temperature.empty()) give_temperature(log);
   std::vector<ChannelResult> results(stages_.size());
   for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
-    progress.update(static_cast<double>(first) / static_cast<double>(stages_.size()), "fitting");
+    progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()),
+                    "fitting");
     const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
     tbb::parallel_for(first, last, [&](std::size_t c) {
-      results[c] = stages_[c].finish(log.channels[c], log.time.rate_hz);
+      results[c] = stages_[c].finish(log.channels[first_ + c], log.time.rate_hz);
     });
   }
   return results;
-}
-
-// Samples that will not be kept in the end need not be kept in the beginning. What is expected may
-// be wrong by a factor; a log that would just fit must not be streamed for that.
-bool ChannelStages::surely_too_long(const LogInfo& so_far) const {
-  constexpr double kDoubt = 4;
-  const bool window = options_.reading.from_s || options_.reading.to_s;
-  const double bytes = static_cast<double>(so_far.rows) *
-                       static_cast<double>(so_far.channels.size()) * sizeof(double);
-  return !window && bytes > kDoubt * static_cast<double>(budget_);
-}
-
-SecondPass::SecondPass(ChannelStages& first, std::vector<std::size_t> channels, int threads)
-    : stages_(first.stages()), channels_(std::move(channels)), threads_(threads) {
-  for (const std::size_t c : channels_) stages_[c].begin_second_pass();
-}
-
-void SecondPass::begin(const LogInfo& so_far) {
-  arena_.initialize(threads_beside_reading(so_far, threads_));
-}
-
-void SecondPass::block(const SampleBlock& samples) {
-  arena_.execute([&] {
-    tbb::parallel_for(std::size_t{0}, channels_.size(), [&](std::size_t k) {
-      const std::size_t c = channels_[k];
-      stages_[c].push({samples.channels[c], samples.rows});
-    });
-  });
 }
 
 }  // namespace libchar

@@ -1,155 +1,164 @@
 #include "libchar/characterize/detail/leaf.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "libchar/characterize/detail/rate_samples.hpp"
-#include "libchar/characterize/stretches.hpp"
 #include "libchar/core/present.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {
 namespace {
 
-AllanSums allan_of(std::span<const double> samples) {
-  AllanPyramid pyramid;
-  pyramid.push(samples);
-  return std::move(pyramid).sums();
+bool is_wild(double x) {
+  return std::abs(x) > kLargestSample;
 }
 
-void add_count(const SpikeCount& later, SpikeCount& count) {
-  count.samples += later.samples;
-  count.left_out += later.left_out;
-  count.spikes += later.spikes;
-  count.shoulder += later.shoulder;
-  count.steps += later.steps;
-  count.crowded += later.crowded;
-  count.log_size += later.log_size;
+void forget_wild(std::span<double> samples) {
+  for (double& x : samples)
+    if (is_wild(x)) x = std::numeric_limits<double>::quiet_NaN();
 }
 
-void write_count(const SpikeCount& count, StateWriter& to) {
-  for (const std::uint64_t n :
-       {count.samples, count.left_out, count.spikes, count.shoulder, count.steps, count.crowded})
-    to.number(n);
-  to.real(count.log_size);
-}
-
-SpikeCount read_count(StateReader& from) {
-  SpikeCount count;
-  for (std::uint64_t* n : {&count.samples,
-                           &count.left_out,
-                           &count.spikes,
-                           &count.shoulder,
-                           &count.steps,
-                           &count.crowded})
-    *n = from.number();
-  count.log_size = from.real();
-  return count;
+/// What no leaf is asked for must not be refused.
+WelchOptions spectrum_in_leaves(const CharacterizeOptions& options) {
+  const bool possible = options.wanted.spectrum && why_not_in_leaves(options).empty();
+  return streamed_spectrum(possible ? options.spectrum : WelchOptions{});
 }
 
 }  // namespace
 
-LeafStage::LeafStage(const CharacterizeOptions& options,
-                     WelchWorkspace& workspace,
-                     std::uint64_t samples)
-    : options_(&options), samples_(samples), spectrum_(options.spectrum, &workspace) {}
+void difference(std::vector<double>& phase) {
+  for (std::size_t t = 1; t < phase.size(); ++t) phase[t - 1] = phase[t] - phase[t - 1];
+  if (!phase.empty()) phase.pop_back();
+}
+
+std::vector<NoiseType> types_of_rate(std::span<const double> rate, double dt_s) {
+  std::vector<double> phase(rate.size() + 1, 0.0);
+  for (std::size_t t = 0; t < rate.size(); ++t) phase[t + 1] = phase[t] + rate[t] * dt_s;
+  if (std::isnan(phase.back())) return {};
+  return lag1_noise_types(phase, dt_s);
+}
+
+ValueCensus census_of(const ChannelQuality& quality) {
+  if (quality.samples == 0) return {1, 0, 0, 0, 0};
+  return {quality.minimum,
+          quality.maximum,
+          quality.at_minimum,
+          quality.at_maximum,
+          quality.repeats};
+}
+
+void SampleMeters::push(std::span<const double> samples) {
+  quality.push(samples);
+  if (count_beyond(samples) == 0) return trace.push(samples);
+  std::vector<double> usable(samples.begin(), samples.end());
+  forget_wild(usable);
+  trace.push(usable);
+}
+
+WelchOptions streamed_spectrum(WelchOptions options) {
+  if (options.segment == 0) options.segment = kStreamedSegment;
+  return options;
+}
+
+std::string why_not_in_leaves(const CharacterizeOptions& options) {
+  if (!options.wanted.spectrum) return "";
+  return WelchParts::why_not(streamed_spectrum(options.spectrum), kLeafSamples);
+}
+
+LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
+    : options_(&options),
+      spectrum_(spectrum_in_leaves(options), &workspace),
+      wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()) {}
+
+void LeafStage::make_rate(std::vector<double>& samples) const {
+  forget_wild(samples);
+  const double nominal = options_->nominal_frequency;
+  if (options_->data == SampleKind::frequency && nominal != 0)
+    for (double& f : samples) f = (f - nominal) / nominal;
+}
 
 ChannelSums LeafStage::take(std::span<const double> samples, bool last) {
+  SampleMeters meters;
+  meters.push(samples.first(std::min<std::size_t>(samples.size(), kLeafSamples)));
+  return take(samples, last, std::move(meters));
+}
+
+ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMeters meters) {
   ChannelSums sums;
-  sums.quality.push(samples);
-  samples = usable_samples(samples, usable_, sums.beyond);
-  if (options_->wanted.quality) sums.trace.push(samples);
-  samples = rate_samples(samples, *options_, rate_);
-  fit_parts(samples, last, sums);
-  const ChannelQuality found = sums.quality.finish();
-  sums.spikes.samples = found.samples;
-  const bool spikes = found.difference_kurtosis > spike_alarm(found.samples);
-  if (spikes && options_->fit.remedies && wants_fit()) clean(samples, last, sums);
+  sums.meters = std::move(meters);
+  const ChannelQuality found = sums.meters.quality.finish();
+  rate_.assign(samples.begin(), samples.end());
+  make_rate(rate_);
+  if (!is_phase() && options_->wanted.fit) sums.digital = digital_sums(rate_, census_of(found));
+  const bool clean = options_->fit.remedies && wants_fit() &&
+                     found.difference_kurtosis > spike_alarm(found.samples);
+  std::vector<double> cleaned;
+  if (clean) cleaned = cleaned_record(rate_, sums.record.spikes);
+  sums.record.spikes.samples = found.samples;
+  if (options_->data == SampleKind::frequency) sums.types = types_of_rate(rate_, 1);
+  if (is_phase()) sums.types = lag1_noise_types(clean ? cleaned : rate_, 1);
+  for (std::vector<double>* record : {&rate_, &cleaned})
+    if (is_phase()) difference(*record);
+  PowerPart bins;
+  // Blocks of another length are of no use: then the binner transforms its own.
+  const bool shares =
+      wants_spectrum_ && wants_fit() && spectrum_.shared_length() == PowerPart::kBlock &&
+      count_missing(rate_) == 0;
+  if (wants_spectrum_) sums.spectrum = spectrum_.take(rate_, shares ? &bins : nullptr);
+  if (!wants_fit()) return sums;
+  LeafKind kind{last, options_->fit.remedies, shares ? &bins : nullptr};
+  sums.record.plain = fitted_sums(rate_, kind);
+  kind.shared = nullptr;
+  if (clean) sums.record.cleaned = fitted_sums(cleaned, kind);
   return sums;
 }
 
-void LeafStage::fit_parts(std::span<const double> samples, bool last, ChannelSums& sums) const {
-  PowerPart bins;
-  // Blocks of another length are of no use: then the binner transforms its own.
-  const bool shares = spectrum_.shared_length() == PowerPart::kBlock && wants_fit();
-  if (options_->wanted.spectrum) sums.spectrum = spectrum_.take(samples, shares ? &bins : nullptr);
-  if (!wants_fit()) return;
-  if (!options_->wanted.spectrum || !shares) bins.push(samples);
-  sums.bins = bins.finish(last);
-  sums.allan = allan_of(samples);
-}
-
-void LeafStage::clean(std::span<const double> samples, bool last, ChannelSums& sums) const {
-  SpikeScan scan;
-  scan.push(samples);
-  SpikeCleaner cleaner(scan.scale());
-  std::vector<double> cleaned;
-  cleaned.reserve(samples.size());
-  const auto take = [&](std::span<const double> certain) {
-    cleaned.insert(cleaned.end(), certain.begin(), certain.end());
-  };
-  take(cleaner.push(samples));
-  take(cleaner.finish());
-  sums.spikes = cleaner.count();
-  PowerPart bins;
-  bins.push(cleaned);
-  sums.cleaned = FittedSums{allan_of(cleaned), bins.finish(last)};
-}
-
 void LeafStage::join(ChannelSums& sums, ChannelSums later) {
-  if (sums.cleaned || later.cleaned) {
-    if (!sums.cleaned) sums.cleaned = FittedSums{sums.allan, sums.bins};
-    if (!later.cleaned) later.cleaned = FittedSums{later.allan, later.bins};
-    libchar::join(sums.cleaned->allan, later.cleaned->allan);
-    libchar::join(sums.cleaned->bins, std::move(later.cleaned->bins));
-  }
-  sums.beyond += later.beyond;
-  sums.quality.join(later.quality);
-  if (options_->wanted.quality) sums.trace.join(std::move(later.trace));
-  if (options_->wanted.spectrum) spectrum_.join(sums.spectrum, later.spectrum);
-  libchar::join(sums.allan, later.allan);
-  libchar::join(sums.bins, std::move(later.bins));
-  add_count(later.spikes, sums.spikes);
+  sums.meters.quality.join(later.meters.quality);
+  sums.meters.trace.join(std::move(later.meters.trace));
+  if (wants_spectrum_) spectrum_.join(sums.spectrum, later.spectrum);
+  libchar::join(sums.record, std::move(later.record));
+  libchar::join(sums.digital, later.digital);
 }
 
-void LeafStage::settle(ChannelSums& sums, std::uint64_t first_leaf) const {
-  const std::uint64_t before = first_leaf * kLeafSamples;
-  // A log's end that is no whole run stays as it is: its rest is one transform.
-  if (!is_long_record(samples_) || samples_ - before < kSettledLeaves * kLeafSamples) return;
-  settle_means(sums.bins, before);
-  if (sums.cleaned) settle_means(sums.cleaned->bins, before);
+void LeafStage::settle(ChannelSums& sums, std::uint64_t height, std::uint64_t first_leaf) const {
+  libchar::settle(sums.record, height, first_leaf);
 }
 
 void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
-  to.number(sums.beyond);
-  sums.quality.write_state(to);
-  sums.trace.write_state(to);
-  libchar::write_state(sums.allan, to);
+  sums.meters.quality.write_state(to);
+  sums.meters.trace.write_state(to);
+  to.reals(sums.kept);
   WelchParts::write_state(sums.spectrum, to);
-  libchar::write_state(sums.bins, to);
-  to.flag(sums.cleaned.has_value());
-  if (sums.cleaned) {
-    libchar::write_state(sums.cleaned->allan, to);
-    libchar::write_state(sums.cleaned->bins, to);
+  libchar::write_state(sums.record, to);
+  libchar::write_state(sums.digital, to);
+  to.number(sums.types.size());
+  for (const NoiseType& type : sums.types) {
+    to.number(type.m);
+    to.real(type.alpha);
+    to.real(type.estimate);
   }
-  write_count(sums.spikes, to);
 }
 
 ChannelSums LeafStage::read_state(StateReader& from) const {
   ChannelSums sums;
-  sums.beyond = from.number();
-  sums.quality.read_state(from);
-  sums.trace.read_state(from);
-  sums.allan = read_allan_sums(from);
+  sums.meters.quality.read_state(from);
+  sums.meters.trace.read_state(from);
+  sums.kept = from.reals();
+  if (sums.kept.size() > kLeafSamples) from.refuse("the samples of a leaf");
   sums.spectrum = spectrum_.read_state(from);
-  sums.bins = read_power_sums(from);
-  if (from.flag()) {
-    sums.cleaned.emplace();
-    sums.cleaned->allan = read_allan_sums(from);
-    sums.cleaned->bins = read_power_sums(from);
+  sums.record = read_record_sums(from);
+  sums.digital = read_digital_sums(from);
+  sums.types.resize(from.count(24));
+  for (NoiseType& type : sums.types) {
+    type.m = from.number();
+    const double alpha = from.real();
+    if (!(std::abs(alpha) < 10)) from.refuse("a noise type");
+    type.alpha = static_cast<int>(alpha);
+    type.estimate = from.real();
   }
-  sums.spikes = read_count(from);
   return sums;
 }
 

@@ -3,66 +3,83 @@
 // and two neighbours made one.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/allan_sums.hpp"
+#include "libchar/allan/noise_type.hpp"
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/fit/power_sums.hpp"
-#include "libchar/fit/spike_cleaner.hpp"
+#include "libchar/core/leaf_tree.hpp"
+#include "libchar/fit/record_sums.hpp"
 #include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {
 
-inline constexpr std::uint64_t kSettledHeight = 4;  ///< of the tree's nodes that are settled
-inline constexpr std::uint64_t kSettledLeaves = std::uint64_t{1} << kSettledHeight;
+/// Of the samples as the log has them.
+struct SampleMeters {
+  QualityMeter quality;
+  TraceMeter trace;
 
-/// What is fitted.
-struct FittedSums {
-  AllanSums allan;
-  PowerSums bins;
+  void push(std::span<const double> samples);
 };
 
 /// What the stages of a channel have found of a run of leaves.
 struct ChannelSums {
-  std::uint64_t beyond = 0;  ///< samples that are no measurement
-  QualityMeter quality;
-  TraceMeter trace;
-  AllanSums allan;
+  SampleMeters meters;
+  /// of a log of one leaf, the samples as it has them in place of the sums below
+  std::vector<double> kept;
   WelchSums spectrum;
-  PowerSums bins;
-  /// with the spikes left out of the leaves that have some; none: no leaf has, and these would be those above
-  std::optional<FittedSums> cleaned;
-  SpikeCount spikes;
+  RecordSums record;
+  DigitalSums digital;
+  std::vector<NoiseType> types;  ///< of a clock, by its first leaf
 };
+
+/// Of a clock, by the sum of its rate.
+std::vector<NoiseType> types_of_rate(std::span<const double> rate, double dt_s);
+
+/// Differences of a phase, a sample fewer.
+void difference(std::vector<double>& phase);
+ValueCensus census_of(const ChannelQuality& quality);
+
+/// Of a record of more than one leaf, unless another segment is asked for.
+inline constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
+WelchOptions streamed_spectrum(WelchOptions options);
+/// "" or why the spectrum is not one of leaves: its samples must come one leaf after the other.
+std::string why_not_in_leaves(const CharacterizeOptions& options);
 
 /// Takes and joins the leaves of a channel.
 class LeafStage {
  public:
-  /// All must live as long. `options.spectrum.segment` > 0. `samples`: of the whole log.
-  LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace, std::uint64_t samples);
+  using Sums = ChannelSums;
 
-  /// Samples as the log has them; `last`: no leaf follows.
+  /// Both must live as long.
+  LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace);
+
+  /// Rows of a leaf that a stage is given: of phase one more, the first of the leaf that follows.
+  std::uint64_t rows() const { return kLeafSamples + (is_phase() ? 1 : 0); }
+  /// Samples as the log has them; `last`: no leaf follows. `meters` of the leaf.
+  ChannelSums take(std::span<const double> samples, bool last, SampleMeters meters);
+  /// The same where nobody has metered them.
   ChannelSums take(std::span<const double> samples, bool last);
-  /// Adds the leaves that follow directly.
+  /// Samples as a rate: what is no measurement is missing, a frequency about its nominal one, differences of a phase.
+  void make_rate(std::vector<double>& samples) const;
+
   void join(ChannelSums& sums, ChannelSums later);
-  /// Of a run of 16 leaves that begins at a multiple of them: of a long log, what grows with its length is made less.
-  void settle(ChannelSums& sums, std::uint64_t first_leaf) const;
+  void settle(ChannelSums& sums, std::uint64_t height, std::uint64_t first_leaf) const;
 
   static void write_state(const ChannelSums& sums, StateWriter& to);
   ChannelSums read_state(StateReader& from) const;
 
  private:
+  bool is_phase() const { return options_->data == SampleKind::phase; }
   bool wants_fit() const { return options_->wanted.fit || options_->wanted.allan; }
-  void fit_parts(std::span<const double> samples, bool last, ChannelSums& sums) const;
-  void clean(std::span<const double> samples, bool last, ChannelSums& sums) const;
 
   const CharacterizeOptions* options_;
-  std::uint64_t samples_;
   WelchParts spectrum_;
-  std::vector<double> usable_, rate_;  // scratch
+  bool wants_spectrum_ = false;  ///< from leaves
+  std::vector<double> rate_;            // scratch
 };
+
+using ChannelTree = LeafTree<LeafStage>;
+using ChannelNode = LeafNode<ChannelSums>;
 
 }  // namespace libchar

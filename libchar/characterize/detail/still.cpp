@@ -12,7 +12,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostMeans = std::size_t{1} << 16U;
+constexpr std::uint64_t kFewestSamples = 64;  ///< of a series
 constexpr double kMostMissing = 0.01;  ///< share: filled gaps are stiller than any sensor
 
 [[noreturn]] void refuse_still(const std::string& file,
@@ -41,44 +41,6 @@ Interval longest_between(std::vector<Interval> moving, double end_s) {
 
 }  // namespace
 
-void MeansOfRecord::end_mean() {
-  const double before = mean_.empty() ? 0 : mean_.back();
-  mean_.push_back(present_ > 0 ? sum_ / static_cast<double>(present_) : before);
-  sum_ = 0;
-  in_mean_ = present_ = 0;
-  if (mean_.size() < kMostMeans) return;
-  for (std::size_t i = 0; i < mean_.size() / 2; ++i)
-    mean_[i] = 0.5 * (mean_[2 * i] + mean_[2 * i + 1]);
-  mean_.resize(mean_.size() / 2);
-  per_mean_ *= 2;
-}
-
-void MeansOfRecord::push(std::span<const double> samples) {
-  for (const double x : samples) {
-    ++samples_;
-    ++in_mean_;
-    if (std::isfinite(x)) {
-      sum_ += x;
-      ++present_;
-    } else {
-      ++missing_;
-    }
-    if (in_mean_ == per_mean_) end_mean();
-  }
-}
-
-EventSeries MeansOfRecord::series(double rate_hz) const {
-  EventSeries series;
-  series.value = mean_;
-  series.per_point = per_mean_;
-  series.step_s = static_cast<double>(per_mean_) / rate_hz;
-  return series;
-}
-
-double MeansOfRecord::missing() const {
-  return samples_ == 0 ? 1 : static_cast<double>(missing_) / static_cast<double>(samples_);
-}
-
 void StillSearch::begin(const LogInfo& so_far) {
   means_.assign(so_far.channels.size(), {});
 }
@@ -96,8 +58,12 @@ Stretch StillSearch::finish(const LogInfo& log) const {
   Stretch out;
   std::size_t tested = 0;
   for (std::size_t c = 0; c < means_.size(); ++c) {
-    if (means_[c].missing() > kMostMissing) continue;
-    const Motion motion = find_motion(means_[c].series(log.time.rate_hz));
+    const MeanMeter& means = means_[c];
+    const auto samples = static_cast<double>(means.samples());
+    if (means.samples() < kFewestSamples ||
+        static_cast<double>(means.missing()) > kMostMissing * samples)
+      continue;
+    const Motion motion = find_motion(means.series(log.time.rate_hz));
     if (!motion.tested) continue;
     ++tested;
     if (motion.whole)

@@ -6,25 +6,9 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/fit/event_series.hpp"
+#include "libchar/fit/mean_meter.hpp"
 
 namespace libchar {
-
-/// Means of a record of any length in constant memory: at most twice `most`, of 1, 2, 4… samples each. Missing samples are left out; a
-/// mean of none is the one before.
-class MeansOfRecord {
- public:
-  void push(std::span<const double> samples);
-  EventSeries series(double rate_hz) const;
-  /// share of the samples
-  double missing() const;
-
- private:
-  void end_mean();
-  std::vector<double> mean_;
-  double sum_ = 0;
-  std::uint64_t in_mean_ = 0, present_ = 0, per_mean_ = 1, samples_ = 0, missing_ = 0;
-};
 
 /// Sees a whole log and says which stretch of it is still.
 class StillSearch final : public BlockSink {
@@ -35,7 +19,7 @@ class StillSearch final : public BlockSink {
   Stretch finish(const LogInfo& log) const;
 
  private:
-  std::vector<MeansOfRecord> means_;
+  std::vector<MeanMeter> means_;
 };
 
 /// The stretch that `options` ask for is read: of a window in the options, Error(usage); ends that are none, Error(usage).

@@ -10,7 +10,7 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion = 2;  // 2: a channel; slow means, powers of means
+constexpr std::uint32_t kVersion = 3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);
@@ -89,25 +89,29 @@ LogInfo read_log_state(StateReader& from) {
 /// About as many bytes as a node takes.
 std::size_t size_of(const ChannelSums& sums) {
   std::size_t reals =
-      16384 + sums.spectrum.power.size() + sums.spectrum.head.size() + sums.spectrum.tail.size();
+      65536 + sums.kept.size() + sums.spectrum.power.size() + sums.spectrum.head.size() + sums.spectrum.tail.size();
   const auto add = [&](const PowerSums& bins) {
     reals += bins.blocks.power.size() + bins.tail.size();
     for (const PooledSums& piece : bins.pieces) reals += piece.power.size();
     reals += bins.means.blocks.power.size();
     for (const PooledSums& piece : bins.means.pieces) reals += piece.power.size();
-    for (const PowerRun& run : bins.runs) reals += 5 + run.means.size() + run.slow.size();
+    for (const PowerRun& run : bins.runs) reals += 7 + run.means.size() + run.slow.size();
   };
-  add(sums.bins);
-  if (sums.cleaned) add(sums.cleaned->bins);
+  const auto fitted = [&](const FittedSums& one) {
+    add(one.bins);
+    reals += 2 * one.means.means().size();
+  };
+  fitted(sums.record.plain);
+  if (sums.record.cleaned) fitted(*sums.record.cleaned);
   return reals * sizeof(double);
 }
 
 }  // namespace
 
-std::string write_stretch(const StretchState& state, std::vector<LeafNode>& nodes) {
+std::string write_stretch(const StretchState& state, std::vector<ChannelNode>& nodes) {
   StateWriter to(kKind, kVersion);
   std::size_t bytes = 0;
-  for (const LeafNode& node : nodes) bytes += size_of(node.sums);
+  for (const ChannelNode& node : nodes) bytes += size_of(node.sums);
   to.reserve(bytes);
   to.text(state.head.identity);
   to.text(state.head.settings);
@@ -117,7 +121,7 @@ std::string write_stretch(const StretchState& state, std::vector<LeafNode>& node
   to.number(state.head.channel);
   write_log(state.log, to);
   to.number(nodes.size());
-  for (LeafNode& node : nodes) {
+  for (ChannelNode& node : nodes) {
     to.number(node.height);
     to.number(node.place);
     LeafStage::write_state(std::exchange(node.sums, {}), to);
@@ -151,8 +155,8 @@ std::size_t read_node_count(StateReader& from) {
   return from.count(16);
 }
 
-LeafNode read_node(StateReader& from, const LeafStage& stage) {
-  LeafNode node;
+ChannelNode read_node(StateReader& from, const LeafStage& stage) {
+  ChannelNode node;
   node.height = from.number();
   node.place = from.number();
   if (node.height > 40 || node.place > (std::uint64_t{1} << (44 - node.height)))

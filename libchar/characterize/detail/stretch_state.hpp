@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/characterize/detail/leaf_tree.hpp"
+#include "libchar/characterize/detail/leaf.hpp"
 #include "libchar/characterize/stretches.hpp"
 
 namespace libchar {
@@ -17,7 +17,7 @@ struct StretchState {
 };
 
 /// The nodes are let go of one by one as they are written.
-std::string write_stretch(const StretchState& state, std::vector<LeafNode>& nodes);
+std::string write_stretch(const StretchState& state, std::vector<ChannelNode>& nodes);
 
 /// Checks the whole of `bytes`, which must stay.
 StateReader stretch_reader(std::string_view bytes, const std::string& name);
@@ -25,6 +25,6 @@ StateReader stretch_reader(std::string_view bytes, const std::string& name);
 StretchState read_stretch(StateReader& from);
 /// How many nodes follow; and each of them.
 std::size_t read_node_count(StateReader& from);
-LeafNode read_node(StateReader& from, const LeafStage& stage);
+ChannelNode read_node(StateReader& from, const LeafStage& stage);
 
 }  // namespace libchar

@@ -66,32 +66,4 @@ void append_slow(std::span<const double> rest,
       slow, per_mean * kMeansPerSlow, 1, end_of_left(slow.size(), kMeansPerSlow, kMeansBlock)));
 }
 
-void MeanSeries::push(double mean) {
-  means_.push_back(mean);
-  if (means_.size() > kMostMeans || (!slow_.empty() && means_.size() == kMeansBlock)) cut();
-}
-
-void MeanSeries::cut() {
-  const std::size_t taken = cutter_.take_blocks(means_, powers_);
-  const std::vector<double> slow = slow_means({means_.data(), taken});
-  slow_.insert(slow_.end(), slow.begin(), slow.end());
-  means_.erase(means_.begin(), means_.begin() + static_cast<std::ptrdiff_t>(taken));
-}
-
-void MeanSeries::append_to(std::vector<PooledPower>& out) const {
-  if (slow_.empty()) {
-    out.push_back(
-        record_power(means_, per_mean_, 1, end_of_left(means_.size(), per_mean_, block_)));
-    return;
-  }
-  append_slow(means_, slow_, per_mean_, block_, out);
-  append_powers(powers_, per_mean_, out);
-}
-
-void MeanSeries::clear() {
-  means_.clear();
-  slow_.clear();
-  powers_ = {};
-}
-
 }  // namespace libchar

@@ -14,8 +14,6 @@
 
 namespace libchar {
 
-inline constexpr std::uint64_t kMostMeans = std::uint64_t{1}
-                                            << 20U;  ///< of a series that is transformed as a whole
 inline constexpr std::uint64_t kMeansPerSlow = kMeansBlock / kMeansPerBlock;
 
 /// Means of 512 means, times sqrt(512): on the same scale. What is left behind them is in none.
@@ -43,25 +41,5 @@ void append_slow(std::span<const double> rest,
                  std::uint64_t per_mean,
                  std::uint64_t block,
                  std::vector<PooledPower>& out);
-
-/// The means of one segment as they come.
-class MeanSeries {
- public:
-  MeanSeries(std::uint64_t per_mean, std::uint64_t block)
-      : per_mean_(per_mean), block_(block), cutter_(per_mean, block) {}
-  /// sqrt(per_mean) * mean
-  void push(double mean);
-  void append_to(std::vector<PooledPower>& out) const;
-  /// A new segment.
-  void clear();
-
- private:
-  void cut();
-  std::uint64_t per_mean_, block_;
-  MeanCutter cutter_;
-  std::vector<double> means_;  ///< all, or what fills no block
-  std::vector<double> slow_;
-  MeanPowers powers_;
-};
 
 }  // namespace libchar

@@ -14,6 +14,9 @@ constexpr std::uint64_t kSingleBins = 24, kBinsPerOctave = 8;
 constexpr std::uint64_t kExactBelow =
     4096;  ///< shorter records get the exact flicker means (beyond, the limit is good to 6e-5)
 
+/// Share of the events' energy below which the noise beside it is not looked at.
+constexpr double kLeastNoise = 0.05;
+
 /// First coefficient of the bin after the one that starts at k.
 std::uint64_t next_edge(std::uint64_t k) {
   if (k < kSingleBins) return k + 1;
@@ -90,21 +93,24 @@ void append_bins_of(const PooledPower& power,
   for (std::uint64_t lo = power.first, hi = 0; lo < end; lo = hi) {
     hi = std::min(end, next_edge(lo));
     if (end - hi < (hi - lo) / 4) hi = end;  // no sliver at the end
-    double sum = 0;
+    double sum = 0, of_events = 0;
     std::uint64_t kept = 0;
     for (std::uint64_t k = lo; k < hi; ++k) {
       if (!clipped.empty() && clipped[k - power.first] != 0) continue;
       sum += power.mean[k - power.first];
+      if (!power.of_events.empty()) of_events += power.of_events[k - power.first];
       ++kept;
     }
-    if (kept == 0) continue;
+    const double noise = sum - of_events;
+    if (kept == 0 || !(noise > kLeastNoise * of_events)) continue;
     PowerBin bin;
     bin.low_hz = (static_cast<double>(lo) - 0.5) * step_hz;
     bin.high_hz = (static_cast<double>(hi) - 0.5) * step_hz;
     bin.frequency_hz =
         hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
-    bin.energy = sum / static_cast<double>(kept);
-    bin.dof = static_cast<double>(kept * power.pooled);
+    bin.energy = noise / static_cast<double>(kept);
+    // sum (n_k + e_k)² - e_k²: the variance of n_k² is 2 P², that of 2 n_k e_k is 4 P e_k².
+    bin.dof = static_cast<double>(kept * power.pooled) / (1 + 2 * of_events / noise);
     bin.first = lo;
     bin.end = hi;
     bin.length = power.length;

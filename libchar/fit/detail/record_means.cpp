@@ -23,24 +23,33 @@ bool take_events(const EventSearch& search) {
   return !search.events.empty() && !search.more && !search.telegraph;
 }
 
-EventSearch search_events(std::span<const double> record,
-                          double rate_hz,
-                          const FitOptions& options,
-                          const EventSeries* known) {
-  if (!options.events || !options.remedies || record.size() < kFewestForEvents) return {};
+/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what it cannot do.
+template <class Series>
+EventSearch search_events(const FitOptions& options, const Series& series) {
+  if (!options.events || !options.remedies) return {};
   try {
-    const EventSeries own = known != nullptr ? EventSeries{} : event_series(record, rate_hz);
-    const EventSeries& series = known != nullptr ? *known : own;
-    if (series.value.size() < kFewestPoints) return {};
+    const EventSeries& searched = series();
+    if (searched.value.size() < kFewestPoints) return {};
     // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
     EventOptions how;
     how.steps = !options.clock;
-    return find_events(series, fitted_powers(), how, options.unit);
+    return find_events(searched, fitted_powers(), how, options.unit);
   } catch (const Error& error) {
-    // What cannot be searched is fitted as it is; the fit says itself what it cannot do.
     if (error.problem().kind != ErrorKind::numeric) throw;
     return {};
   }
+}
+
+EventSearch search_record(std::span<const double> record,
+                          double rate_hz,
+                          const FitOptions& options,
+                          const EventSeries* known) {
+  if (record.size() < kFewestForEvents) return {};
+  EventSeries own;
+  return search_events(options, [&]() -> const EventSeries& {
+    if (known == nullptr) own = event_series(record, rate_hz);
+    return known != nullptr ? *known : own;
+  });
 }
 
 std::vector<double> less(std::span<const double> record,
@@ -110,8 +119,8 @@ RecordMeans without_means(std::span<const double> record,
   const std::vector<double> warm = moves(out.temperature)
                                        ? less(record, rate_hz, nullptr, out.temperature)
                                        : std::vector<double>{};
-  out.search = warm.empty() ? search_events(record, rate_hz, options, series)
-                            : search_events(warm, rate_hz, options, nullptr);
+  out.search = warm.empty() ? search_record(record, rate_hz, options, series)
+                            : search_record(warm, rate_hz, options, nullptr);
   out.events_taken = take_events(out.search);
   const EventSearch* events = out.events_taken ? &out.search : nullptr;
   if (temperature != nullptr && events != nullptr) {
@@ -130,6 +139,13 @@ RecordMeans without_means(std::span<const double> record,
     if (event.kind != EventKind::step &&
         event.score * event.score > out.temperature->gain - kToldApart)
       out.temperature->like_drift = true;
+  return out;
+}
+
+RecordMeans means_in(const EventSeries& series, const FitOptions& options) {
+  RecordMeans out;
+  out.search = search_events(options, [&]() -> const EventSeries& { return series; });
+  out.events_taken = take_events(out.search);
   return out;
 }
 

@@ -26,6 +26,9 @@ RecordMeans without_means(std::span<const double> record,
                           const TemperatureRecord* temperature,
                           const EventSeries* series = nullptr);
 
+/// The same events of a series alone, without samples.
+RecordMeans means_in(const EventSeries& series, const FitOptions& options);
+
 /// What the temperature takes from the transform coefficients, for the bins.
 void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins);
 

@@ -1,5 +1,5 @@
 #pragma once
-// How a record is divided in transforms: what PowerBinner and the parts of power_sums.hpp share.
+// How a record is divided in transforms.
 
 #include <cstdint>
 #include <span>

@@ -120,7 +120,7 @@ CostModel measured_cost() {
 UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
   constexpr double kReports = 0.004;    // s a channel: page, tables, model, and the disk
   constexpr double kProgram = 64e6;     // bytes: program and libraries
-  constexpr double kStageBytes = 24e6;  // of a channel that streams
+  constexpr double kStageBytes = 30e6, kAtOnce = 8;  // of a channel of many leaves, in one pass
   constexpr double kStretchBytes =
       70e6;  // of the channels of a pass, or of a state and the tree that it comes to
   constexpr double kTimesKept = 4;  // the record, its transform, what is written of it
@@ -139,7 +139,10 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
                 bytes * (is_text(head.format) ? text_byte_s : binary_byte_s) +
                 (unit.reports && unit.kind != UnitKind::stretch ? kReports * chosen : 0);
   const double kept = 8 * rows * (chosen + kTimesKept);
-  const double limit = static_cast<double>(unit.options->memory_bytes) * 1.5 + kStageBytes * chosen;
+  const double all = what_needs_all_samples(*unit.options).empty()
+                         ? 0
+                         : 1.5 * static_cast<double>(unit.options->memory_bytes);
+  const double limit = all + kStageBytes * std::min(chosen, kAtOnce);
   const double needed = unit.kind == UnitKind::log ? std::min(kept, limit) : kStretchBytes;
   out.memory_bytes = static_cast<std::uint64_t>(kProgram + needed);
   return out;

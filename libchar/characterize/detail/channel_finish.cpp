@@ -1,0 +1,462 @@
+// A record that fits into a leaf is kept and looked at as a whole; a longer one is finished from the sums over its leaves. Which of both
+// depends on its length only. What still needs the samples of a longer one (`what_needs_all_samples`) changes no coefficient but by a
+// temperature, which is taken out of the samples.
+#include "libchar/characterize/detail/channel_finish.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/ten_a_decade.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/present.hpp"
+#include "libchar/core/text.hpp"
+#include "libchar/fit/motion.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/remedies.hpp"
+#include "libchar/fit/shaped_curves.hpp"
+#include "libchar/spectrum/log_spectrum.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kPlottedBins =
+    400;  // enough for a log–log plot, small enough for a page of many channels
+constexpr std::size_t kFewestForMotion = 2048;
+constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
+
+// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
+Mixture white_alone(const AllanCurve& curve) {
+  Mixture theta{};
+  if (!curve.points.empty())
+    theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
+  return theta;
+}
+
+/// Of a log of more than a leaf.
+bool whole_spectrum(const CharacterizeOptions& options) {
+  return options.quarter_segments ||
+         (options.data == SampleKind::phase && !why_not_in_leaves(options).empty());
+}
+
+// Octaves of the overlapping deviation: what the streaming form gives.
+bool octaves_only(const AllanOptions& allan, DeviationType type) {
+  return type == DeviationType::oadev && allan.grid == TauGrid::octave;
+}
+
+// A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
+template <class Step>
+void attempt(ChannelResult& result, std::string_view what, Step&& step) {
+  try {
+    step();
+  } catch (const Error& error) {
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    result.problems.push_back(fmt::format("no {}: {}", what, error.problem().what));
+  }
+}
+
+class Finish {
+ public:
+  Finish(ReadChannel& read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
+      : read_(read), options_(options), workspace_(workspace) {}
+
+  ChannelResult result(const Channel& channel, double rate_hz);
+
+ private:
+  // what it is
+  bool is_whole() const { return is_whole_; }
+  bool wants_fit() const { return options_.wanted.fit || options_.wanted.allan; }
+  Quantization quantization() const;
+  ChannelQuality quality_of_rate() const;
+  std::string unit_of_rate(const std::string& unit) const;
+  void make_rate(double rate_hz);
+  void scale_sums(double rate_hz);
+  std::vector<NoiseType> noise_types(double rate_hz) const;
+  // what is made of it
+  void finish(ChannelResult& result, double rate_hz);
+  AllanCurve octaves(double rate_hz) const;
+  AllanCurve wanted_curve(const AllanCurve& octaves, DeviationType type, double rate_hz) const;
+  void add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const;
+  void curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz);
+  void add_spectrum(ChannelResult& result, double rate_hz);
+  bool is_noise(ChannelResult& result) const;
+  void doubt_frequency(ChannelResult& result) const;
+  std::optional<EventSeries> series(double rate_hz) const;
+  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s);
+  void find_digital(ChannelResult& result, double rate_hz) const;
+  void fit(const AllanCurve& octaves, double rate_hz, ChannelResult& result);
+  NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, FitOptions options) const;
+  NoiseFit fit_of_sums(const AllanCurve& octaves, double rate_hz, FitOptions options);
+
+  ReadChannel& read_;
+  const CharacterizeOptions& options_;
+  CharacterizeWorkspace& workspace_;
+  ChannelQuality found_;
+  bool is_whole_ = false;
+  std::vector<double> kept_;  ///< as a rate: all samples, or none
+  DespikedRecord despiked_;   ///< rate of the phase without its spikes, when it has some
+  std::vector<NoiseType> noise_types_;
+  std::optional<EventSeries> series_;  ///< where the search for motion has made it
+};
+
+// Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is cleaned, then differenced.
+void Finish::make_rate(double rate_hz) {
+  LeafStage(options_, workspace_.welch).make_rate(kept_);
+  if (options_.data != SampleKind::phase) {
+    noise_types_ = noise_types(rate_hz);
+    return;
+  }
+  if (options_.fit.remedies && wants_fit() && is_whole()) despiked_ = without_spikes(kept_);
+  if (!is_whole()) scale_sums(rate_hz);
+  noise_types_ = noise_types(rate_hz);
+  for (std::vector<double>* phase : {&despiked_.samples, &kept_}) {
+    difference(*phase);
+    for (double& rate : *phase) rate *= rate_hz;
+  }
+}
+
+/// Of a phase, whose differences know no rate before the log has been read.
+void Finish::scale_sums(double rate_hz) {
+  scale(read_.sums.record, rate_hz);
+  for (double& power : read_.sums.spectrum.power) power *= rate_hz * rate_hz;
+}
+
+// Of a clock. Of a record of leaves: below the length of its means by the first leaf, from there on by the sum of the means.
+std::vector<NoiseType> Finish::noise_types(double rate_hz) const {
+  if (options_.data == SampleKind::rate || !wants_fit()) return {};
+  if (is_whole() && options_.data == SampleKind::frequency)
+    return types_of_rate(kept_, 1 / rate_hz);
+  if (is_whole())
+    return lag1_noise_types(despiked_.samples.empty() ? kept_ : despiked_.samples, 1 / rate_hz);
+  const MeanMeter& means = read_.sums.record.plain.means;
+  const std::uint64_t per_mean = means.per_mean();
+  std::vector<NoiseType> types = read_.sums.types;
+  std::erase_if(types, [&](const NoiseType& type) { return type.m >= per_mean; });
+  for (NoiseType& type : types) type.tau_s = static_cast<double>(type.m) / rate_hz;
+  for (NoiseType type : types_of_rate(means.means(), static_cast<double>(per_mean) / rate_hz)) {
+    type.m *= per_mean;
+    types.push_back(type);
+  }
+  return types;
+}
+
+// Of the samples as they are in the log; those of other kinds are differences or ratios of them.
+Quantization Finish::quantization() const {
+  if (options_.data != SampleKind::rate) return {};
+  return quantization_of(found_.resolution.value_or(0), found_.difference_sd);
+}
+
+// The curve that the fit checks itself with, whatever is plotted.
+AllanCurve Finish::octaves(double rate_hz) const {
+  if (!is_whole()) return octave_curve(read_.sums.record.plain.allan, 1 / rate_hz);
+  AllanOptions octaves;
+  octaves.threads = options_.allan.threads;
+  return allan_deviation(kept_, 1 / rate_hz, octaves);
+}
+
+AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
+                                DeviationType type,
+                                double rate_hz) const {
+  if (octaves_only(options_.allan, type) && (is_whole() || !options_.full_overlap)) {
+    AllanCurve curve = limited(octaves, options_.allan);
+    if (options_.ten_a_decade && is_whole()) 
+      add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve);
+    return curve;
+  }
+  AllanOptions allan = options_.allan;
+  allan.type = type;
+  allan.data = DataKind::rate;  // `make_rate` has differenced phase data
+  const bool many_times = (allan.grid == TauGrid::dense && !is_whole()) ||
+                          (allan.grid == TauGrid::all && kept_.size() > kLongForAll);
+  if (many_times && !options_.full_overlap) allan.stride_divisor = kPyramidStride;
+  if (options_.full_overlap) allan.work_a_point = 0;
+  return allan_deviation(kept_, 1 / rate_hz, allan);
+}
+
+void Finish::add_curves(const AllanCurve& octaves,
+                              double rate_hz,
+                              ChannelResult& result) const {
+  attempt(result, "Allan deviation", [&] {
+    result.allan = wanted_curve(octaves, options_.allan.type, rate_hz);
+  });
+  for (const DeviationType type : options_.more_types) {
+    result.more_allan.push_back({});
+    result.more_allan.back().type = type;
+    attempt(result, name_of(type), [&] {
+      result.more_allan.back() = wanted_curve(octaves, type, rate_hz);
+    });
+  }
+}
+
+NoiseFit Finish::fit_of_kept(const AllanCurve& octaves, double rate_hz, FitOptions options) const {
+  // What is fitted of a clock is not what is in the log.
+  if (options.clock) options.difference_kurtosis = std::nullopt;
+  const bool opinion = !octaves.points.empty();
+  const bool cleaned = !despiked_.samples.empty();
+  AllanCurve own;
+  RecordKnowledge known;
+  known.temperature = read_.temperature.get();
+  if (!cleaned) {
+    known.series = series_ ? &*series_ : nullptr;
+    if (options_.data == SampleKind::rate) known.missing = found_.missing;
+  }
+  if (cleaned && opinion) own = pyramid_deviation(despiked_.samples, 1 / rate_hz);
+  NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
+                            rate_hz,
+                            opinion ? cleaned ? &own : &octaves : nullptr,
+                            options,
+                            &workspace_.fit,
+                            known);
+  add_spike_answer(despiked_.answer, fit);
+  return fit;
+}
+
+NoiseFit Finish::fit_of_sums(const AllanCurve& octaves, double rate_hz, FitOptions options) {
+  return fit_sums(std::move(read_.sums.record),
+                  rate_hz,
+                  octaves.points.empty() ? nullptr : &octaves,
+                  options,
+                  &workspace_.fit);
+}
+
+// To be fitted, and no clock or counter: the result says which.
+bool Finish::is_noise(ChannelResult& result) const {
+  if (!wants_fit()) return false;
+  if (options_.data == SampleKind::phase) return true;  // the phase of a clock does rise
+  if (found_.counter.empty()) return true;
+  result.problems.push_back("no noise fit: the channel " + found_.counter);
+  return false;
+}
+
+// Filled gaps are stiller than any sensor.
+std::optional<EventSeries> Finish::series(double rate_hz) const {
+  const std::uint64_t samples = found_.samples + found_.missing;
+  if (samples < kFewestForMotion || found_.missing * 100 > samples) return std::nullopt;
+  return is_whole() ? event_series(kept_, rate_hz)
+                    : read_.sums.record.plain.means.series(rate_hz);
+}
+
+// A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves throughout, and a sentence
+// where a stretch of it does.
+bool Finish::is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) {
+  if (options_.data != SampleKind::rate || !options_.wanted.fit || !options_.fit.remedies)
+    return true;
+  series_ = series(rate_hz);
+  if (!series_) return true;
+  result.motion = find_motion(*series_);
+  for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
+  moving_s = result.motion.moving_s;
+  if (result.motion.whole)
+    result.problems.push_back("no noise fit: the recording holds a signal throughout");
+  return !result.motion.whole;
+}
+
+// Of samples as the log has them: those of other kinds are differences or ratios.
+void Finish::find_digital(ChannelResult& result, double rate_hz) const {
+  if (options_.data != SampleKind::rate || !options_.wanted.fit) return;
+  if (found_.samples == 0) return;
+  const ValueCensus census = census_of(found_);
+  const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census) : DigitalSums{};
+  result.digital = find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
+                                       census,
+                                       rate_hz,
+                                       found_.resolution,
+                                       result.channel.unit);
+  for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
+}
+
+void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& result) {
+  if (!is_noise(result)) return;
+  find_digital(result, rate_hz);
+  attempt(result, "noise fit", [&] {
+    std::vector<Interval> moving_s;
+    if (!is_at_rest(result, rate_hz, moving_s)) return;
+    FitOptions options = options_.fit;
+    const std::string& unit = result.channel.unit;
+    if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
+    options.clock = options_.data != SampleKind::rate;
+    options.difference_kurtosis = found_.difference_kurtosis;
+    const bool of_kept = is_whole() || read_.temperature;
+    result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
+                         : fit_of_sums(octaves, rate_hz, options);
+    result.fit->moving_s = std::move(moving_s);
+    doubt_digital(result.digital, *result.fit);
+  });
+}
+
+// Curve and fit side by side: both need the record and the octaves.
+void Finish::curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz) {
+  AllanCurve octaves;
+  bool there = false;
+  if (wants_fit())
+    attempt(curve, "Allan deviation", [&] {
+      octaves = this->octaves(rate_hz);
+      there = true;
+    });
+  tbb::parallel_invoke(
+      [&] {
+        if (there) add_curves(octaves, rate_hz, curve);
+      },
+      [&] { fit(octaves, rate_hz, result); });
+}
+
+void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
+  const auto make = [&] {
+    if (is_whole()) return welch(kept_, rate_hz, options_.spectrum, &workspace_.welch);
+    if (!kept_.empty() && whole_spectrum(options_))
+      return welch_using_up(std::move(kept_), rate_hz, options_.spectrum, &workspace_.welch);
+    if (read_.spectrum) return read_.spectrum->finish(rate_hz);
+    const WelchOptions options = streamed_spectrum(options_.spectrum);
+    return WelchStream(options, read_.sums.spectrum).finish(rate_hz);
+  };
+  attempt(result, "spectrum", [&] {
+    const Spectrum spectrum = make();
+    const Quantization grid = quantization();
+    tbb::parallel_invoke([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
+                         [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
+    if (options_.spectrum.segment == 0 && !is_whole() && !options_.quarter_segments)
+      result.spectrum.notes.push_back(
+          fmt::format("segments of {} samples: a quarter of a record of more than {} is taken "
+                      "where `segment` asks for N/4",
+                      kStreamedSegment,
+                      kLeafSamples));
+  });
+}
+
+// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits for it begins no other channel,
+// whose memory would come on top. A spectrum that uses the samples up comes last.
+void Finish::finish(ChannelResult& result, double rate_hz) {
+  ChannelResult curve, spectrum;
+  const std::size_t before = result.problems.size();
+  const bool last = !is_whole() && whole_spectrum(options_);
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_invoke([&] { curve_and_fit(curve, result, rate_hz); },
+                         [&] {
+                           if (options_.wanted.spectrum && !last) add_spectrum(spectrum, rate_hz);
+                         });
+    if (options_.wanted.spectrum && last) add_spectrum(spectrum, rate_hz);
+  });
+  result.allan = std::move(curve.allan);
+  result.more_allan = std::move(curve.more_allan);
+  result.spectrum = std::move(spectrum.spectrum);
+  result.lines = std::move(spectrum.lines);
+  auto at = result.problems.begin() + static_cast<std::ptrdiff_t>(before);
+  at = result.problems.insert(at, curve.problems.begin(), curve.problems.end());
+  result.problems.insert(at + static_cast<std::ptrdiff_t>(curve.problems.size()),
+                         spectrum.problems.begin(),
+                         spectrum.problems.end());
+}
+
+// A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind of data, or no nominal frequency.
+void Finish::doubt_frequency(ChannelResult& result) const {
+  constexpr double kMostOff = 0.01;
+  if (options_.data != SampleKind::frequency || found_.samples == 0) return;
+  const double nominal = options_.nominal_frequency;
+  const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
+  if (std::abs(off) <= kMostOff) return;
+  result.problems.push_back(
+      nominal == 0 ? fmt::format("The mean is {:.6g}: without `nominal_frequency` values are taken "
+                                 "for fractional frequencies, which are small.",
+                                 found_.mean)
+                   : fmt::format("The mean, {:.6g}, is far from the nominal frequency of {:.6g}.",
+                                 found_.mean,
+                                 nominal));
+}
+
+// Differenced phase and fractional frequency have other units than the samples in the log.
+std::string Finish::unit_of_rate(const std::string& unit) const {
+  if (options_.data == SampleKind::phase)
+    return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  return options_.data == SampleKind::frequency && options_.nominal_frequency != 0 ? "1" : unit;
+}
+
+// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are those of no rate.
+ChannelQuality Finish::quality_of_rate() const {
+  ChannelQuality quality = found_;
+  if (options_.data == SampleKind::phase) {
+    quality.resolution = std::nullopt;
+    quality.saturated = 0;
+  }
+  const double nominal = options_.nominal_frequency;
+  if (options_.data != SampleKind::frequency || nominal == 0) return quality;
+  for (double* value : {&quality.mean, &quality.minimum, &quality.maximum})
+    *value = (*value - nominal) / nominal;
+  for (double* value : {&quality.standard_deviation, &quality.difference_sd, &quality.float32_step})
+    *value /= std::abs(nominal);
+  if (quality.resolution) *quality.resolution /= std::abs(nominal);
+  return quality;
+}
+
+ChannelResult Finish::result(const Channel& channel, double rate_hz) {
+  ChannelResult result;
+  result.channel = channel;
+  result.channel.unit = unit_of_rate(channel.unit);
+  found_ = read_.sums.meters.quality.finish();
+  if (options_.wanted.quality) {
+    result.quality = quality_of_rate();
+    result.trace = read_.sums.meters.trace.finish();
+    result.trace_unit = channel.unit;
+  }
+  if (rate_hz <= 0) {
+    const std::string why =
+        found_.samples < 2
+            ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
+            : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
+    result.problems.push_back("no curves and no fit: " + why);
+    return result;
+  }
+  // Else the quality says so.
+  if (found_.beyond > 0 && !options_.wanted.quality)
+    result.problems.push_back(
+        fmt::format("{} beyond {:g} in magnitude: no measurement, taken as missing",
+                    plural(found_.beyond, "sample"),
+                    kLargestSample));
+  doubt_frequency(result);
+  is_whole_ = found_.samples + found_.missing <= kLeafSamples;
+  kept_ = std::move(is_whole_ ? read_.sums.kept : read_.all);
+  make_rate(rate_hz);
+  finish(result, rate_hz);
+  result.noise_types = noise_types_;
+  if (result.fit && !noise_types_.empty())
+    result.fit->sentences.push_back(
+        "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
+        noise_types_text(noise_types_) + ".");
+  const auto add_to = [&](AllanCurve& curve) {
+    result.fit ? add_fit_intervals(curve, *result.fit)
+               : add_intervals(curve, white_alone(result.allan));
+  };
+  add_to(result.allan);
+  for (AllanCurve& curve : result.more_allan) add_to(curve);
+  return result;
+}
+
+}  // namespace
+
+std::string what_needs_all_samples(const CharacterizeOptions& options) {
+  if (!options.temperature.empty()) return "a correction for temperature";
+  if (options.wanted.spectrum && whole_spectrum(options))
+    return options.quarter_segments ? "a spectrum of segments of a quarter of the record"
+                                    : "a spectrum of a phase with these segments";
+  if (!options.wanted.allan) return "";
+  std::vector<DeviationType> types = options.more_types;
+  types.insert(types.begin(), options.allan.type);
+  for (const DeviationType type : types)
+    if (type != DeviationType::oadev) return fmt::format("the deviation {}", name_of(type));
+  if (options.allan.grid != TauGrid::octave) return "a curve at other times than octaves";
+  return options.full_overlap ? "a curve with full overlap" : "";
+}
+
+ChannelResult finish_channel(ReadChannel read,
+                             const CharacterizeOptions& options,
+                             CharacterizeWorkspace& workspace,
+                             const Channel& channel,
+                             double rate_hz) {
+  return Finish(read, options, workspace).result(channel, rate_hz);
+}
+
+}  // namespace libchar
