@@ -167,9 +167,11 @@ ValueCensus value_census(std::span<const double> record) {
   return census;
 }
 
-DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census) {
+DigitalSums digital_sums(std::span<const double> samples,
+                         const ValueCensus& census,
+                         std::uint64_t missing) {
   DigitalSums sums;
-  sums.present = static_cast<double>(samples.size() - count_missing(samples));
+  sums.present = static_cast<double>(samples.size() - missing);
   if (!(census.low < census.high)) return sums;
   if (census.repeats >= kFewestRuns) sums.runs = runs_of_values(samples);
   sums.low = rail_of(samples, census, false, sums.present);
@@ -230,7 +232,7 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   std::optional<double> step,
                                   std::string_view unit) {
   const ValueCensus census = value_census(record);
-  return find_digital_faults(digital_sums(record, census), census, rate_hz, step, unit);
+  return find_digital_faults(digital_sums(record, census, count_missing(record)), census, rate_hz, step, unit);
 }
 
 DigitalFaults find_digital_faults(const DigitalSums& sums,

@@ -66,8 +66,10 @@ struct DigitalSums {
   ValueRuns runs;
 };
 
-/// `census` of the same samples.
-DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census);
+/// `census` of the same samples, and how many of them are missing.
+DigitalSums digital_sums(std::span<const double> samples,
+                         const ValueCensus& census,
+                         std::uint64_t missing);
 /// Adds those of the leaf that follows.
 void join(DigitalSums& sums, const DigitalSums& later);
 void write_state(const DigitalSums& sums, StateWriter& to);

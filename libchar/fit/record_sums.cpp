@@ -65,15 +65,25 @@ struct RecordStage {
 
 }  // namespace
 
-FittedSums fitted_sums(std::span<const double> leaf, const LeafKind& kind) {
+WelchParts block_transforms(WelchWorkspace* workspace) {
+  WelchOptions options;
+  options.segment = 2 * PowerPart::kBlock;
+  return WelchParts(options, workspace);
+}
+
+FittedSums fitted_sums(std::span<const double> leaf,
+                       const LeafKind& kind,
+                       const WelchParts& blocks,
+                       PowerPart* shared) {
   FittedSums sums;
   PowerPart own;
-  if (kind.shared == nullptr) {
-    const bool gaps = kind.bridged && count_missing(leaf) > 0;
-    const std::vector<double> filled = gaps ? bridged(leaf) : std::vector<double>();
+  if (shared == nullptr && !kind.whole) {
+    const std::vector<double> filled = kind.bridged ? bridged(leaf) : std::vector<double>();
     own.push(filled.empty() ? leaf : filled);
+  } else if (shared == nullptr) {
+    blocks.take(leaf, &own);
   }
-  sums.bins = (kind.shared != nullptr ? *kind.shared : own).finish(kind.last);
+  sums.bins = (shared != nullptr ? *shared : own).finish(kind.last);
   sums.allan = sums_of_pieces(leaf, sums.pieces);
   sums.means = MeanMeter(kPerMean);
   sums.means.push(leaf);
@@ -101,17 +111,20 @@ void scale(RecordSums& sums, double factor) {
 }
 
 RecordSums record_sums(std::span<const double> record, bool remedies) {
+  const WelchParts blocks = block_transforms();
   RecordStage stage;
   LeafTree<RecordStage> tree(stage);
   for (std::uint64_t leaf = 0; !record.empty(); ++leaf) {
     const std::span<const double> samples =
         record.first(std::min<std::uint64_t>(record.size(), kLeafSamples));
     record = record.subspan(samples.size());
-    const LeafKind kind{record.empty(), remedies, nullptr};
-    RecordSums sums{fitted_sums(samples, kind), {}, {}};
-    sums.spikes.samples = samples.size() - count_missing(samples);
+    const std::size_t missing = count_missing(samples);
+    LeafKind kind{record.empty(), remedies, missing == 0};
+    RecordSums sums{fitted_sums(samples, kind, blocks), {}, {}};
+    sums.spikes.samples = samples.size() - missing;
+    kind.whole = false;
     if (remedies && kurtosis_of_differences(samples) > spike_alarm(sums.spikes.samples))
-      sums.cleaned = fitted_sums(cleaned_record(samples, sums.spikes), kind);
+      sums.cleaned = fitted_sums(cleaned_record(samples, sums.spikes), kind, blocks);
     tree.add({0, leaf, std::move(sums)});
   }
   return tree.whole();

@@ -11,6 +11,7 @@
 #include "libchar/fit/piece_variances.hpp"
 #include "libchar/fit/power_sums.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {
 
@@ -30,11 +31,18 @@ struct RecordSums {
 };
 
 struct LeafKind {
-  bool last = false;            ///< no leaf follows
-  bool bridged = true;          ///< short runs of missing samples are filled for the transforms
-  PowerPart* shared = nullptr;  ///< has seen the blocks of a leaf without missing samples already
+  bool last = false;    ///< no leaf follows
+  bool bridged = true;  ///< short runs of missing samples are filled for the transforms
+  bool whole = false;   ///< none is missing
 };
-FittedSums fitted_sums(std::span<const double> leaf, const LeafKind& kind);
+/// `shared`: has seen the blocks of the leaf, which is whole, already. Else `blocks` transforms them: so they have the same
+/// bits whether a spectrum shares them or not.
+FittedSums fitted_sums(std::span<const double> leaf,
+                       const LeafKind& kind,
+                       const WelchParts& blocks,
+                       PowerPart* shared = nullptr);
+/// A spectrum whose transforms are those of the blocks.
+WelchParts block_transforms(WelchWorkspace* workspace = nullptr);
 
 /// Adds the part that follows directly.
 void join(RecordSums& sums, RecordSums later);

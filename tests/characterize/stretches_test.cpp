@@ -284,7 +284,7 @@ TEST_CASE("logs in stretches as short as a sample, and what was not asked for") 
     const Characterization joined = characterize_from_stretches(states_of(log.path(), 1), {});
     REQUIRE(joined.channels[0].quality.samples == rows);
     REQUIRE(joined.channels[0].fit.has_value() == (rows > 5));
-    REQUIRE(joined.channels[0].spectrum.value.empty() == (rows < 65536));
+    REQUIRE(joined.channels[0].spectrum.value.empty() == (rows <= 5));
   }
   const RawLog log("wanted", kLeafSamples + 100000, sensor(0.3));
   for (const Wanted wanted : {Wanted{true, false, false, false},
@@ -419,9 +419,10 @@ TEST_CASE("logs and options that cannot be divided are refused in a sentence") {
   CharacterizeOptions options;
   REQUIRE_THAT(refusal_of_stretch(path, options, {1, 3}),
                Catch::Contains("E0727: the log has 2 leaves of 1048576 samples"));
-  options.data = SampleKind::phase;
+  options.quarter_segments = true;
   REQUIRE_THAT(refusal_of_stretch(path, options),
-               Catch::Contains("E0726") && Catch::Contains("phase data takes all samples at once"));
+               Catch::Contains("E0726") &&
+                   Catch::Contains("a quarter of the record takes all samples at once"));
   options = {};
   options.spectrum.segment = 100000;
   REQUIRE_THAT(refusal_of_stretch(path, options), Catch::Contains("do not divide a leaf"));

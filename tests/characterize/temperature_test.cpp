@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/core/leaf_tree.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/characterize/refusal.hpp"
@@ -75,7 +76,8 @@ TEST_CASE("temperature of a recording: refused where it is none or cannot be kep
   constant.samples[1].assign(20'000, 68);
   CHECK(test::refusal(constant, options).find("E0703 the temperature box is constant") == 0);
   options.memory_bytes = 1U << 16U;
-  CHECK(test::refusal(recording, options).find("E0701 a correction for temperature takes all") ==
+  const Recording longer = warm_recording(10, kLeafSamples + 1);
+  CHECK(test::refusal(longer, options).find("E0701 a correction for temperature takes all") ==
         0);
 }
 

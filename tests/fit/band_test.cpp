@@ -201,8 +201,9 @@ TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the f
 }
 
 TEST_CASE("where no band passes every value is a misfit, its interval as wide as the scatter") {
-  const std::vector<double> y = filtered_record(5, [](const auto& u) { return u; });
-  std::vector<PowerBin> bins = power_bins(y, kRate);
+  PowerPart blocks;
+  blocks.push(filtered_record(5, [](const auto& u) { return u; }));
+  std::vector<PowerBin> bins = power_bins(powers_of(blocks.finish(true)), kRate);
   const NoiseFit clean = fit_power_bins(bins, kRate, kSamples, nullptr);
   for (std::size_t j = 0; j < bins.size(); ++j) bins[j].energy *= j % 2 == 0 ? 20 : 0.05;
   const NoiseFit fit = fit_power_bins(bins, kRate, kSamples, nullptr);
@@ -216,8 +217,9 @@ TEST_CASE("where no band passes every value is a misfit, its interval as wide as
     return std::log(f[Term::white].ci95.high / f[Term::white].ci95.low);
   };
   CHECK(width(fit) > 5 * width(clean));
-  REQUIRE_FALSE(fit.sentences.empty());
-  CHECK(fit.sentences[0].find("no coefficient is borne out") != std::string::npos);
+  CHECK(std::any_of(fit.sentences.begin(), fit.sentences.end(), [](const std::string& sentence) {
+    return sentence.find("no coefficient is borne out") != std::string::npos;
+  }));
 }
 
 TEST_CASE("a limit of white noise is not below the spectrum above the band") {

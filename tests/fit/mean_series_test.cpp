@@ -64,6 +64,7 @@ PowerSums in_parts(const std::vector<double>& means, double shift_of_part) {
     for (std::size_t i = 0; i < count; ++i)
       run.means.push_back(means[from + i] - std::sqrt(static_cast<double>(kPerMean)) * shift);
     PowerSums part;
+    part.rows = count * kPerMean;
     part.runs.push_back(std::move(run));
     if (count == kMeansBlock) settle_means(part, from * kPerMean);
     first ? void(all = std::move(part)) : join(all, std::move(part));

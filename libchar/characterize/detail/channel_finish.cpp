@@ -261,7 +261,7 @@ void Finish::find_digital(ChannelResult& result, double rate_hz) const {
   if (options_.data != SampleKind::rate || !options_.wanted.fit) return;
   if (found_.samples == 0) return;
   const ValueCensus census = census_of(found_);
-  const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census) : DigitalSums{};
+  const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
   result.digital = find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
                                        census,
                                        rate_hz,

@@ -64,9 +64,10 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   ReadChannel read;
   const bool whole = tree_.empty() && leaf_.size() <= kLeafSamples;
   if (!whole && leaf_.size() > kLeafSamples) end_leaf(false);
-  if (whole)
-    read.sums = {std::move(meters_), std::move(leaf_), {}, {}, {}};
-  else {
+  if (whole) {
+    read.sums.meters = std::move(meters_);
+    read.sums.kept = std::move(leaf_);
+  } else {
     end_leaf(true);
     read.sums = tree_.whole();
   }

@@ -70,7 +70,8 @@ std::string why_not_in_leaves(const CharacterizeOptions& options) {
 LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
     : options_(&options),
       spectrum_(spectrum_in_leaves(options), &workspace),
-      wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()) {}
+      wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()),
+      blocks_(block_transforms(&workspace)) {}
 
 void LeafStage::make_rate(std::vector<double>& samples) const {
   forget_wild(samples);
@@ -89,29 +90,36 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   ChannelSums sums;
   sums.meters = std::move(meters);
   const ChannelQuality found = sums.meters.quality.finish();
-  rate_.assign(samples.begin(), samples.end());
-  make_rate(rate_);
-  if (!is_phase() && options_->wanted.fit) sums.digital = digital_sums(rate_, census_of(found));
+  const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0;
+  if (!as_it_is) {
+    rate_.assign(samples.begin(), samples.end());
+    make_rate(rate_);
+    samples = rate_;
+  }
+  if (!is_phase() && options_->wanted.fit)
+    sums.digital = digital_sums(samples, census_of(found), found.missing);
   const bool clean = options_->fit.remedies && wants_fit() &&
                      found.difference_kurtosis > spike_alarm(found.samples);
   std::vector<double> cleaned;
-  if (clean) cleaned = cleaned_record(rate_, sums.record.spikes);
+  if (clean) cleaned = cleaned_record(samples, sums.record.spikes);
   sums.record.spikes.samples = found.samples;
-  if (options_->data == SampleKind::frequency) sums.types = types_of_rate(rate_, 1);
-  if (is_phase()) sums.types = lag1_noise_types(clean ? cleaned : rate_, 1);
-  for (std::vector<double>* record : {&rate_, &cleaned})
-    if (is_phase()) difference(*record);
+  if (options_->data == SampleKind::frequency) sums.types = types_of_rate(samples, 1);
+  if (is_phase()) {
+    sums.types = lag1_noise_types(clean ? cleaned : rate_, 1);
+    difference(cleaned);
+    difference(rate_);
+    samples = rate_;
+  }
   PowerPart bins;
-  // Blocks of another length are of no use: then the binner transforms its own.
-  const bool shares =
-      wants_spectrum_ && wants_fit() && spectrum_.shared_length() == PowerPart::kBlock &&
-      count_missing(rate_) == 0;
-  if (wants_spectrum_) sums.spectrum = spectrum_.take(rate_, shares ? &bins : nullptr);
+  LeafKind kind{last, options_->fit.remedies, found.missing == 0 && !is_phase()};
+  // Blocks of another length are of no use.
+  const bool shares = wants_spectrum_ && wants_fit() && kind.whole &&
+                      spectrum_.shared_length() == PowerPart::kBlock;
+  if (wants_spectrum_) sums.spectrum = spectrum_.take(samples, shares ? &bins : nullptr);
   if (!wants_fit()) return sums;
-  LeafKind kind{last, options_->fit.remedies, shares ? &bins : nullptr};
-  sums.record.plain = fitted_sums(rate_, kind);
-  kind.shared = nullptr;
-  if (clean) sums.record.cleaned = fitted_sums(cleaned, kind);
+  sums.record.plain = fitted_sums(samples, kind, blocks_, shares ? &bins : nullptr);
+  kind.whole = false;
+  if (clean) sums.record.cleaned = fitted_sums(cleaned, kind, blocks_);
   return sums;
 }
 

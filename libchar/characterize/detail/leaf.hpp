@@ -76,6 +76,7 @@ class LeafStage {
   const CharacterizeOptions* options_;
   WelchParts spectrum_;
   bool wants_spectrum_ = false;  ///< from leaves
+  WelchParts blocks_;            ///< of the fit, where the spectrum has others
   std::vector<double> rate_;            // scratch
 };
 
