@@ -16,13 +16,12 @@ namespace {
 
 class RowParser {
  public:
-  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out, Sha256Blocks* hash_blocks)
+  RowParser(std::string_view text, const Plan& plan, ParsedChunk& out)
       : begin_(text.data()),
         end_(text.data() + text.size()),
         plan_(plan),
         dialect_(*plan.dialect),
-        out_(out),
-        hash_(hash_blocks) {
+        out_(out) {
     reset();
   }
 
@@ -151,8 +150,7 @@ class RowParser {
                                                  crlf,
                                                  columns,
                                                  wanted,
-                                                 separators_,
-                                                 hash_);
+                                                 separators_);
       p += taken.consumed;
       if (lines_listed_)
         for (std::size_t i = 0; i < taken.rows; ++i)
@@ -658,7 +656,6 @@ class RowParser {
   const Plan& plan_;
   const Dialect& dialect_;
   ParsedChunk& out_;
-  Sha256Blocks* hash_;
   std::vector<double*> pointers_;
   std::size_t rows_ = 0, capacity_ = 0;
   int stamp_digits_ = -1;  // the time unit is 10^this ns
@@ -686,11 +683,8 @@ void Account::add(const Account& o) {
   stamps += o.stamps;
 }
 
-void parse_rows(std::string_view text,
-                const Plan& plan,
-                ParsedChunk& out,
-                Sha256Blocks* hash_blocks) {
-  RowParser(text, plan, out, hash_blocks).run();
+void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out) {
+  RowParser(text, plan, out).run();
 }
 
 }  // namespace libchar::csv
