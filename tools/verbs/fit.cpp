@@ -206,7 +206,8 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   add_data_options(options, verb->analysis);
   add_fit_options(options, verb->analysis);
   return [&session, verb] {
-    verb->analysis.options.reading.hash = verb->json || !verb->models.empty();  // who states it
+    verb->analysis.options.reading.hash =
+        verb->json || !verb->models.empty();  // only these state it
     run_fit(session, *verb);
   };
 }
