@@ -122,7 +122,8 @@ TEST_CASE("work: a digest is taken only where an output states it") {
       const auto value = static_cast<double>(state >> 11U) * 0x1p-53;
       out.write(reinterpret_cast<const char*>(&value), sizeof value);
     }
-    std::ofstream(log + ".json") << R"({"dtype": "f64", "endian": "little", "rate_hz": 1, "channels": [{"name": "x"}]})";
+    std::ofstream(log + ".json")
+        << R"({"dtype": "f64", "endian": "little", "rate_hz": 1, "channels": [{"name": "x"}]})";
   }
   std::filesystem::resize_file(log, std::uintmax_t{1} << 28U);
   const auto run_s = [&](std::vector<std::string> words) {
