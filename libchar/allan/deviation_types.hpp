@@ -59,8 +59,6 @@ struct DeviationRow {
   bool is_allan() const {
     return order == 2 && !reflected && family == DeviationFamily::differences;
   }
-  /// A constant rate counts; else the statistic is blind to it.
-  bool sees_offset() const { return family == DeviationFamily::interval; }
   /// Nothing states how well it is known.
   bool without_interval() const { return family == DeviationFamily::interval; }
 };

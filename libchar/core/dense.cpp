@@ -104,10 +104,6 @@ VectorXd solve_factored(const MatrixXd& l, const VectorXd& b) {
   return l.transpose().triangularView<Eigen::Upper>().solve(solve_lower(l, b));
 }
 
-VectorXd cholesky_solve(const MatrixXd& a, const VectorXd& b) {
-  return a.llt().solve(b);
-}
-
 MatrixXd cholesky_inverse(const MatrixXd& a) {
   return a.llt().solve(MatrixXd::Identity(a.rows(), a.rows()));
 }
@@ -122,14 +118,6 @@ MatrixXd complement_projector(const MatrixXd& q) {
 
 MatrixXd without_columns_of(const MatrixXd& q, const MatrixXd& y) {
   return y - q * (q.transpose() * y);
-}
-
-MatrixXd projected(const MatrixXd& p, const MatrixXd& c) {
-  return p * c * p;
-}
-
-VectorXd projected_diagonal(const MatrixXd& p, const MatrixXd& c) {
-  return (p * c * p).diagonal();
 }
 
 MatrixXd upper_times_transposed(const MatrixXd& u, const MatrixXd& b, Index rows) {

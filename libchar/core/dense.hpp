@@ -59,8 +59,7 @@ Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& l, const Eigen::MatrixXd& b);
 Eigen::VectorXd solve_lower(const Eigen::MatrixXd& l, const Eigen::VectorXd& b);
 /// (L L')^-1 b, L lower triangular.
 Eigen::VectorXd solve_factored(const Eigen::MatrixXd& l, const Eigen::VectorXd& b);
-/// A^-1 b and A^-1 of a symmetric positive definite A.
-Eigen::VectorXd cholesky_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+/// A^-1 of a symmetric positive definite A.
 Eigen::MatrixXd cholesky_inverse(const Eigen::MatrixXd& a);
 /// A^-1 b of a symmetric semidefinite A, by L D L' with pivoting.
 Eigen::VectorXd ldlt_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
@@ -69,9 +68,6 @@ Eigen::VectorXd ldlt_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd complement_projector(const Eigen::MatrixXd& q);
 /// Y - Q (Q' Y).
 Eigen::MatrixXd without_columns_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& y);
-/// P C P, and its diagonal alone.
-Eigen::MatrixXd projected(const Eigen::MatrixXd& p, const Eigen::MatrixXd& c);
-Eigen::VectorXd projected_diagonal(const Eigen::MatrixXd& p, const Eigen::MatrixXd& c);
 /// U times the transpose of the first `rows` rows of B, U upper triangular.
 Eigen::MatrixXd upper_times_transposed(const Eigen::MatrixXd& u,
                                        const Eigen::MatrixXd& b,

@@ -223,12 +223,6 @@ std::string MapReader::word(std::string_view key, const std::vector<std::string>
        did_you_mean(near));
 }
 
-std::string MapReader::word_or(std::string_view key,
-                               const std::vector<std::string>& words,
-                               std::string fallback) const {
-  return has(key) ? word(key, words) : std::move(fallback);
-}
-
 std::pair<double, double> MapReader::interval(std::string_view key) const {
   const std::vector<double> ends = numbers(key);
   if (ends.size() == 2 && ends[0] <= ends[1]) return {ends[0], ends[1]};

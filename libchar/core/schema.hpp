@@ -48,9 +48,6 @@ class MapReader {
   bool flag_or(std::string_view key, bool fallback) const;
   /// One of a few words.
   std::string word(std::string_view key, const std::vector<std::string>& words) const;
-  std::string word_or(std::string_view key,
-                      const std::vector<std::string>& words,
-                      std::string fallback) const;
   /// A list of exactly two numbers, the first below the second.
   std::pair<double, double> interval(std::string_view key) const;
   /// A list of numbers; one bare number is a list of one.

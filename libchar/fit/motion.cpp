@@ -336,9 +336,4 @@ Motion find_motion(const EventSeries& series) {
   return motion;
 }
 
-std::optional<Interval> longest_still(std::span<const double> record, double rate_hz) {
-  if (record.size() < kFewestValues) return std::nullopt;
-  return find_motion(event_series(record, rate_hz)).still_s;
-}
-
 }  // namespace libchar

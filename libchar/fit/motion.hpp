@@ -3,7 +3,6 @@
 // noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +36,5 @@ struct Motion {
 
 /// Searches a series as `event_series` makes it. A record of noise alone has motion or a change in less than one of a hundred cases.
 Motion find_motion(const EventSeries& series);
-
-/// The longest stretch of a record in which nothing moves; none where it moves throughout or is too short to say.
-std::optional<Interval> longest_still(std::span<const double> record, double rate_hz);
 
 }  // namespace libchar

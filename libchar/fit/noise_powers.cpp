@@ -15,21 +15,6 @@
 
 namespace libchar {
 
-std::vector<double> mixture_powers(const Mixture& theta,
-                                   std::uint64_t n,
-                                   std::uint64_t per_point,
-                                   double rate_hz,
-                                   const std::function<double(double)>& shape) {
-  const double hz_per_k = rate_hz / (2 * static_cast<double>(n * per_point));
-  std::vector<std::vector<double>> all = at_every_k(n, 1, [&](double k, std::span<double> out) {
-    const std::array<double, kTerms> unit = mean_unit_powers(k, n, per_point, 1 / rate_hz);
-    double power = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) power += theta[i] * unit[i];
-    out[0] = shape ? power * shape(k * hz_per_k) : power;
-  });
-  return std::move(all[0]);
-}
-
 namespace {
 
 /// Log bins as of the noise fit: single coefficients to 24, then eight an octave.

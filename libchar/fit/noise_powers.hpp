@@ -13,13 +13,6 @@ namespace libchar {
 /// E c_k^2, k = 1..n-1 at [k-1], of the orthonormal DCT-II of a series of n values, according to the noise that the caller fits to it.
 using NoisePowers = std::function<std::vector<double>(const EventSeries& series)>;
 
-/// The same of a mixture for n means of `per_point` samples; `shape` multiplies the power at a frequency in Hz (none: 1).
-std::vector<double> mixture_powers(const Mixture& theta,
-                                   std::uint64_t n,
-                                   std::uint64_t per_point,
-                                   double rate_hz,
-                                   const std::function<double(double)>& shape = {});
-
 /// The mixture of white noise, flicker and walk that fits a series from its slowest coefficients up, as far as it describes them:
 /// what `find_events` uses where the caller has no better.
 NoisePowers fitted_powers();

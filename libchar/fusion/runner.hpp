@@ -46,14 +46,6 @@ A make_algorithm(const Array& array, const Settings& settings) {
     return A(array);
 }
 
-template <class A>
-Settings default_settings() {
-  if constexpr (HasOptions<A>)
-    return Settings(A::options);
-  else
-    return Settings();
-}
-
 template <Algorithm A>
 class RunnerOf final : public Runner {
   static constexpr bool kLearns =

@@ -883,18 +883,4 @@ double known_rate_hz(const LogInfo& info) {
                "a log without time stamps needs `rate_hz`"});
 }
 
-void require_samples(const LogInfo& info, std::uint64_t needed, const std::string& purpose) {
-  if (info.samples >= needed) return;
-  throw Error({ErrorKind::numeric,
-               "E0401",
-               info.first_line > 0 ? fmt::format("{}:{}:1", info.file, info.first_line) : info.file,
-               fmt::format("{} sample{}, {} needs at least {}",
-                           info.samples,
-                           info.samples == 1 ? "" : "s",
-                           purpose,
-                           needed),
-               "",
-               ""});
-}
-
 }  // namespace libchar

@@ -65,7 +65,4 @@ void quality_warnings(const Channel& channel, const ChannelQuality& quality, War
 /// The sampling rate. Throws Error(numeric) where it is not known.
 double known_rate_hz(const LogInfo& info);
 
-/// Throws Error(numeric) when the log has fewer than `needed` samples for `purpose` ("an Allan deviation").
-void require_samples(const LogInfo& info, std::uint64_t needed, const std::string& purpose);
-
 }  // namespace libchar

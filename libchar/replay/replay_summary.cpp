@@ -179,19 +179,7 @@ const AlgorithmSummary* ReplaySummary::find(std::string_view label) const {
 }
 
 ReplaySummary parse_replay_report(std::string_view text, const std::string& path) {
-  const Document document = parse_json_document(text, path);
-  try {
-    return read(document, path);
-  } catch (const Error& error) {
-    // JSON as we read it has no places. YAML has, and JSON is nearly a part of it: the same refusal
-    // again, with line and column. It is slow, but only on the way to an error.
-    try {
-      read(parse_yaml_document(text, path), path);
-    } catch (const Error& placed) {
-      if (placed.problem().code == error.problem().code) throw placed;
-    }
-    throw;
-  }
+  return read(parse_json_document(text, path), path);
 }
 
 ReplaySummary read_replay_report(const std::string& path) {

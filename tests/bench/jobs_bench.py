@@ -53,7 +53,7 @@ def jobs(program, cores, python):
     def fread(name):
         return ["Rscript", "-e", FREAD.format(threads=cores, file=name)]
     return [
-        ("inspect, 10⁷ × 7 CSV, with SHA-256", "csv7", [program, "inspect", "csv7.csv"], "fread", fread("csv7.csv")),
+        ("inspect, 10⁷ × 7 CSV", "csv7", [program, "inspect", "csv7.csv"], "fread", fread("csv7.csv")),
         ("characterize, 10⁷ × 7 CSV, segments of 65536", "csv7",
          [program, "characterize", "csv7.csv", "-o", "out", "--force", "--quiet", "--segment", "65536"], "python", [*python, "csv7.csv", "65536"]),
         ("characterize, 10⁷ × 7 CSV, segments of N/4", "csv7",

@@ -28,9 +28,9 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/fit/detail/dct_means.hpp"
-#include "libchar/simulate/detail/kasdin.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "libchar/spectrum/fft.hpp"
+#include "tests/support/kasdin.hpp"
 
 using namespace libchar;
 
@@ -108,7 +108,7 @@ double by_spectrum(std::size_t n) {
 }
 
 double by_convolution(std::size_t n) {
-  std::vector<double> y = kasdin_filter(1, normals(n, Purpose::flicker));
+  std::vector<double> y = test::kasdin_filter(normals(n, Purpose::flicker));
   return finish_record(y);
 }
 
@@ -197,7 +197,7 @@ void error() {
     for (int i = 0; i <= 4000; ++i) {
       const double k = std::round(std::pow(n, i / 4000.0)), z = 1 / k;
       const double exact =
-          k < 100 ? kasdin_response(1, static_cast<std::size_t>(k) + 1).back()
+          k < 100 ? test::kasdin_series(1, static_cast<std::size_t>(k) + 1).back()
                   : (1 - z / 8 + z * z / 128 + 5 * z * z * z / 1024) / std::sqrt(kPi * k);
       response = std::max(response, std::fabs(flicker_response(filter, k) / exact - 1));
       variogram = std::max(

@@ -85,8 +85,6 @@ int main(int argc, char** argv) {
       entries.push_back(
           {"welch, " + what + ", all threads", [&, all] { sink += welch(x, 100, all).value[1]; }});
     }
-  entries.push_back({"log_frequency_spectrum, 256 bins",
-                     [&] { sink += log_frequency_spectrum(x, 100, Sides::one, 256).value[1]; }});
 
   for (int round = 0; round < 5; ++round)
     for (Entry& entry : entries) entry.best = std::min(entry.best, seconds(entry.work));

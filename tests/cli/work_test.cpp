@@ -1,7 +1,11 @@
 // Nothing is computed that nobody asked for: counts of work of typical requests. A count that rises here is work added: say in
 // docs/bench.md what reads it.
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +33,14 @@ Counts counts_of_report(std::vector<std::string> words) {
   words.insert(words.end(), {"-o", out});
   REQUIRE(test::run(words).code == 0);
   return counts_in(libchar::parse_json(test::slurp(out + "/report.json"), "report.json"));
+}
+
+/// Processor time of programs that ran and ended.
+double child_seconds() {
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
 }  // namespace
@@ -96,4 +108,38 @@ TEST_CASE("work: what is simulated is counted, and nothing is fitted") {
   CHECK(counts.at("simulated_samples") > 0);
   CHECK(counts.at("passes") == 1);
   CHECK(counts.size() == 2);
+}
+
+// A digest is of the whole file: of this one it takes long, and all else reads the first 4,096 of its samples.
+TEST_CASE("work: a digest is taken only where an output states it") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "x.f64").string();
+  {
+    std::ofstream out(log, std::ios::binary);
+    std::uint64_t state = 1;
+    for (int i = 0; i < 4096; ++i) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      const auto value = static_cast<double>(state >> 11U) * 0x1p-53;
+      out.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    std::ofstream(log + ".json")
+        << R"({"dtype": "f64", "endian": "little", "rate_hz": 1, "channels": [{"name": "x"}]})";
+  }
+  std::filesystem::resize_file(log, std::uintmax_t{1} << 28U);
+  const auto run_s = [&](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, {log, "--to", "4096s"});
+    const double before = child_seconds();
+    const auto ran = test::run(words);
+    INFO(words[0] << " " << ran.err);
+    CHECK(ran.code == 0);
+    if (words.back() == "--json")
+      CHECK(libchar::parse_json(ran.out, "stdout")["input"][0]["sha256"].is_string());
+    return child_seconds() - before;
+  };
+  const double hashed_s = run_s({"inspect", "--json"});
+  CHECK(run_s({"inspect"}) < hashed_s / 4);
+  CHECK(run_s({"allan"}) < hashed_s / 4);
+  CHECK(run_s({"psd"}) < hashed_s / 4);
+  CHECK(run_s({"fit"}) < hashed_s / 4);
+  CHECK(run_s({"allan", "-o", (folder / "x.csv").string()}) < hashed_s / 4);
 }

@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "libchar/core/sha256_blocks.hpp"
-
 using libchar::Sha256;
 
 namespace {
@@ -60,31 +58,3 @@ TEST_CASE("sha256: the digest does not depend on how the bytes are cut") {
     }
   }
 }
-
-#if defined(LIBCHAR_X86_64)
-namespace {
-__attribute__((LIBCHAR_SHA_TARGET)) void take_some(libchar::Sha256Blocks* blocks, int count) {
-  libchar::Sha256Lane lane(blocks);
-  for (int i = 0; i < count && lane.any(); ++i) lane.block();
-  lane.put_back();
-}
-}  // namespace
-
-TEST_CASE("sha256: a loop that hashes in between may take any number of blocks") {
-  if (!Sha256().can_interleave()) {
-    WARN("SKIPPED: this processor has no instructions for SHA-256");
-    return;
-  }
-  const std::string bytes = some_bytes(10000), whole = digest(bytes);
-  for (const int count : {0, 1, 3, 1000})
-    for (const std::size_t step :
-         {std::size_t{30}, std::size_t{64}, std::size_t{200}, std::size_t{777}}) {
-      Sha256 sha;
-      for (std::size_t at = 0; at < bytes.size(); at += step) {
-        take_some(sha.begin_interleaved(std::string_view(bytes).substr(at, step)), count);
-        sha.finish_interleaved();
-      }
-      CHECK(sha.finish() == whole);
-    }
-}
-#endif

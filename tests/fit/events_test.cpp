@@ -5,11 +5,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "libchar/core/error.hpp"
 #include "libchar/fit/detail/dct_means.hpp"
 #include "libchar/fit/events/look_elsewhere.hpp"
 #include "libchar/fit/events/regression.hpp"
+#include "libchar/fit/events/series_powers.hpp"
 #include "libchar/fit/events/shapes.hpp"
 #include "libchar/fit/events/step_scan.hpp"
 #include "libchar/fit/noise_fit.hpp"
@@ -19,6 +21,17 @@
 using namespace libchar;
 
 namespace {
+
+/// E c_k^2 of a mixture for n means of `per_point` samples.
+std::vector<double> mixture_powers(const Mixture& theta,
+                                   std::uint64_t n,
+                                   std::uint64_t per_point,
+                                   double rate_hz) {
+  return at_every_k(n, 1, [&](double k, std::span<double> out) {
+    const std::array<double, kTerms> unit = mean_unit_powers(k, n, per_point, 1 / rate_hz);
+    out[0] = std::inner_product(theta.begin(), theta.end(), unit.begin(), 0.0);
+  })[0];
+}
 
 constexpr double kEventRate = 100;
 constexpr std::size_t kEventSamples = 100'000;

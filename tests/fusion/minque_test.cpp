@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 
-#include "libchar/fusion/detail/minque_batch.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"

@@ -74,7 +74,6 @@ const std::map<std::string, std::string> kReason = {
     {"csv/083_jump_garbage.csv", "wild"},
     {"csv/086_zero_dt_all.csv", "no time axis"},
     {"csv/088_nan_time.csv", "missing time stamp"},
-    {"csv/090_one_sample.csv", "1 sample"},
     {"csv/093_all_nan.csv", "no finite value"},
     {"csv/102_long_field.csv", "128 KiB"},
     {"csv/003_no_header.csv", "no header"},
@@ -120,10 +119,11 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
       std::vector<std::string> places;
       try {
         const Recording recording = read_recording(path, options);
-        // One sample is a recording; what cannot be done with it is said by who asks for a
-        // deviation.
-        if (row.file == "csv/090_one_sample.csv")
-          require_samples(recording.info, 3, "an Allan deviation");
+        // One sample is a recording: a deviation is refused by those that compute it.
+        if (row.file == "csv/090_one_sample.csv") {
+          CHECK(recording.info.samples == 1);
+          continue;
+        }
         for (const Warning& warning : recording.info.warnings.list()) {
           verdict = "warn";
           said += one_line(warning, path) + "\n";

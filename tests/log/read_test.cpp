@@ -88,9 +88,8 @@ TEST_CASE("the hash is that of the whole file") {
   CHECK(test::read_text(text, options).info.sha256.empty());
 }
 
-TEST_CASE("the hash taken while parsing is that of the file, whatever its rows are like") {
-  // Regular rows, seventeen digits, quotes, comments, blank lines, words: in stretches of each, so
-  // that blocks are hashed while parsing, alone, and in part.
+TEST_CASE("the hash taken beside the parsing is that of the file, whatever its rows are like") {
+  // Regular rows, seventeen digits, quotes, comments, blank lines, words: in stretches of each.
   std::string text = "t,x,y\n";
   for (int i = 0; i < 20000; ++i) {
     const std::string stamp = std::to_string(i);

@@ -169,7 +169,10 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   add_data_options(options, verb->analysis);
   verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
-  return [&session, verb] { run_allan(session, *verb); };
+  return [&session, verb] {
+    verb->analysis.options.reading.hash = verb->json;  // only the document states it
+    run_allan(session, *verb);
+  };
 }
 
 }  // namespace

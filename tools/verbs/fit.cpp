@@ -205,7 +205,11 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_fit_options(options, verb->analysis);
-  return [&session, verb] { run_fit(session, *verb); };
+  return [&session, verb] {
+    verb->analysis.options.reading.hash =
+        verb->json || !verb->models.empty();  // only these state it
+    run_fit(session, *verb);
+  };
 }
 
 }  // namespace

@@ -77,7 +77,10 @@ std::function<void()> inspect_options(VerbOptions& options, Session& session) {
       .required();
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->reading);
-  return [&session, verb] { run_inspect(session, *verb); };
+  return [&session, verb] {
+    verb->reading.hash = verb->json;  // only the document states it
+    run_inspect(session, *verb);
+  };
 }
 
 }  // namespace

@@ -149,7 +149,10 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       0,
       1000000);
   add_reading_options(options, session, verb->options.reading);
-  return [&session, verb] { run_psd(session, *verb); };
+  return [&session, verb] {
+    verb->options.reading.hash = verb->json;  // only the document states it
+    run_psd(session, *verb);
+  };
 }
 
 }  // namespace

@@ -57,14 +57,12 @@ void TiltKalmanFilter::update(double gravity) {
   const double gain_angle = p00() / all, gain_bias = p01() / all;
   angle_ = wrapped(angle_ + gain_angle * innovation);
   bias_ += gain_bias * innovation;
-  normalised_square_ = innovation * (innovation / all);
   e_ *= own / all;
   c_ *= r_ / own;
   d_ *= r_ / own;
 }
 
 double TiltKalmanFilter::step(const TiltSample& sample) {
-  normalised_square_ = std::nan("");
   hear(sample.rate);
   if (std::isnan(angle_)) {
     d_ = r_;

@@ -34,8 +34,6 @@ class TiltKalmanFilter {
   double p00() const { return d_ + c_ * c_ * e_; }
   double p01() const { return c_ * e_; }
   double p11() const { return e_; }
-  /// Square of the last innovation over its variance; NaN when there was none.
-  double normalised_square() const { return normalised_square_; }
 
  private:
   void predict();
@@ -50,7 +48,6 @@ class TiltKalmanFilter {
   double rate_ = std::numeric_limits<double>::quiet_NaN();  // the last one there was
   double change_square_ = 0, changes_ = 0;                  // of the rate, from instant to instant
   double held_ = 0;                                         // instants since then
-  double normalised_square_ = 0;
 };
 
 struct TiltKalman {

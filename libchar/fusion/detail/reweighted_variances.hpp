@@ -70,7 +70,6 @@ class ReweightedVariances {
   Estimate estimate() const {
     return Estimate::scalar(x_, started_ ? fused_ : std::numeric_limits<double>::quiet_NaN());
   }
-  double fused_variance() const { return fused_; }
   /// Of a channel that was not in use: sample less fused value, and its variance.
   double innovation(std::size_t, double sample) const { return sample - x_; }
   double innovation_variance(std::size_t i) const { return v_[i] + fused_; }

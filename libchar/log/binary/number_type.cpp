@@ -168,12 +168,6 @@ std::optional<NumberType> find_number_type(std::string_view name) {
   return std::nullopt;
 }
 
-std::string number_type_names() {
-  std::string names;
-  for (const TypeName& type : kTypes) names += (names.empty() ? "" : ", ") + std::string(type.name);
-  return names;
-}
-
 std::uint64_t read_numbers(const std::byte* first,
                            std::size_t stride,
                            NumberFormat format,

@@ -20,7 +20,6 @@ struct NumberFormat {
 std::size_t size_of(NumberType type);
 std::string_view name_of(NumberType type);  ///< "f64", "i16"…
 std::optional<NumberType> find_number_type(std::string_view name);
-std::string number_type_names();  ///< "f16, f32, …", for messages
 bool is_float(NumberType type);
 
 /// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed).

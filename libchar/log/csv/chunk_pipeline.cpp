@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "libchar/core/sha256_blocks.hpp"
 #include "libchar/core/thread_limit.hpp"
 
 namespace libchar::csv {
@@ -41,46 +40,40 @@ void ChunkPipeline::stop() {
   driver_.join();
 }
 
-// While hashing goes along with parsing there is work for one thread: further ones would only wait for it, and TBB's wait busily.
 void ChunkPipeline::drive(int threads) {
   try {
-    if (chunks_.interleaves_hash()) tbb::task_arena(1).execute([this] { run(true); });
     // TBB warns on stderr of more threads than there are cores.
-    if (!stop_)
-      tbb::task_arena(std::min(threads, processors_given())).execute([this] { run(false); });
+    tbb::task_arena(std::min(threads, processors_given())).execute([this] { run(); });
   } catch (...) {  // no memory for a task
     failure_ = std::current_exception();
     done_.push(nullptr);
   }
 }
 
-void ChunkPipeline::run(bool while_usual) {
+void ChunkPipeline::run() {
   using tbb::filter_mode;
   tbb::parallel_pipeline(
-      while_usual ? 1 : items_.size(),
+      items_.size(),
       tbb::make_filter<void, Item*>(filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-        Item* item = nullptr;
-        if (!while_usual || usual_) item = read();
+        Item* const item = read();
         if (item == nullptr) flow.stop();
         return item;
       }) & tbb::make_filter<Item*, Item*>(filter_mode::serial_in_order, [&](Item* item) {
-        parse_while_hashing(*item);
+        chunks_.hash(item->raw);
         return item;
       }) & tbb::make_filter<Item*, Item*>(filter_mode::parallel, [&](Item* item) {
-        if (!item->parsed) parse(*item, nullptr);
+        parse(*item);
         return item;
       }) & tbb::make_filter<Item*, void>(filter_mode::serial_in_order, [&](Item* item) {
-        hand_out(*item);
+        done_.push(item);
       }));
 }
 
-// The next chunk, as soon as an item is free: so neither the parsed chunks nor those that wait for their hash pile up.
+// The next chunk, as soon as an item is free: so chunks that the caller has not taken do not pile up.
 ChunkPipeline::Item* ChunkPipeline::read() {
   Item* item = nullptr;
   if (!stop_) item = free_.pop();
   if (item == nullptr || stop_) return nullptr;
-  item->sequence = read_++;
-  item->parsed = item->hashed = false;
   try {
     item->last = !chunks_.next(item->raw);
   } catch (...) {
@@ -91,37 +84,14 @@ ChunkPipeline::Item* ChunkPipeline::read() {
   return item;
 }
 
-// Where the processor hashes beside other work, the hash is nearly free inside the parsing; that takes one chunk after the other,
-// and pays only while their rows are parsed that way. Otherwise the chunk goes on to be parsed beside others.
-void ChunkPipeline::parse_while_hashing(Item& item) {
-  if (!chunks_.interleaves_hash() || hashed_ != item.sequence) return;
-  if (!std::exchange(usual_, true)) return;
-  Sha256Blocks* const hash = chunks_.begin_hash(item.raw);
-  parse(item, hash);
-  usual_ = 2 * (hash->end - hash->next) <= static_cast<std::ptrdiff_t>(item.raw.size);
-  chunks_.end_hash(item.raw);
-  item.hashed = true;
-  ++hashed_;
-}
-
-void ChunkPipeline::parse(Item& item, Sha256Blocks* hash) const {
-  item.parsed = true;
+void ChunkPipeline::parse(Item& item) const {
   if (item.last) return;
   try {
-    parse_rows(item.raw.text(), plan_, item.chunk, hash);
+    parse_rows(item.raw.text(), plan_, item.chunk);
   } catch (...) {
     item.failure = std::current_exception();
     item.last = true;
   }
-}
-
-void ChunkPipeline::hand_out(Item& item) {
-  if (!item.hashed) {
-    chunks_.hash(item.raw);
-    ++hashed_;
-  }
-  item.raw.hash_from = item.raw.hash_to = item.raw.nuls_after = 0;
-  done_.push(&item);
 }
 
 }  // namespace libchar::csv

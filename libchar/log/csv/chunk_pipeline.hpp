@@ -1,6 +1,6 @@
 #pragma once
-// Chunks of a CSV file parsed side by side and handed out in file order, with the hash of the file taken in order beside the
-// parsing: a pipeline of TBB that a thread drives ahead of the caller.
+// Chunks of a CSV file parsed in parallel and handed out in file order; a stage of its own hashes them in that order. A thread drives
+// the pipeline of TBB ahead of the caller.
 
 #include <tbb/parallel_pipeline.h>
 
@@ -67,27 +67,19 @@ class ChunkPipeline {
   struct Item {
     RawChunk raw;
     ParsedChunk chunk;
-    std::uint64_t sequence = 0;
     bool last = false;  // nothing stands behind it: the end of the file, or a failure
-    bool parsed = false;
-    bool hashed = false;
     std::exception_ptr failure;
   };
   void drive(int threads);
-  void run(bool while_usual);
+  void run();
   Item* read();
-  void parse_while_hashing(Item& item);
-  void parse(Item& item, Sha256Blocks* hash) const;
-  void hand_out(Item& item);
+  void parse(Item& item) const;
 
   ChunkReader& chunks_;
   const Plan& plan_;
   std::vector<Item> items_;        // as many as may be under way or wait for the caller
   FixedQueue<Item*> free_, done_;  // nullptr in free_: the end is asked for
-  std::uint64_t read_ = 0;
-  std::atomic<std::uint64_t> hashed_ = 0;
   std::atomic<bool> stop_ = false;
-  bool usual_ = true;  // the chunk before was mostly hashed between the steps of its parsing
   bool ended_ = false;
   std::exception_ptr failure_;  // of the pipeline itself
   std::thread driver_;          // the last: it uses all of the above

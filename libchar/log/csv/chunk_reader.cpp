@@ -37,7 +37,8 @@ std::size_t last_line_end(const char* text, std::size_t from, std::size_t size) 
 }  // namespace
 
 ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
-    : path_(std::move(path)), block_(std::max<std::size_t>(1, block_bytes)), hashing_(hash) {
+    : path_(std::move(path)), block_(std::max<std::size_t>(1, block_bytes)) {
+  if (hash) sha_.emplace();
   if (path_ == "-") {
     descriptor_ = ::dup(STDIN_FILENO);
     if (descriptor_ < 0)
@@ -95,7 +96,7 @@ std::size_t ChunkReader::read_stored(char* to, std::size_t n) {
   std::memcpy(to, front_.data(), done);
   front_.erase(0, done);
   if (done == 0) done = read_file(to, n);
-  if (hashing_) sha_.update({to, done});
+  if (sha_) sha_->update({to, done});
   stored_ += done;
   return done;
 }
@@ -140,7 +141,7 @@ std::string_view ChunkReader::head() {
     char one = 0;
     if (read_some(&one, 1) == 1) head_.push_back(one);
   }
-  if (hashing_ && !packed()) sha_.update(head_);
+  if (sha_ && !packed()) sha_->update(head_);
   return head_;
 }
 
@@ -156,12 +157,12 @@ std::size_t ChunkReader::fill(char* to, std::size_t n, std::size_t& from_head) {
 }
 
 bool ChunkReader::next(RawChunk& chunk) {
+  chunk.hash_from = chunk.hash_to = chunk.nuls_after = 0;
   if (done_) return false;
-  std::size_t size = carry_.size(), cut = 0, from_head = 0;
+  const std::size_t carried = carry_.size();
+  std::size_t size = carried, cut = 0, from_head = 0;
   chunk.bytes.resize(std::max(chunk.bytes.size(), size + block_ + kPadding));
   std::copy(carry_.begin(), carry_.end(), chunk.bytes.begin());
-  chunk.hash_from = size;
-  chunk.nuls_after = 0;
   chunk.offset = offset_;
   carry_.clear();
   while (cut == 0 && !done_) {
@@ -174,7 +175,7 @@ bool ChunkReader::next(RawChunk& chunk) {
     done_ = (ended_ && taken_ >= head_.size()) || size > kMaxLine + block_;
     cut = done_ ? size : last_line_end(chunk.bytes.data(), searched, size);
   }
-  chunk.hash_from += from_head;
+  chunk.hash_from = carried + from_head;
   chunk.hash_to = size;
   std::fill_n(chunk.bytes.begin() + static_cast<std::ptrdiff_t>(size), kPadding, '\0');
   carry_.assign(chunk.bytes.begin() + static_cast<std::ptrdiff_t>(cut),
@@ -217,39 +218,26 @@ void ChunkReader::drop_cut_line(RawChunk& chunk) {
   chunk.size = whole;
 }
 
-Sha256Blocks* ChunkReader::begin_hash(const RawChunk& chunk) {
-  const std::string_view fresh(chunk.bytes.data() + chunk.hash_from,
-                               chunk.hash_to - chunk.hash_from);
-  if (interleaves_hash()) return sha_.begin_interleaved(fresh);
-  if (hashing_ && !packed()) sha_.update(fresh);
-  return nullptr;
-}
-
-void ChunkReader::end_hash(const RawChunk& chunk) {
-  if (!hashing_ || packed()) return;
-  if (interleaves_hash()) sha_.finish_interleaved();
+void ChunkReader::hash(const RawChunk& chunk) {
+  if (!sha_ || packed()) return;
+  sha_->update({chunk.bytes.data() + chunk.hash_from, chunk.hash_to - chunk.hash_from});
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
     const std::size_t n = std::min<std::uint64_t>(left, sizeof kZeros);
-    sha_.update({kZeros, n});
+    sha_->update({kZeros, n});
     left -= n;
   }
 }
 
-void ChunkReader::hash(const RawChunk& chunk) {
-  begin_hash(chunk);
-  end_hash(chunk);
-}
-
 std::string ChunkReader::finish_hash() {
-  if (!hashing_) return "";
+  if (!sha_) return "";
   if (!(packed() ? file_ended_ : ended_) && !regular_) return "";
   std::vector<char> buffer(std::size_t{1} << 18U);
   while (packed() && read_stored(buffer.data(), buffer.size()) > 0) {
   }
   while (!packed() && !ended_)
-    sha_.update({buffer.data(), read_some(buffer.data(), buffer.size())});
-  return sha_.finish();
+    sha_->update({buffer.data(), read_some(buffer.data(), buffer.size())});
+  return sha_->finish();
 }
 
 }  // namespace libchar::csv

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,12 +47,8 @@ class ChunkReader {
   }
   /// The next chunk; false when there is none.
   bool next(RawChunk& chunk);
+  /// Chunks in their order, each once, whatever `next` said of it. Another thread may read the next one meanwhile.
   void hash(const RawChunk& chunk);
-  /// The same in two steps, for a parser that hashes between them; nullptr where that cannot
-  /// be.
-  bool interleaves_hash() const { return hashing_ && !packed() && sha_.can_interleave(); }
-  Sha256Blocks* begin_hash(const RawChunk& chunk);
-  void end_hash(const RawChunk& chunk);
   /// Reads on to the end of a regular file for its hash; "" when a pipe was not read to its end or
   /// no hash was asked for.
   std::string finish_hash();
@@ -79,15 +76,14 @@ class ChunkReader {
 
   std::string path_;
   std::size_t block_;
-  bool hashing_;
   int descriptor_ = -1;
   bool regular_ = false, ended_ = false, done_ = false;
   std::uint64_t size_ = 0, read_ = 0, offset_ = 0, nuls_ = 0, cut_bytes_ = 0;
   std::string head_;
-  std::size_t taken_ = 0;    // of the head
-  std::vector<char> carry_;  // an unfinished line
-  Sha256 sha_;
-  std::string front_;  // bytes that were looked at and not yet given out
+  std::size_t taken_ = 0;      // of the head
+  std::vector<char> carry_;    // an unfinished line
+  std::optional<Sha256> sha_;  // none: not asked for
+  std::string front_;          // bytes that were looked at and not yet given out
   bool file_ended_ = false;
   std::atomic<std::uint64_t> stored_ = 0;
   std::unique_ptr<Unpacker> unpacker_;

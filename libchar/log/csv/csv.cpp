@@ -260,14 +260,10 @@ class CsvSource final : public RowSource {
   }
 
   bool take_inline(ParsedChunk& chunk) {
-    if (!chunks_.next(raw_)) {
-      chunks_.hash(raw_);
-      raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
-      return false;
-    }
-    parse_rows(raw_.text(), plan_, chunk, chunks_.begin_hash(raw_));
-    chunks_.end_hash(raw_);
-    raw_.hash_from = raw_.hash_to = raw_.nuls_after = 0;
+    const bool any = chunks_.next(raw_);
+    chunks_.hash(raw_);
+    if (!any) return false;
+    parse_rows(raw_.text(), plan_, chunk);
     current_offset_ = raw_.offset;
     return true;
   }

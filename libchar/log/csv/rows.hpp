@@ -11,10 +11,6 @@
 #include "libchar/log/csv/dialect.hpp"
 #include "libchar/log/detail/row_source.hpp"
 
-namespace libchar {
-struct Sha256Blocks;
-}
-
 namespace libchar::csv {
 
 inline constexpr std::size_t kPadding = 64;  // readable bytes behind a chunk's text
@@ -82,10 +78,7 @@ struct ParsedChunk {
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).
 /// `text` must be readable for kPadding bytes past its end. After a problem the rows before it are
-/// kept and the rest is not looked at. Blocks of `hash_blocks` may be hashed on the way.
-void parse_rows(std::string_view text,
-                const Plan& plan,
-                ParsedChunk& out,
-                Sha256Blocks* hash_blocks = nullptr);
+/// kept and the rest is not looked at.
+void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out);
 
 }  // namespace libchar::csv

@@ -31,10 +31,9 @@ Sample sample_lines(std::string_view head,
                     bool whole,
                     std::size_t offset,
                     std::uint64_t number,
-                    const std::string& file,
-                    std::size_t most) {
+                    const std::string& file) {
   Sample sample;
-  while (offset < head.size() && sample.lines.size() < most) {
+  while (offset < head.size() && sample.lines.size() < kSample) {
     Line line = line_at(head, offset, number);
     if (line.end == LineEnd::none && !whole) {
       if (sample.lines.empty())  // else the row parser tells

@@ -5,8 +5,7 @@
 
 namespace libchar::csv {
 
-inline constexpr std::size_t kSample = 100;         ///< lines studied
-inline constexpr std::size_t kLongPreamble = 2000;  ///< where those hold no table
+inline constexpr std::size_t kSample = 100;  ///< lines studied
 
 struct Sample {
   std::vector<Line>
@@ -14,13 +13,12 @@ struct Sample {
   std::vector<Line> comments;  ///< before the first of them
 };
 
-/// The first `most` lines of `head` (all of the file when `whole`) from `offset` on, whose physical line has this
+/// The first kSample lines of `head` (all of the file when `whole`) from `offset` on, whose physical line has this
 /// `number`. Throws Error(input) when not even the first line ends in the head.
 Sample sample_lines(std::string_view head,
                     bool whole,
                     std::size_t offset,
                     std::uint64_t number,
-                    const std::string& file,
-                    std::size_t most = kSample);
+                    const std::string& file);
 
 }  // namespace libchar::csv

@@ -9,9 +9,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "libchar/core/sha256_blocks.hpp"
+#include "libchar/core/processor.hpp"
 
 #if defined(LIBCHAR_X86_64)
+#include <immintrin.h>
+
+#define LIBCHAR_AVX2 target("avx2,bmi,bmi2,popcnt")
+#define LIBCHAR_AVX2_INLINE __attribute__((LIBCHAR_AVX2, always_inline))
 
 namespace libchar::vector_parsing {
 
@@ -65,7 +69,7 @@ struct Field {
   bool regular = false;
 };
 
-LIBCHAR_SHA_INLINE inline Field read_field(const char* text, std::uint32_t length) {
+LIBCHAR_AVX2_INLINE inline Field read_field(const char* text, std::uint32_t length) {
   const __m128i raw = _mm_loadu_si128(reinterpret_cast<const __m128i*>(text));
   const std::uint32_t inside = _bzhi_u32(0xFFFF, length);
   const std::uint32_t points =

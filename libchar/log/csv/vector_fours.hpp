@@ -1,6 +1,5 @@
 #pragma once
-// Four decimal numbers without exponent at once, by AVX2, and the hash of the file beside them
-// (sha256_blocks.hpp).
+// Four decimal numbers without exponent at once, by AVX2.
 
 #include "libchar/log/csv/vector_field.hpp"
 
@@ -21,7 +20,7 @@ inline constexpr auto kDivisors = [] {
   return table;
 }();
 
-LIBCHAR_SHA_INLINE inline __m256i both(const void* low, const void* high) {
+LIBCHAR_AVX2_INLINE inline __m256i both(const void* low, const void* high) {
   const __m128i first = _mm_loadu_si128(static_cast<const __m128i*>(low)),
                 second = _mm_loadu_si128(static_cast<const __m128i*>(high));
   return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
@@ -35,11 +34,10 @@ struct FourFields {
   std::int32_t room = 0;      // negative when a field has more than 16 characters
 };
 
-template <bool kLast, class Aside>
-LIBCHAR_SHA_INLINE inline void locate_fours(const Column& column,
-                                            const std::uint32_t* stop,
-                                            FourFields& at,
-                                            Aside&& aside) {
+template <bool kLast>
+LIBCHAR_AVX2_INLINE inline void locate_fours(const Column& column,
+                                             const std::uint32_t* stop,
+                                             FourFields& at) {
   const char* const text = column.text;
   const std::uint32_t separator = static_cast<unsigned char>(kLast ? '\n' : column.delimiter);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -55,7 +53,6 @@ LIBCHAR_SHA_INLINE inline void locate_fours(const Column& column,
         31U;
     at.begin[k] = text + from + at.sign[k];
     at.length[k] = to - from - at.sign[k];
-    aside(k);
     at.room |= 16 - static_cast<std::int32_t>(at.length[k]);
   }
 }
@@ -65,11 +62,9 @@ struct TwoFields {
   __m256i fours, strange;
 };
 
-template <class Aside>
-LIBCHAR_SHA_INLINE inline TwoFields digits_of_two(const char* const* begin,
-                                                  const std::uint32_t* length,
-                                                  std::uint32_t* distance,
-                                                  Aside&& aside) {
+LIBCHAR_AVX2_INLINE inline TwoFields digits_of_two(const char* const* begin,
+                                                   const std::uint32_t* length,
+                                                   std::uint32_t* distance) {
   const __m256i raw = both(begin[0], begin[1]);
   const auto points = static_cast<std::uint32_t>(
       _mm256_movemask_epi8(_mm256_cmpeq_epi8(raw, _mm256_set1_epi8('.'))));
@@ -80,7 +75,6 @@ LIBCHAR_SHA_INLINE inline TwoFields digits_of_two(const char* const* begin,
     distance[i] = safe - point;
     gather[i] = kGather.index[point][safe];
   }
-  aside();
   const __m256i packed =
       _mm256_shuffle_epi8(_mm256_sub_epi8(raw, _mm256_set1_epi8('0')), both(gather[0], gather[1]));
   const __m256i pairs = _mm256_maddubs_epi16(packed, _mm256_set1_epi16(0x010A));  // 10 a + b
@@ -90,32 +84,26 @@ LIBCHAR_SHA_INLINE inline TwoFields digits_of_two(const char* const* begin,
 
 /// Four fields of a column at `stop` to four values: they share most instructions, and what is
 /// wrong with one of them shows at the end; then there is nothing stored and the answer is false.
-/// Calls aside(0) to aside(7) on the way, in this order.
-template <bool kLast, class Aside>
-LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
-                                           const std::uint32_t* stop,
-                                           double* values,
-                                           std::uint32_t& fractional,
-                                           Aside&& aside) {
+template <bool kLast>
+LIBCHAR_AVX2_INLINE inline bool four_fields(const Column& column,
+                                            const std::uint32_t* stop,
+                                            double* values,
+                                            std::uint32_t& fractional) {
   FourFields at;
-  locate_fours<kLast>(column, stop, at, aside);
+  locate_fours<kLast>(column, stop, at);
   std::uint32_t distance[4];
-  const TwoFields low_two =
-      digits_of_two(at.begin, at.length, distance, [&]() LIBCHAR_SHA_INLINE { aside(4); });
-  const TwoFields high_two = digits_of_two(
-      at.begin + 2, at.length + 2, distance + 2, [&]() LIBCHAR_SHA_INLINE { aside(5); });
+  const TwoFields low_two = digits_of_two(at.begin, at.length, distance);
+  const TwoFields high_two = digits_of_two(at.begin + 2, at.length + 2, distance + 2);
   const __m256i anything = _mm256_or_si256(low_two.strange, high_two.strange);
   // 32-bit numbers below 10^8: high and low of fields 0 and 2, then of 1 and 3; put in order.
   const __m256i eights = _mm256_madd_epi16(_mm256_packus_epi32(low_two.fours, high_two.fours),
                                            _mm256_set1_epi32(0x00012710));
-  aside(6);
   const __m256i ordered =
       _mm256_permutevar8x32_epi32(eights, _mm256_setr_epi32(0, 4, 2, 6, 1, 5, 3, 7));
   const __m256d high = _mm256_cvtepi32_pd(_mm256_castsi256_si128(ordered)),
                 low = _mm256_cvtepi32_pd(_mm256_extracti128_si256(ordered, 1));
   // Exact: 10^8 is 2^8 times a number of 19 bits, and the sum stays below 2^53.
   const __m256d whole = _mm256_add_pd(_mm256_mul_pd(high, _mm256_set1_pd(1e8)), low);
-  aside(7);
   const auto divisor = [&](std::size_t k) __attribute__((always_inline)) {
     return kDivisors[distance[k] + 32 * at.sign[k]];
   };
@@ -132,37 +120,16 @@ LIBCHAR_SHA_INLINE inline bool four_fields(const Column& column,
   return true;
 }
 
-/// Whole fours of rows, as long as all fields are regular; a block of the hash is taken with every
-/// two of them. Row 0 must not be among the rows. Returns the first row that is left.
+/// Whole fours of rows, as long as all fields are regular. Row 0 must not be among the rows. Returns the first row that is left.
 template <bool kLast>
-LIBCHAR_SHA_INLINE inline std::size_t take_fours(const Column& column,
-                                                 std::size_t row,
-                                                 std::size_t last,
-                                                 double* values,
-                                                 std::uint32_t& fractional,
-                                                 Sha256Lane& hash) {
-  const std::size_t width = column.width;
-  const std::uint32_t* stop = column.stops + row * width + column.index;
-  for (; row + 8 <= last && hash.any(); row += 8, stop += 8 * width) {
-    const bool good = four_fields<kLast>(
-        column, stop, values + row, fractional, [&](std::size_t i) LIBCHAR_SHA_INLINE {
-          hash.step(i);
-        });
-    if (__builtin_expect(!good, 0)) {
-      for (std::size_t i = 8; i < 16; ++i) hash.step(i);
-      return row;
-    }
-    if (!four_fields<kLast>(column,
-                            stop + 4 * width,
-                            values + row + 4,
-                            fractional,
-                            [&](std::size_t i) LIBCHAR_SHA_INLINE { hash.step(8 + i); }))
-      return row + 4;
-  }
-  for (; row + 4 <= last; row += 4, stop += 4 * width)
-    if (!four_fields<kLast>(
-            column, stop, values + row, fractional, [](std::size_t) LIBCHAR_SHA_INLINE {}))
-      break;
+LIBCHAR_AVX2_INLINE inline std::size_t take_fours(const Column& column,
+                                                  std::size_t row,
+                                                  std::size_t last,
+                                                  double* values,
+                                                  std::uint32_t& fractional) {
+  const std::uint32_t* stop = column.stops + row * column.width + column.index;
+  for (; row + 4 <= last; row += 4, stop += 4 * column.width)
+    if (!four_fields<kLast>(column, stop, values + row, fractional)) break;
   return row;
 }
 

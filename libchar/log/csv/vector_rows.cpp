@@ -1,10 +1,6 @@
 // Two stages, after the idea of Langdale & Lemire, "Parsing gigabytes of JSON per second" (VLDB J.
 // 28, 2019): first the positions of all separators as bit masks of 64 bytes, then each field on its
 // own, so that no field waits for the end of the one before it.
-//
-// Both stages leave most of the processor's arithmetic idle, and so does SHA-256, which is one long
-// chain. Where the bytes of the file wait for their hash, its blocks are hashed in between: with every eight
-// values (vector_fours.hpp), and here and there on the way.
 
 #include "libchar/log/csv/vector_rows.hpp"
 
@@ -23,23 +19,16 @@ using namespace vector_parsing;
 
 namespace {
 
-// Separators of four times 64 bytes, or four stamps, are about the work that hides half a block of
-// the hash.
-constexpr std::size_t kAside = 4;
-
 /// Offsets of the delimiters and line feeds of `text` into `positions` (grown as needed), until
 /// there are `enough`; returns their number.
-__attribute__((LIBCHAR_SHA_TARGET)) std::size_t find_separators(
-    std::string_view text,
-    char delimiter,
-    std::size_t enough,
-    std::vector<std::uint32_t>& positions,
-    Sha256Lane& hash) {
+__attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text,
+                                                          char delimiter,
+                                                          std::size_t enough,
+                                                          std::vector<std::uint32_t>& positions) {
   const __m256i wanted = _mm256_set1_epi8(delimiter), line_feed = _mm256_set1_epi8('\n');
   std::size_t count = 0;
   for (std::size_t at = 0; at < text.size() && count < enough; at += 64) {
     if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
-    if (at % (kAside * 64) == 0 && hash.any()) hash.block();
     std::uint64_t mask = 0;
     for (unsigned half = 0; half < 2; ++half) {
       const __m256i bytes =
@@ -99,10 +88,10 @@ __attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin
 /// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the
 /// first row that it refuses.
 template <bool kLast, class Take>
-LIBCHAR_SHA_INLINE inline std::size_t take_fields(const Column column,
-                                                  std::size_t first,
-                                                  const std::size_t last,
-                                                  Take take) {
+LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column,
+                                                   std::size_t first,
+                                                   const std::size_t last,
+                                                   Take take) {
   const char* const text = column.text;
   const std::size_t width = column.width;
   const char separator = kLast ? '\n' : column.delimiter;
@@ -134,26 +123,25 @@ LIBCHAR_SHA_INLINE inline std::size_t take_fields(const Column column,
 }
 
 template <class Take>
-LIBCHAR_SHA_INLINE inline std::size_t take_column(const Column& column,
-                                                  std::size_t first,
-                                                  std::size_t last,
-                                                  Take take) {
+LIBCHAR_AVX2_INLINE inline std::size_t take_column(const Column& column,
+                                                   std::size_t first,
+                                                   std::size_t last,
+                                                   Take take) {
   return column.index + 1 == column.width ? take_fields<true>(column, first, last, take)
                                           : take_fields<false>(column, first, last, take);
 }
 
-__attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column,
-                                                            std::size_t first,
-                                                            std::size_t last,
-                                                            const VectorColumn& to,
-                                                            Sha256Lane& hash) {
+__attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column,
+                                                      std::size_t first,
+                                                      std::size_t last,
+                                                      const VectorColumn& to) {
   double* const values = to.values;
   std::uint32_t behind = 0;  // of all fields together
   const auto one = [&](std::size_t row,
                        const char* begin,
                        const char* end,
                        std::uint32_t negative,
-                       const Field& field) LIBCHAR_SHA_INLINE {
+                       const Field& field) LIBCHAR_AVX2_INLINE {
     if (__builtin_expect(!field.regular || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
@@ -171,9 +159,8 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column
   while (row < last) {
     if (row > 0) {
       const std::size_t before = row;
-      row = column.index + 1 == column.width
-                ? take_fours<true>(column, row, last, values, behind, hash)
-                : take_fours<false>(column, row, last, values, behind, hash);
+      row = column.index + 1 == column.width ? take_fours<true>(column, row, last, values, behind)
+                                             : take_fours<false>(column, row, last, values, behind);
       alone = row > before ? 4 : 64;  // a column of seventeen digits is not asked every time
     }
     const std::size_t end = std::min(last, row + alone);
@@ -184,11 +171,10 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_values(const Column& column
   return row;
 }
 
-__attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_stamps(const Column& column,
-                                                            std::size_t first,
-                                                            std::size_t last,
-                                                            const VectorColumn& to,
-                                                            Sha256Lane& hash) {
+__attribute__((LIBCHAR_AVX2)) std::size_t take_stamps(const Column& column,
+                                                      std::size_t first,
+                                                      std::size_t last,
+                                                      const VectorColumn& to) {
   return take_column(
       column,
       first,
@@ -197,8 +183,7 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_stamps(const Column& column
           const char* begin,
           const char* end,
           std::uint32_t negative,
-          const Field& field) LIBCHAR_SHA_INLINE {
-        if (row % kAside == 0 && hash.any()) hash.block();
+          const Field& field) LIBCHAR_AVX2_INLINE {
         const int shift = to.stamp_digits - static_cast<int>(field.behind);
         if (__builtin_expect(field.regular && shift >= 0, 1))
           return !__builtin_mul_overflow(negative ? -field.digits : field.digits,
@@ -210,31 +195,29 @@ __attribute__((LIBCHAR_SHA_TARGET)) std::size_t take_stamps(const Column& column
       });
 }
 
-__attribute__((LIBCHAR_SHA_TARGET)) std::size_t check_fields(const Column& column,
-                                                             std::size_t first,
-                                                             std::size_t last) {
+__attribute__((LIBCHAR_AVX2)) std::size_t check_fields(const Column& column,
+                                                       std::size_t first,
+                                                       std::size_t last) {
   return take_column(
       column,
       first,
       last,
       [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field)
-          LIBCHAR_SHA_INLINE { return field.regular || read_value_slowly(begin, end).good; });
+          LIBCHAR_AVX2_INLINE { return field.regular || read_value_slowly(begin, end).good; });
 }
 
 constexpr std::size_t kBatch =
     128;  // rows read column by column while their text is in the first-level cache
 
-__attribute__((LIBCHAR_SHA_TARGET)) VectorRows parse(std::string_view text,
-                                                     char delimiter,
-                                                     bool crlf,
-                                                     std::span<const VectorColumn> columns,
-                                                     std::size_t max_rows,
-                                                     std::vector<std::uint32_t>& scratch,
-                                                     Sha256Blocks* hash_blocks) {
-  Sha256Lane hash(hash_blocks);
+__attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
+                                               char delimiter,
+                                               bool crlf,
+                                               std::span<const VectorColumn> columns,
+                                               std::size_t max_rows,
+                                               std::vector<std::uint32_t>& scratch) {
   const std::size_t width = columns.size();
   const std::size_t rows =
-      std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch, hash) / width);
+      std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
   std::size_t good = 0;
   for (std::size_t first = 0; first < rows; first = good) {
     good = std::min(rows, first + kBatch);
@@ -243,10 +226,10 @@ __attribute__((LIBCHAR_SHA_TARGET)) VectorRows parse(std::string_view text,
       const Column column{text.data(), scratch.data(), width, c, delimiter, crlf};
       switch (columns[c].use) {
         case VectorColumn::Use::value:
-          good = take_values(column, first, good, columns[c], hash);
+          good = take_values(column, first, good, columns[c]);
           break;
         case VectorColumn::Use::stamp:
-          good = take_stamps(column, first, good, columns[c], hash);
+          good = take_stamps(column, first, good, columns[c]);
           break;
         case VectorColumn::Use::skip:
           good = check_fields(column, first, good);
@@ -255,7 +238,6 @@ __attribute__((LIBCHAR_SHA_TARGET)) VectorRows parse(std::string_view text,
     }
     if (good != whole) break;
   }
-  hash.put_back();
   return {good, good == 0 ? 0 : scratch[good * width - 1] + std::size_t{1}};
 }
 
@@ -266,12 +248,11 @@ VectorRows parse_vector_rows(std::string_view text,
                              bool crlf,
                              std::span<const VectorColumn> columns,
                              std::size_t max_rows,
-                             std::vector<std::uint32_t>& scratch,
-                             Sha256Blocks* hash_blocks) {
+                             std::vector<std::uint32_t>& scratch) {
   static const bool capable = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
                               __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
   if (!capable || columns.empty()) return {};
-  return parse(text, delimiter, crlf, columns, max_rows, scratch, hash_blocks);
+  return parse(text, delimiter, crlf, columns, max_rows, scratch);
 }
 
 #else
@@ -281,8 +262,7 @@ VectorRows parse_vector_rows(std::string_view,
                              bool,
                              std::span<const VectorColumn>,
                              std::size_t,
-                             std::vector<std::uint32_t>&,
-                             Sha256Blocks*) {
+                             std::vector<std::uint32_t>&) {
   return {};
 }
 

@@ -9,8 +9,6 @@
 
 namespace libchar {
 
-struct Sha256Blocks;
-
 /// What each column of the body is to become.
 struct VectorColumn {
   enum class Use { skip, value, stamp } use = Use::skip;
@@ -33,13 +31,11 @@ inline constexpr std::size_t kVectorPadding = 64;  ///< readable bytes that must
 /// empty field, a quote, a word, a value that does not fit, another line end than `crlf` says.
 /// Looks at no more text than `max_rows` need. Numbers are rounded correctly, the same bits as
 /// std::from_chars. `scratch` is reused between calls. On a processor without AVX2 no row is taken.
-/// Where `hash_blocks` is given, some of its blocks are hashed on the way.
 VectorRows parse_vector_rows(std::string_view text,
                              char delimiter,
                              bool crlf,
                              std::span<const VectorColumn> columns,
                              std::size_t max_rows,
-                             std::vector<std::uint32_t>& scratch,
-                             Sha256Blocks* hash_blocks = nullptr);
+                             std::vector<std::uint32_t>& scratch);
 
 }  // namespace libchar

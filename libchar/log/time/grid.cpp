@@ -40,11 +40,60 @@ LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
 
 }  // namespace
 
+void GridOutput::begin(const LogInfo& so_far) {
+  staging_.resize(so_far.channels.size());
+  sink_.begin(so_far);
+}
+
+void GridOutput::rows(const RowBlock& block, std::size_t from, std::size_t to) {
+  if (from >= to) return;
+  const std::size_t rows = to - from;
+  if (rows >= 1024) {
+    flush();
+    std::vector<const double*> channels;
+    for (const auto& column : block.columns) channels.push_back(column.data() + from);
+    deliver(channels, rows);
+    return;
+  }
+  for (std::size_t c = 0; c < staging_.size(); ++c) {
+    staging_[c].resize(staged_);
+    staging_[c].insert(staging_[c].end(),
+                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
+                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
+  }
+  staged_ += rows;
+  if (staged_ >= kStaging) flush();
+}
+
+void GridOutput::missing(std::uint64_t count) {
+  while (count > 0) {
+    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, kStaging));
+    staged_ += n;
+    for (auto& column : staging_) column.resize(staged_, kMissing);
+    if (staged_ >= kStaging) flush();
+    count -= n;
+  }
+}
+
+void GridOutput::flush() {
+  if (staged_ == 0) return;
+  std::vector<const double*> channels;
+  for (const auto& column : staging_) channels.push_back(column.data());
+  deliver(channels, staged_);
+  staged_ = 0;
+  for (auto& column : staging_) column.clear();
+}
+
+void GridOutput::deliver(const std::vector<const double*>& channels, std::size_t rows) {
+  sink_.block({delivered_, rows, channels});
+  delivered_ += rows;
+}
+
 TimeGrid::TimeGrid(const RowSource& source,
                    const ReadOptions& options,
                    BlockSink& sink,
                    Warnings& warnings)
-    : source_(source), options_(options), sink_(sink), warnings_(warnings) {
+    : source_(source), options_(options), output_(sink), warnings_(warnings) {
   const auto instant = [](const std::optional<double>& s,
                           std::int64_t otherwise,
                           const char* name) {
@@ -53,9 +102,9 @@ TimeGrid::TimeGrid(const RowSource& source,
       throw Error({ErrorKind::usage, "E0201", name, "is not a time in seconds", shortest(*s), ""});
     return static_cast<std::int64_t>(std::llround(*s * 1e9));
   };
-  from_ns_ = instant(options.from_s, 0, "`from_s`");
-  to_ns_ = instant(options.to_s, INT64_MAX, "`to_s`");
-  if (to_ns_ <= from_ns_)
+  window_.from_ns = instant(options.from_s, 0, "`from_s`");
+  window_.to_ns = instant(options.to_s, INT64_MAX, "`to_s`");
+  if (window_.to_ns <= window_.from_ns)
     throw Error({ErrorKind::usage,
                  "E0201",
                  "`to_s`",
@@ -65,10 +114,10 @@ TimeGrid::TimeGrid(const RowSource& source,
 }
 
 bool TimeGrid::push(RowBlock& block) {
-  if (rows_ == 0) stamped_ = !block.time_ns.empty();
+  if (counts_.rows == 0) stamped_ = !block.time_ns.empty();
   Pending item;
-  item.rows_before = rows_;
-  rows_ += block.rows;
+  item.rows_before = counts_.rows;
+  counts_.rows += block.rows;
   waiting_ += block.rows;
   std::swap(item.block, block);
   if (!spare_.empty()) {
@@ -77,7 +126,7 @@ bool TimeGrid::push(RowBlock& block) {
   }
   pending_.push_back(std::move(item));
   process(false);
-  return !window_over_;
+  return !window_.over;
 }
 
 void TimeGrid::begin() {
@@ -86,17 +135,16 @@ void TimeGrid::begin() {
   LogInfo so_far = source_.info();
   if (stamped_) {
     so_far.time.from_stamps = true;
-    so_far.time.rate_hz = dt_ > 0 ? 1e9 / dt_ : 0;
+    so_far.time.rate_hz = step_.ns > 0 ? 1e9 / step_.ns : 0;
   } else if (options_.rate_hz) {
     so_far.time.rate_hz = *options_.rate_hz;
   }
-  staging_.resize(so_far.channels.size());
-  sink_.begin(so_far);
+  output_.begin(so_far);
 }
 
 void TimeGrid::process(bool end) {
   if (!stamped_) {
-    while (!pending_.empty() && !window_over_) {
+    while (!pending_.empty() && !window_.over) {
       without_stamps(pending_.front());
       spare_.push_back(std::move(pending_.front().block));
       pending_.pop_front();
@@ -110,7 +158,7 @@ void TimeGrid::process(bool end) {
     learn();
   }
   const std::size_t ahead = end ? 0 : kRowsAhead;
-  while (waiting_ > ahead && !window_over_) {
+  while (waiting_ > ahead && !window_.over) {
     Pending& front = pending_.front();
     const std::size_t count =
         std::min<std::size_t>(front.block.rows - front.done, waiting_ - ahead);
@@ -132,12 +180,13 @@ void TimeGrid::learn() {
     for (std::size_t i = 0; i < item.block.rows && stamps.size() < kLearn; ++i)
       stamps.push_back(checked(item, i, item.block.time_ns[i]));
   const FirstInterval found = first_interval(stamps, options_.rate_hz);
-  dt_ = found.ns;
-  coarse_ = found.pattern != StampPattern::steps;
-  limit_ = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
-  const auto whole = static_cast<std::int64_t>(std::min(dt_, 9e18));
-  least_ = std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
-  if (dt_ == 0 && stamps.size() > 1) {
+  step_.ns = found.ns;
+  step_.coarse = found.pattern != StampPattern::steps;
+  step_.longest = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
+  const auto whole = static_cast<std::int64_t>(std::min(step_.ns, 9e18));
+  step_.shortest =
+      std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
+  if (step_.ns == 0 && stamps.size() > 1) {
     const Pending* item = &pending_.front();
     std::size_t row = 1;
     if (item->block.rows < 2) {
@@ -208,22 +257,23 @@ void TimeGrid::process_rows(Pending& front, std::size_t count) {
       break;
     }
   }
-  emit_rows(front.block, std::min(run, stop), stop);
+  output_.rows(front.block, std::min(run, stop), stop);
 }
 
 /// False, and nothing is taken, when one of the rows needs a decision.
 bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
-  if (!have_last_ || wrap_ != 0 || same_ratio_ != 0) return false;
-  if (!steps_between(last_, time, n, least_, limit_)) return false;
+  if (!last_.any || last_.wrap != 0 || odd_.times != 0) return false;
+  if (!steps_between(last_.stamp, time, n, step_.shortest, step_.longest)) return false;
   // They rise: the last is the furthest.
-  if (time[n - 1] >= kMostNs || time[n - 1] - first_stamp_ > kMostNs) return false;
-  if (time[0] - first_stamp_ < from_ns_ || time[n - 1] - first_stamp_ >= to_ns_) return false;
-  dropped_in_a_row_ = 0;
-  sketch_.add_run(index_ + 1, time, n);
-  index_ += static_cast<std::int64_t>(n);
-  raw_last_ = last_ = time[n - 1];
+  if (time[n - 1] >= kMostNs || time[n - 1] - last_.first > kMostNs) return false;
+  if (time[0] - last_.first < window_.from_ns || time[n - 1] - last_.first >= window_.to_ns)
+    return false;
+  backward_.in_a_row = 0;
+  sketch_.add_run(last_.index + 1, time, n);
+  last_.index += static_cast<std::int64_t>(n);
+  last_.as_read = last_.stamp = time[n - 1];
   if (!start_ns_) start_ns_ = time[0];
-  used_ += n;
+  counts_.used += n;
   return true;
 }
 
@@ -234,37 +284,37 @@ bool TimeGrid::take_one_by_one(
   const std::int64_t* const time = front.block.time_ns.data();
   for (std::size_t i = from; i < to; ++i) {
     std::int64_t stamp = 0;
-    if (__builtin_add_overflow(time[i], wrap_, &stamp)) stamp = INT64_MAX;
+    if (__builtin_add_overflow(time[i], last_.wrap, &stamp)) stamp = INT64_MAX;
     stamp = checked(front, i, stamp);
-    const std::int64_t step = have_last_ ? stamp - last_ : 0;
-    const bool regular = step > 0 && step <= limit_;
+    const std::int64_t step = last_.any ? stamp - last_.stamp : 0;
+    const bool regular = step > 0 && step <= step_.longest;
     if (!regular) {
-      emit_rows(front.block, run, i);
+      output_.rows(front.block, run, i);
       run = i;
       if (decide(front, i, stamp, ahead - (i - from)) == Verdict::drop) {
-        ++dropped_;
+        ++counts_.dropped;
         run = i + 1;
         continue;
       }
-    } else if (!coarse_ && (same_ratio_ != 0 || step < least_)) {
-      watch_rate(front, i, static_cast<double>(step) / dt_);
+    } else if (!step_.coarse && (odd_.times != 0 || step < step_.shortest)) {
+      watch_rate(front, i, static_cast<double>(step) / step_.ns);
     }
-    dropped_in_a_row_ = 0;
-    ++index_;
-    raw_last_ = time[i] + wrap_;
-    last_ = stamp;
-    have_last_ = true;
-    sketch_.add(index_, stamp);
-    if (stamp - first_stamp_ < from_ns_) {
-      ++outside_;
+    backward_.in_a_row = 0;
+    ++last_.index;
+    last_.as_read = time[i] + last_.wrap;
+    last_.stamp = stamp;
+    last_.any = true;
+    sketch_.add(last_.index, stamp);
+    if (stamp - last_.first < window_.from_ns) {
+      ++counts_.outside;
       run = i + 1;
-    } else if (stamp - first_stamp_ >= to_ns_) {
-      emit_rows(front.block, run, i);
-      window_over_ = true;
+    } else if (stamp - last_.first >= window_.to_ns) {
+      output_.rows(front.block, run, i);
+      window_.over = true;
       return false;
     } else {
       if (!start_ns_) start_ns_ = stamp;
-      ++used_;
+      ++counts_.used;
     }
   }
   return true;
@@ -288,73 +338,26 @@ void TimeGrid::without_stamps(Pending& front) {
     };
     const double base = static_cast<double>(front.rows_before),
                  rows = static_cast<double>(front.block.rows);
-    from = static_cast<std::size_t>(std::clamp(grid(from_ns_) - base, 0.0, rows));
-    to = to_ns_ == INT64_MAX ? front.block.rows
-                             : static_cast<std::size_t>(std::clamp(grid(to_ns_) - base, 0.0, rows));
-    window_over_ = to < front.block.rows;
+    from = static_cast<std::size_t>(std::clamp(grid(window_.from_ns) - base, 0.0, rows));
+    to = window_.to_ns == INT64_MAX
+             ? front.block.rows
+             : static_cast<std::size_t>(std::clamp(grid(window_.to_ns) - base, 0.0, rows));
+    window_.over = to < front.block.rows;
   }
   const std::size_t inside = to > from ? to - from : 0;
-  used_ += inside;
-  if (!window_over_) outside_ += front.block.rows - inside;
-  emit_rows(front.block, from, to);
-}
-
-void TimeGrid::emit_rows(const RowBlock& block, std::size_t from, std::size_t to) {
-  if (from >= to) return;
-  const std::size_t rows = to - from;
-  if (rows >= 1024) {
-    flush();
-    std::vector<const double*> channels;
-    for (const auto& column : block.columns) channels.push_back(column.data() + from);
-    deliver(channels, rows);
-    return;
-  }
-  for (std::size_t c = 0; c < staging_.size(); ++c) {
-    staging_[c].resize(staged_);
-    staging_[c].insert(staging_[c].end(),
-                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
-                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
-  }
-  staged_ += rows;
-  if (staged_ >= kStaging) flush();
-}
-
-void TimeGrid::emit_missing(std::uint64_t count) {
-  while (count > 0) {
-    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, kStaging));
-    staged_ += n;
-    for (auto& column : staging_) column.resize(staged_, kMissing);
-    if (staged_ >= kStaging) flush();
-    count -= n;
-  }
-}
-
-void TimeGrid::flush() {
-  if (staged_ == 0) return;
-  std::vector<const double*> channels;
-  for (const auto& column : staging_) channels.push_back(column.data());
-  deliver(channels, staged_);
-  staged_ = 0;
-  for (auto& column : staging_) column.clear();
-}
-
-void TimeGrid::deliver(const std::vector<const double*>& channels, std::size_t rows) {
-  SampleBlock block;
-  block.first = delivered_;
-  block.rows = rows;
-  block.channels = channels;
-  delivered_ += rows;
-  sink_.block(block);
+  counts_.used += inside;
+  if (!window_.over) counts_.outside += front.block.rows - inside;
+  output_.rows(front.block, from, to);
 }
 
 // The rate that most of the log keeps, unless rows over time contradict it.
 double TimeGrid::even_interval() {
-  const double usual = coarse_ ? sketch_.line_ns() : sketch_.interval_ns();
-  const double stamped = static_cast<double>(last_ - first_stamp_);
-  const double off = std::abs(static_cast<double>(index_) * usual - stamped);
-  if (index_ <= 0 || off <= std::max(0.01 * stamped, 2.0 * static_cast<double>(limit_)))
+  const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
+  const double stamped = static_cast<double>(last_.stamp - last_.first);
+  const double off = std::abs(static_cast<double>(last_.index) * usual - stamped);
+  if (last_.index <= 0 || off <= std::max(0.01 * stamped, 2.0 * static_cast<double>(step_.longest)))
     return usual;
-  const double spanned = stamped / static_cast<double>(index_);
+  const double spanned = stamped / static_cast<double>(last_.index);
   warnings_.add("uneven_sampling",
                 fmt::format("long stretches of the log keep {:.5g} Hz, rows over time are {:.5g} "
                             "Hz, which is used: the sampling is uneven, and times on the axes are "
@@ -367,16 +370,17 @@ double TimeGrid::even_interval() {
 void TimeGrid::finish(LogInfo& info) {
   process(true);
   begin();
-  flush();
+  output_.flush();
   // What stands behind the window was not looked at.
-  if (window_over_) outside_ = rows_ - used_ - dropped_;
-  if (rows_ != used_ + dropped_ + outside_ || delivered_ != used_ + missing_)
+  if (window_.over) counts_.outside = counts_.rows - counts_.used - counts_.dropped;
+  if (counts_.rows != counts_.used + counts_.dropped + counts_.outside ||
+      output_.delivered() != counts_.used + counts_.missing)
     throw std::logic_error("time grid: the account of rows does not balance");
-  info.rows = rows_;
-  info.rows_used = used_;
-  info.rows_dropped = dropped_;
-  info.rows_outside = outside_;
-  info.samples = delivered_;
+  info.rows = counts_.rows;
+  info.rows_used = counts_.used;
+  info.rows_dropped = counts_.dropped;
+  info.rows_outside = counts_.outside;
+  info.samples = output_.delivered();
   TimeBase& time = info.time;
   if (!stamped_) {
     if (options_.rate_hz) time.rate_hz = *options_.rate_hz;
@@ -384,8 +388,8 @@ void TimeGrid::finish(LogInfo& info) {
   }
   time.from_stamps = true;
   time.start_ns = start_ns_;
-  time.gaps = gaps_;
-  time.missing_samples = missing_;
+  time.gaps = counts_.gaps;
+  time.missing_samples = counts_.missing;
   const double interval = even_interval();
   time.rate_hz = interval > 0 ? 1e9 / interval : 0;
   const auto deviation = sketch_.deviation(interval);

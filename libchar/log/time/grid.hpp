@@ -24,6 +24,25 @@ inline constexpr std::int64_t kMostNs = std::int64_t{1}
 inline constexpr std::size_t kRowsAhead =
     16;  ///< rows looked at before a late stamp is called a gap
 
+/// Samples on their way to the sink: long runs as they stand in a block, others assembled first.
+class GridOutput {
+ public:
+  explicit GridOutput(BlockSink& sink) : sink_(sink) {}
+  void begin(const LogInfo& so_far);
+  void rows(const RowBlock& block, std::size_t from, std::size_t to);
+  void missing(std::uint64_t count);
+  void flush();
+  std::uint64_t delivered() const { return delivered_; }
+
+ private:
+  void deliver(const std::vector<const double*>& channels, std::size_t rows);
+
+  BlockSink& sink_;
+  std::vector<std::vector<double>> staging_;
+  std::size_t staged_ = 0;
+  std::uint64_t delivered_ = 0;
+};
+
 /// Places rows on the grid and passes them to the sink in order.
 class TimeGrid {
  public:
@@ -37,7 +56,6 @@ class TimeGrid {
   bool push(RowBlock& block);
   /// The rest, and what is now known of the time base.
   void finish(LogInfo& info);
-  bool began() const { return began_; }
 
  private:
   struct Pending {
@@ -71,10 +89,8 @@ class TimeGrid {
                    std::int64_t stamp,
                    std::size_t ahead) const;
   void watch_rate(const Pending& front, std::size_t row, double ratio);
-  void emit_rows(const RowBlock& block, std::size_t from, std::size_t to);
-  void emit_missing(std::uint64_t count);
-  void flush();
-  void deliver(const std::vector<const double*>& channels, std::size_t rows);
+  /// A gap of so many steps, of which so many samples lie in the window.
+  void leave_missing(std::uint64_t samples, std::int64_t steps);
   std::string place(const Pending& front, std::size_t row) const;
   [[noreturn]] void fail(const Pending& front,
                          std::size_t row,
@@ -82,31 +98,53 @@ class TimeGrid {
                          std::string what,
                          std::string hint = "") const;
 
+  struct Step {
+    double ns = 0;
+    std::int64_t longest = 0, shortest = 1;  ///< regular ones
+    bool coarse = false;                     ///< stamps do not tell rows apart, one by one
+  };
+  struct Window {
+    std::int64_t from_ns = 0, to_ns = 0;  ///< after the first stamp
+    bool over = false;
+  };
+  struct Last {
+    bool any = false;
+    std::int64_t first = 0;               ///< stamp of the first row
+    std::int64_t stamp = 0, as_read = 0;  ///< unwrapped, and as the file has it
+    std::int64_t wrap = 0;                ///< what rollovers have added
+    std::int64_t index = -1;              ///< on the grid, from the first row of the file
+  };
+  struct Counts {
+    std::uint64_t rows = 0, used = 0, dropped = 0, outside = 0;  ///< rows: the sum of the others
+    std::uint64_t gaps = 0, missing = 0;
+  };
+  struct OddSteps {
+    double ratio = 1;   ///< to the regular step
+    int times = 0;      ///< in a row
+    std::string place;  ///< of the last row at the old distance
+  };
+  struct BackwardRows {
+    std::uint64_t in_a_row = 0;
+    std::string first;  ///< its place
+  };
+
   const RowSource& source_;
   const ReadOptions& options_;
-  BlockSink& sink_;
+  GridOutput output_;
   Warnings& warnings_;
   std::deque<Pending> pending_;
   std::vector<RowBlock> spare_;
-  std::uint64_t rows_ = 0, waiting_ = 0;
-  bool stamped_ = false, began_ = false, learned_ = false, window_over_ = false;
-  bool coarse_ = false;                 ///< stamps do not tell rows apart, one by one
-  double dt_ = 0;                       // ns
-  std::int64_t limit_ = 0, least_ = 1;  // longest and shortest regular step, ns
-  std::int64_t first_stamp_ = 0, last_ = 0, wrap_ = 0, from_ns_ = 0, to_ns_ = 0;
-  std::int64_t raw_last_ = 0;  // last_ as the file has it
-  bool have_last_ = false;
-  std::int64_t index_ = -1;  // grid index of the last row, from the first row of the file
-  std::uint64_t delivered_ = 0, gaps_ = 0, missing_ = 0, dropped_in_a_row_ = 0;
-  std::uint64_t used_ = 0, dropped_ = 0, outside_ = 0;  // every row of the file is one of these
-  std::string first_dropped_;  // where the present run of backward rows began
+  std::uint64_t waiting_ = 0;  ///< rows
+  bool stamped_ = false, began_ = false, learned_ = false;
+  Step step_;
+  Window window_;
+  Last last_;
+  Counts counts_;
+  OddSteps odd_;
+  BackwardRows backward_;
   std::optional<std::int64_t> start_ns_;
-  double last_ratio_ = 1;
-  int same_ratio_ = 0;
-  std::string ratio_place_, end_of_block_;
+  std::string end_of_block_;
   StampSketch sketch_;
-  std::vector<std::vector<double>> staging_;
-  std::size_t staged_ = 0;
 };
 
 }  // namespace libchar

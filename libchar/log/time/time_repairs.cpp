@@ -89,13 +89,13 @@ std::int64_t TimeGrid::checked(const Pending& front, std::size_t row, std::int64
          fmt::format("a time stamp of {} s; those within 146 years (2^62 ns) of zero are read",
                      shortest(static_cast<double>(stamp) * 1e-9)),
          "is the time unit right? `time_unit` says it");
-  if (have_last_ && (stamp - first_stamp_ > kMostNs || stamp - first_stamp_ < -kMostNs))
+  if (last_.any && (stamp - last_.first > kMostNs || stamp - last_.first < -kMostNs))
     fail(front,
          row,
          "E0316",
-         fmt::format("wild time stamp: {} s away from the first",
-                     shortest(static_cast<double>(stamp) * 1e-9 -
-                              static_cast<double>(first_stamp_) * 1e-9)),
+         fmt::format(
+             "wild time stamp: {} s away from the first",
+             shortest(static_cast<double>(stamp) * 1e-9 - static_cast<double>(last_.first) * 1e-9)),
          "remove the row, or read with `time_column` none and `rate_hz` HZ");
   return stamp;
 }
@@ -105,21 +105,21 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
                                    std::size_t row,
                                    std::int64_t& stamp,
                                    std::size_t ahead) {
-  if (!have_last_) {
-    first_stamp_ = stamp;
+  if (!last_.any) {
+    last_.first = stamp;
     return Verdict::keep;
   }
-  const std::int64_t step = stamp - last_;
+  const std::int64_t step = stamp - last_.stamp;
   if (step == 0) {
-    if (stamp < raw_last_) return backward(front, row, stamp);
-    if (coarse_) return Verdict::keep;
+    if (stamp < last_.as_read) return backward(front, row, stamp);
+    if (step_.coarse) return Verdict::keep;
     warnings_.add("duplicate_timestamp",
                   "rows with the stamp of the row before: the first is kept",
                   place(front, row));
     return Verdict::drop;
   }
   if (step < 0) return backward(front, row, stamp);
-  watch_rate(front, row, static_cast<double>(step) / dt_);
+  watch_rate(front, row, static_cast<double>(step) / step_.ns);
   const std::int64_t gap = lag(front, row, stamp, ahead);
   if (gap > 0)
     pass_gap(front, row, step, gap);
@@ -133,7 +133,7 @@ void TimeGrid::place_late_row(const Pending& front,
                               std::size_t row,
                               std::int64_t step,
                               std::int64_t& stamp) {
-  if (static_cast<double>(step) > kWildSteps * dt_)
+  if (static_cast<double>(step) > kWildSteps * step_.ns)
     fail(front,
          row,
          "E0316",
@@ -143,7 +143,7 @@ void TimeGrid::place_late_row(const Pending& front,
   warnings_.add("late_stamp",
                 "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
-  stamp = last_ + static_cast<std::int64_t>(std::llround(dt_));
+  stamp = last_.stamp + static_cast<std::int64_t>(std::llround(step_.ns));
 }
 
 // Grid points before the window's start are passed over.
@@ -161,18 +161,23 @@ void TimeGrid::pass_gap(const Pending& front,
          "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` "
          "HZ ignore "
          "the stamps");
-  ++gaps_;
   warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
-  const GridStretch inside =
-      gap_in_window(gap, static_cast<double>(last_ - first_stamp_), dt_, from_ns_, to_ns_);
-  if (inside.count() > 0) {
-    if (!start_ns_)
-      start_ns_ =
-          last_ + static_cast<std::int64_t>(std::llround(static_cast<double>(inside.first) * dt_));
-    missing_ += inside.count();
-    emit_missing(inside.count());
-  }
-  index_ += gap;
+  const GridStretch inside = gap_in_window(gap,
+                                           static_cast<double>(last_.stamp - last_.first),
+                                           step_.ns,
+                                           window_.from_ns,
+                                           window_.to_ns);
+  if (inside.count() > 0 && !start_ns_)
+    start_ns_ = last_.stamp + static_cast<std::int64_t>(
+                                  std::llround(static_cast<double>(inside.first) * step_.ns));
+  leave_missing(inside.count(), gap);
+}
+
+void TimeGrid::leave_missing(std::uint64_t samples, std::int64_t steps) {
+  ++counts_.gaps;
+  counts_.missing += samples;
+  output_.missing(samples);
+  last_.index += steps;
 }
 
 // Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
@@ -180,17 +185,18 @@ void TimeGrid::pass_gap(const Pending& front,
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
   const std::int64_t unit_ns = source_.info().time.unit_ns;
   if (unit_ns < kSecond) {
-    if (const auto rollover = find_rollover(last_ - wrap_, stamp - wrap_, unit_ns, dt_)) {
+    if (const auto rollover =
+            find_rollover(last_.stamp - last_.wrap, stamp - last_.wrap, unit_ns, step_.ns)) {
       unwrap(front, row, *rollover, stamp);
       return Verdict::keep;
     }
   }
-  if (dropped_in_a_row_ == 0) first_dropped_ = source_.where(front.block, row, front.rows_before);
-  if (++dropped_in_a_row_ >= kBackward)
+  if (backward_.in_a_row == 0) backward_.first = source_.where(front.block, row, front.rows_before);
+  if (++backward_.in_a_row >= kBackward)
     throw Error(
         {ErrorKind::input,
          "E0317",
-         first_dropped_,
+         backward_.first,
          fmt::format("the time steps back here and {} rows do not catch up (concatenated "
                      "logs, or a wild stamp before?)",
                      kBackward),
@@ -207,19 +213,16 @@ void TimeGrid::unwrap(const Pending& front,
                       std::size_t row,
                       const Rollover& rollover,
                       std::int64_t& stamp) {
-  wrap_ += rollover.range_ns;
+  last_.wrap += rollover.range_ns;
   stamp = checked(front, row, stamp + rollover.range_ns);
   warnings_.add("clock_rollover",
                 fmt::format("the {}-bit clock ran over: unwrapped", rollover.bits),
                 place(front, row));
-  if (stamp - last_ <= limit_) return;
+  if (stamp - last_.stamp <= step_.longest) return;
   const std::int64_t late =
-      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_) / dt_)) - 1;
-  if (late <= 0) return;
-  ++gaps_;
-  missing_ += static_cast<std::uint64_t>(late);
-  index_ += late;
-  emit_missing(static_cast<std::uint64_t>(late));
+      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_.stamp) / step_.ns)) -
+      1;
+  if (late > 0) leave_missing(static_cast<std::uint64_t>(late), late);
 }
 
 // Missing grid points before this row: how much later than expected it and the rows behind it are.
@@ -228,7 +231,7 @@ std::int64_t TimeGrid::lag(const Pending& front,
                            std::int64_t stamp,
                            std::size_t ahead) const {
   const auto late = [&](std::int64_t t, std::size_t j) {
-    return static_cast<double>(t - last_) / dt_ - static_cast<double>(j + 1);
+    return static_cast<double>(t - last_.stamp) / step_.ns - static_cast<double>(j + 1);
   };
   std::vector<double> lags{late(stamp, 0)};
   std::size_t item = 0, i = row;
@@ -241,8 +244,8 @@ std::int64_t TimeGrid::lag(const Pending& front,
     }
     std::int64_t t = 0, unused = 0;
     // Rows ahead are not checked yet.
-    if (__builtin_add_overflow(at->block.time_ns[i], wrap_, &t) ||
-        __builtin_sub_overflow(t, last_, &unused) || t <= last_)
+    if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
+        __builtin_sub_overflow(t, last_.stamp, &unused) || t <= last_.stamp)
       continue;
     lags.push_back(late(t, j));
   }
@@ -253,23 +256,23 @@ std::int64_t TimeGrid::lag(const Pending& front,
 void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
   const bool odd = ratio > 1.25 || ratio < 0.75;
   if (!odd) {
-    same_ratio_ = 0;
-    last_ratio_ = 1;
+    odd_.times = 0;
+    odd_.ratio = 1;
     return;
   }
-  if (same_ratio_ == 0 || std::fabs(ratio - last_ratio_) > 0.1 * last_ratio_) {
-    same_ratio_ = 0;
-    last_ratio_ = ratio;
+  if (odd_.times == 0 || std::fabs(ratio - odd_.ratio) > 0.1 * odd_.ratio) {
+    odd_.times = 0;
+    odd_.ratio = ratio;
     // The last row at the old distance.
-    ratio_place_ = row > 0 ? place(front, row - 1) : end_of_block_;
+    odd_.place = row > 0 ? place(front, row - 1) : end_of_block_;
   }
-  if (++same_ratio_ != kRateRun) return;
+  if (++odd_.times != kRateRun) return;
   warnings_.add(
       "rate_change",
       fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
-                  1e9 / dt_,
-                  1e9 / (dt_ * ratio)),
-      ratio_place_);
+                  1e9 / step_.ns,
+                  1e9 / (step_.ns * ratio)),
+      odd_.place);
 }
 
 }  // namespace libchar

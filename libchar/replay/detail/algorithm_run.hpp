@@ -65,7 +65,6 @@ class AlgorithmRun {
   /// Everything that is known without the others: scores, tracks, faults, cost.
   AlgorithmResult result(const ScoreOptions& options, double window_s) const;
   /// Weights of one input at the end of each block.
-  const std::vector<double>& track_times() const { return track_times_; }
   const std::vector<std::vector<double>>& weight_samples() const { return weight_samples_; }
   const std::vector<std::vector<double>>& variance_samples() const { return variance_samples_; }
   /// A row a sensor of the scene; zero (variances: NaN) for those it was not given.

@@ -173,7 +173,7 @@ Flicker make_flicker(const NoiseDesign& design,
                      std::uint64_t sensor) {
   DeviateStream driving({seed, sensor, Purpose::flicker});
   if (design.flicker_method == "rv-truncated-iir")
-    return {std::move(driving), level, TruncatedKasdin(1, design.truncated_taps)};
+    return {std::move(driving), level, TruncatedKasdin(design.truncated_taps)};
   const FlickerFilter filter = design_flicker(design.length);
   if (design.start == Start::zero) return {std::move(driving), level, FlickerStream(filter)};
   DeviateStream start({seed, sensor, Purpose::flicker_start});
@@ -298,12 +298,6 @@ bool NoiseGenerator::adds_after() const {
   return state_->filtered_white || (state_->quantization && state_->quantization_after);
 }
 
-bool NoiseGenerator::adds_before() const {
-  return state_->white || state_->flicker || state_->walk || state_->gauss_markov ||
-         state_->flicker_phase || state_->ramp ||
-         (state_->quantization && !state_->quantization_after);
-}
-
 void NoiseGenerator::add(std::span<double> before_low_pass, std::span<double> after_low_pass) {
   assert(before_low_pass.size() == after_low_pass.size() || !adds_after());
   State& s = *state_;
@@ -321,11 +315,6 @@ void NoiseGenerator::add(std::span<double> before_low_pass, std::span<double> af
     if (s.filtered_white) add_term(*s.filtered_white, after, scratch);
     if (s.quantization) add_term(*s.quantization, s.quantization_after ? after : before, scratch);
   }
-}
-
-double low_pass_pole(const NoiseDesign& design) {
-  if (!design.bandwidth_hz) return 0;
-  return std::exp(-2 * std::numbers::pi * *design.bandwidth_hz / design.rate_hz);
 }
 
 }  // namespace libchar

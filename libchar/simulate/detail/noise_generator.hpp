@@ -46,22 +46,18 @@ class NoiseGenerator {
   NoiseGenerator& operator=(NoiseGenerator&&) noexcept;
 
   /// Adds the next samples: to the first what the low-pass of the sensor is to filter together with
-  /// its signal, y_t = a y_{t-1} + (1 - a) u_t with a = low_pass_pole(design), to the second what
+  /// its signal, y_t = a y_{t-1} + (1 - a) u_t with a = exp(-2 pi bandwidth/rate), to the second what
   /// is added behind it. Both of one length; the second may be empty when `adds_after` is false.
   void add(std::span<double> before_low_pass, std::span<double> after_low_pass);
   /// Where the low-pass stands before the first sample, on top of the signal's own level: y_{-1},
   /// drawn so that filtered white and quantization noise are stationary from the first sample on. 0
   /// when nothing of them goes through it.
   double low_pass_start() const;
-  bool adds_before() const;
   bool adds_after() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// a = exp(-2 pi bandwidth/rate), the pole that libchar/fit/detail/low_pass.hpp fits; 0 without bandwidth.
-double low_pass_pole(const NoiseDesign& design);
 
 }  // namespace libchar
