@@ -24,7 +24,7 @@ namespace libchar {
 namespace {
 
 using Records = std::span<const DeviceRecord>;
-using GroupKey = std::tuple<std::string, std::string, std::string>;  // type, channel, unit
+using GroupKey = std::tuple<std::string, std::string, std::string>;  // type, channel, what it measures
 
 struct Side {
   Records records;
@@ -47,7 +47,7 @@ Side side_of(Records records, const std::string& name) {
   out.one_batch.resize(out.sorted.first.size());
   for (std::size_t g = 0; g < out.groups.size(); ++g)
     if (!out.groups[g].of_kind)
-      out.index[{out.groups[g].type, out.groups[g].name, out.groups[g].channel_unit}] = g;
+      out.index[{out.groups[g].type, out.groups[g].name, out.groups[g].measures}] = g;
   return out;
 }
 
@@ -105,10 +105,6 @@ std::optional<LotDifference> difference_of(
   return out;
 }
 
-std::string channel_title(const std::string& channel, const std::string& type) {
-  return type.empty() ? channel : channel + " of " + type;
-}
-
 /// "2 of 20 devices of march": of all that have the channel, whatever the quantity is found of.
 std::string known_text(const QuantityValues& values,
                        const LotGroup& group,
@@ -144,7 +140,7 @@ void note_only(const Side& here, const Side& there, const std::string& name, Fle
     if (there.index.count(key) == 0)
       out.not_compared.push_back(fmt::format("{} in {}: only in {}.",
                                              channel_title(std::get<1>(key), std::get<0>(key)),
-                                             unit_title(std::get<2>(key)),
+                                             unit_title(here.groups[g].channel_unit),
                                              name));
 }
 
@@ -252,7 +248,8 @@ std::string comparison_verdict(const FleetComparison& c) {
 }  // namespace
 
 FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& options) {
-  const Side sa = side_of(a, options.name_a), sb = side_of(b, options.name_b);
+  const Side sa = side_of(a, options.name_a);
+  Side sb = side_of(b, options.name_b);
   FleetComparison out;
   out.name_a = options.name_a;
   out.name_b = options.name_b;
@@ -262,9 +259,19 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
   bool common = false;
   for (std::size_t ga = 0; ga < sa.groups.size(); ++ga) {
     const LotGroup& group = sa.groups[ga];
-    const auto other = sb.index.find({group.type, group.name, group.channel_unit});
+    const auto other = sb.index.find({group.type, group.name, group.measures});
     if (group.of_kind || other == sb.index.end()) continue;
     common = true;
+    if (LotGroup& in_b = sb.groups[other->second]; in_b.channel_unit != group.channel_unit) {
+      out.notes.push_back(fmt::format("{} is in {} in {} and in {} in {}: compared in {}.",
+                                      channel_title(group.name, group.type),
+                                      group.channel_unit,
+                                      options.name_a,
+                                      in_b.channel_unit,
+                                      options.name_b,
+                                      group.channel_unit));
+      convert_group(group.channel_unit, in_b);
+    }
     for (const auto& row : enum_table<DeviceQuantity>) {
       if (auto d = difference_of(sa, ga, sb, other->second, row.value))
         out.differences.push_back(std::move(*d));
@@ -276,7 +283,7 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
     throw Error({ErrorKind::input,
                  "E0753",
                  "",
-                 fmt::format("{} and {} have no channel of one type, name and unit in common",
+                 fmt::format("{} and {} have no channel of one type, name and kind of unit in common",
                              options.name_a,
                              options.name_b),
                  "",

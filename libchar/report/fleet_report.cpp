@@ -17,6 +17,7 @@
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 
 namespace libchar {
 namespace {
@@ -191,15 +192,8 @@ std::string devices_part(const FleetLot& lot) {
 }
 
 std::string provenance(const FleetReport& report) {
+  if (!report.recordings.empty()) return many_provenance(report.recordings, report.command);
   std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n";
-  if (!report.inputs.empty()) {
-    out += "<div class=\"wide\"><table>\n" + table_head({"File", "SHA-256"});
-    for (const LogInfo& one : report.inputs)
-      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"hash\">{}</td></tr>\n",
-                         html_text(one.file),
-                         html_text(one.sha256));
-    out += "</tbody></table></div>\n";
-  }
   if (!report.command.empty())
     out += "<p>Command: <code>" + html_text(command_line(report.command)) + "</code></p>\n";
   return out + "</section>\n";
@@ -225,24 +219,86 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
   return out;
 }
 
-/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one.
-Json recordings_json(const FleetReport& report) {
+/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one. In the order of the lot.
+std::vector<std::string> recording_names(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  if (!has_several_recordings(lot)) return nullptr;
   std::map<std::pair<std::string_view, std::string_view>, std::size_t> count;
   const auto device = [&](std::size_t r) -> std::size_t& {
     return count[{report.records[r].type, report.records[r].device}];
   };
   for (const std::size_t r : lot.order) ++device(r);
-  Json out = Json::array();
+  std::vector<std::string> out;
   for (const std::size_t r : lot.order) {
     const DeviceRecord& one = report.records[r];
-    std::string text;
+    std::string& text = out.emplace_back();
     if (device(r) > 1) text = std::filesystem::path(one.log).filename().string();
     if (device(r) > 1 && one.temperature_c) text += ", " + celsius_text(*one.temperature_c);
-    out.push_back(json_text(text));
   }
   return out;
+}
+
+Json recordings_json(const FleetReport& report) {
+  return has_several_recordings(*report.lot) ? texts_json(recording_names(report)) : Json(nullptr);
+}
+
+/// A channel of a recording, of a lot that is small enough for a table of all.
+struct ChannelRow {
+  std::size_t recording = 0;
+  std::string beside;  ///< the device's name: which recording
+  std::string channel;
+  std::vector<std::string> cells;
+};
+
+std::vector<ChannelRow> channel_rows(const FleetReport& report) {
+  constexpr std::size_t kMost = 200;
+  const std::vector<std::size_t>& order = report.lot->order;
+  std::size_t channels = 0;
+  for (const std::size_t r : order) channels += report.records[r].channels.size();
+  if (channels > kMost) return {};
+  const std::vector<std::string> names = recording_names(report);
+  std::vector<ChannelRow> out;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (const RecordedChannel& channel : report.records[order[i]].channels)
+      out.push_back({order[i],
+                     names[i].empty() ? "" : " (" + names[i] + ")",
+                     channel.name,
+                     coefficient_cells(channel)});
+  return out;
+}
+
+std::string channels_part(const FleetReport& report) {
+  const std::vector<ChannelRow> rows = channel_rows(report);
+  if (rows.empty()) return "";
+  std::vector<std::string> heads = {"Device", "Channel"};
+  for (const std::string& head : coefficient_heads()) heads.push_back(head);
+  std::string out =
+      "<section class=\"channel\">\n<h2>Channel by channel</h2>\n<div class=\"wide\"><table "
+      "class=\"many\">\n" +
+      table_head(heads);
+  for (const ChannelRow& row : rows) {
+    out += "<tr><th scope=\"row\">" + device_link(report.records[row.recording]) +
+           html_text(row.beside) + "</th><td>" + html_text(row.channel) + "</td>";
+    for (const std::string& cell : row.cells) out += "<td class=\"n\">" + html_text(cell) + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n" + coefficient_note() + "</section>\n";
+}
+
+std::string channels_text(const FleetReport& report, std::size_t width) {
+  std::vector<std::vector<std::string>> table = {{"device", "channel", "N", "B", "K", "fit"}};
+  for (const ChannelRow& row : channel_rows(report)) {
+    table.push_back({printable(report.records[row.recording].device + row.beside),
+                     printable(row.channel)});
+    for (const std::string& cell : row.cells) table.back().push_back(printable(cell));
+  }
+  return table.size() > 1 ? "\n" + text_table(table, "  ", false, width) : "";
+}
+
+std::string curves_part(const FleetReport& report) {
+  const std::string figures = allan_figures(report);
+  return figures.empty() ? ""
+                         : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures +
+                               "</section>\n";
 }
 
 /// What the list of devices shows: columns, types and batches by number.
@@ -306,9 +362,10 @@ std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
                            quantities_part(lot) + "</section>\n" + worst_part(report) +
-                           figures_part(report) + devices_part(*report.lot) + provenance(report);
+                           channels_part(report) + curves_part(report) + figures_part(report) +
+                           devices_part(*report.lot) + provenance(report);
   PageParts parts;
-  parts.title = "A fleet of sensors";
+  parts.title = "A lot of sensors";
   parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;
   parts.script = std::string(fleet_page_js());
   parts.style =
@@ -321,7 +378,7 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   const FleetLot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
-  out += failed_text(report);
+  out += failed_text(report) + channels_text(report, width);
   std::vector<std::vector<std::string>> rows = {{}};
   for (const std::string& head : quantity_heads(lot, false)) rows[0].push_back(ascii_lower(head));
   for (const QuantityLot& q : lot.quantities) {
@@ -342,12 +399,17 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   return out;
 }
 
+std::vector<std::string> fleet_report_files(const std::filesystem::path& folder) {
+  std::vector<std::string> out;
+  for (const char* name : {"index.html", "coefficients.csv", "coefficients.npz", "lot.json"})
+    out.push_back((folder / name).string());
+  return out;
+}
+
 std::vector<std::string> write_fleet_report(const FleetReport& report,
                                             const std::filesystem::path& folder,
                                             bool force) {
-  const auto path = [&](const char* name) { return (folder / name).string(); };
-  const std::vector<std::string> paths = {
-      path("index.html"), path("coefficients.csv"), path("coefficients.npz"), path("lot.json")};
+  const std::vector<std::string> paths = fleet_report_files(folder);
   check_outputs(paths, folder, {}, force);
   std::vector<OutputFile> texts = {{paths[0], fleet_html(report)}, {paths[3], ""}};
   WholeFile csv(paths[1], force), npz(paths[2], force);

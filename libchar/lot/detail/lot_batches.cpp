@@ -1,10 +1,10 @@
-// One-way analysis of variance with known uncertainties: core/grouped_effects.hpp.
+// One-way analysis of variance with known uncertainties: grouped_effects.hpp.
 #include "libchar/lot/detail/lot_batches.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
 
 namespace libchar {
 namespace {

@@ -1,5 +1,5 @@
 // A member with several recordings has the value sum w_i y_i / sum w_i, w_i = 1 / (v_i + s²), and the variance 1 / sum w_i, where s is the
-// spread from recording to recording of one member, found over all members that have several (core/grouped_effects.hpp): a sensor that
+// spread from recording to recording of one member, found over all members that have several (detail/grouped_effects.hpp): a sensor that
 // is switched on again has another bias, and a member that was recorded once is not known better than that. Where members were recorded at
 // several temperatures their biases are those of their lines (temperature_lines.cpp).
 // A temperature coefficient is found inside a recording that has a thermometer, or as the slope of the biases of several recordings. One lot
@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/characterize/lot_figures.hpp"
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
 #include "libchar/lot/detail/member_recordings.hpp"
 #include "libchar/lot/detail/temperature_lines.hpp"
 

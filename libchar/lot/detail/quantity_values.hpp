@@ -41,7 +41,7 @@ struct QuantityEffects {
       false;  ///< also of members that do not count, by the squares of what their records show
 };
 
-/// Of those that count, where they are enough (characterize/lot_figures.hpp); of a noise term that some have and others do not, of all where
+/// Of those that count, where they are enough (lot_figures.hpp); of a noise term that some have and others do not, of all where
 /// their squares are known and a third of them was detected.
 std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms);
 

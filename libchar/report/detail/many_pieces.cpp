@@ -35,12 +35,29 @@ std::vector<std::string> coefficient_heads() {
   return {"N, white noise", "B, bias instability", "K, random walk", "Fit"};
 }
 
+std::string coefficient_note() {
+  return "<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: not "
+         "to be relied on, the recording's own report says why.</p>\n";
+}
+
 std::vector<std::string> coefficient_cells(const Channel& channel, const NoiseFit* fit) {
   if (fit == nullptr) return {"–", "–", "–", "no fit"};
   std::vector<std::string> cells;
   for (const Term term : {Term::white, Term::flicker, Term::walk})
     cells.push_back(coefficient_cell((*fit)[term], term, channel.unit));
   cells.push_back(probability_text(fit->goodness.p));
+  return cells;
+}
+
+std::vector<std::string> coefficient_cells(const RecordedChannel& channel) {
+  if (!channel.fitted) return {"–", "–", "–", "no fit"};
+  std::vector<std::string> cells;
+  for (const Term term : {Term::white, Term::flicker, Term::walk}) {
+    const RecordedValue* value = channel.find(quantity_of(term));
+    cells.push_back(coefficient_cell(
+        value == nullptr ? Coefficient{} : coefficient_of(*value), term, channel.unit));
+  }
+  cells.push_back(probability_text(channel.p));
   return cells;
 }
 
@@ -67,9 +84,7 @@ std::string recordings_table(std::span<const Characterization> recordings,
         out += "<td class=\"n\">" + html_text(cell) + "</td>";
       out += "</tr>\n";
     }
-  return out +
-         "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
-         "upper 95 % limit. ?: not to be relied on, the recording's own report says why.</p>\n";
+  return out + "</tbody></table></div>\n" + coefficient_note();
 }
 
 std::string many_provenance(std::span<const Characterization> recordings,

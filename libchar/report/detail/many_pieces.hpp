@@ -7,6 +7,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/json.hpp"
+#include "libchar/lot/device_record.hpp"
 
 namespace libchar {
 
@@ -17,8 +18,11 @@ struct Recorded {
 
 /// The coefficients of a channel for a table: white noise, bias instability, random walk, goodness of fit.
 std::vector<std::string> coefficient_cells(const Channel& channel, const NoiseFit* fit);
+std::vector<std::string> coefficient_cells(const RecordedChannel& channel);
 /// Heads of those cells.
 std::vector<std::string> coefficient_heads();
+/// What stands below a table of them.
+std::string coefficient_note();
 
 /// A row a recording × channel, with links to the reports.
 std::string recordings_table(std::span<const Characterization> recordings,

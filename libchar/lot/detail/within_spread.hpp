@@ -6,7 +6,7 @@
 #include <span>
 
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/detail/weighted.hpp"
+#include "libchar/core/weighted.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/not_known.hpp"
 

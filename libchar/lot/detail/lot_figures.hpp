@@ -7,28 +7,11 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/interval.hpp"
-#include "libchar/core/lognormal_effects.hpp"
 #include "libchar/core/random_effects.hpp"
+#include "libchar/lot/detail/lognormal_effects.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
-
-/// In the unit of the values: exp of the logarithms for coefficients.
-struct LotFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double spread =
-      0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
-  Interval spread_ci95;
-};
-
-/// Of the values, where LotFigures is of their logarithms.
-struct ArithmeticFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double sd = 0;  ///< of the devices
-  Interval sd_ci95;
-};
 
 /// Of the members that count; none for fewer than two, or under two thirds of all: what was not detected is smaller than what was.
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
@@ -65,7 +48,6 @@ std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
                                                std::size_t members);
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
-LotFigures lot_figures(const LognormalEffects& effects);
 
 /// Of logarithms whose effects these are, without a belief in their distribution but for the interval of the standard deviation.
 ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
