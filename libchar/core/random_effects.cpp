@@ -14,10 +14,10 @@
 #include <cmath>
 
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/weighted.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/weighted.hpp"
 
 namespace libchar {
 namespace {

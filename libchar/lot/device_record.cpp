@@ -204,9 +204,8 @@ Coefficient coefficient_of(const RecordedValue& v, double factor) {
     out.relative_sd = v.sd;
   }
   if (v.in_all)
-    out.in_all = {factor * factor * v.in_all->square,
-                  factor * factor * v.in_all->sd,
-                  v.in_all->skewness};
+    out.in_all = {
+        factor * factor * v.in_all->square, factor * factor * v.in_all->sd, v.in_all->skewness};
   if (!std::isnan(v.upper95)) out.upper95 = factor * v.upper95;
   return out;
 }

@@ -24,7 +24,8 @@ namespace libchar {
 namespace {
 
 using Records = std::span<const DeviceRecord>;
-using GroupKey = std::tuple<std::string, std::string, std::string>;  // type, channel, what it measures
+using GroupKey =
+    std::tuple<std::string, std::string, std::string>;  // type, channel, what it measures
 
 struct Side {
   Records records;
@@ -280,14 +281,15 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
     }
   }
   if (!common)
-    throw Error({ErrorKind::input,
-                 "E0753",
-                 "",
-                 fmt::format("{} and {} have no channel of one type, name and kind of unit in common",
-                             options.name_a,
-                             options.name_b),
-                 "",
-                 "compare lots of one type of device"});
+    throw Error(
+        {ErrorKind::input,
+         "E0753",
+         "",
+         fmt::format("{} and {} have no channel of one type, name and kind of unit in common",
+                     options.name_a,
+                     options.name_b),
+         "",
+         "compare lots of one type of device"});
   note_only(sa, sb, options.name_a, out);
   note_only(sb, sa, options.name_b, out);
   correct_for_all(out);

@@ -5,6 +5,7 @@
 
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 #include "libchar/report/fleet_report.hpp"
 
 namespace libchar {
@@ -207,10 +208,7 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
 
 Json fleet_json(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  std::vector<const LogInfo*> inputs;
-  for (const Characterization& one : report.recordings) inputs.push_back(&one.log);
-  Json out = document_head("lot", report.command, inputs);
-  if (!report.recordings.empty()) out["config"] = json_of(report.recordings[0].settings);
+  Json out = many_head("lot", report.recordings, report.command);
   out["name"] = json_text(report.name);
   out["verdict"] = json_text(lot.verdict);
   out["notes"] = texts_json(lot.notes);

@@ -26,13 +26,6 @@ namespace {
 constexpr std::size_t kMostFigures = 150;
 constexpr std::size_t kFailedOnPage = 100;
 
-std::string device_link(const DeviceRecord& r) {
-  const std::string name = html_text(r.device);
-  return r.report.empty()
-             ? name
-             : fmt::format("<a href=\"{}/report.html\">{}</a>", html_address(r.report), name);
-}
-
 std::string facts(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" +
@@ -83,7 +76,7 @@ std::string worst_table(const FleetReport& report, std::size_t first, std::size_
     const WorstDevice& w = report.lot->worst[i];
     const DeviceRecord& r = report.records[w.recording];
     out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                       device_link(r),
+                       report_link(r.device, r.report),
                        html_text(r.type),
                        html_text(batch_of(*report.lot, w.recording)),
                        reason_list(w.reasons));
@@ -191,14 +184,6 @@ std::string devices_part(const FleetLot& lot) {
          "coefficients.npz beside this page.</p>\n</section>\n";
 }
 
-std::string provenance(const FleetReport& report) {
-  if (!report.recordings.empty()) return many_provenance(report.recordings, report.command);
-  std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n";
-  if (!report.command.empty())
-    out += "<p>Command: <code>" + html_text(command_line(report.command)) + "</code></p>\n";
-  return out + "</section>\n";
-}
-
 /// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.
 Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::size_t>& order) {
   std::optional<std::string> before;
@@ -241,15 +226,8 @@ Json recordings_json(const FleetReport& report) {
   return has_several_recordings(*report.lot) ? texts_json(recording_names(report)) : Json(nullptr);
 }
 
-/// A channel of a recording, of a lot that is small enough for a table of all.
-struct ChannelRow {
-  std::size_t recording = 0;
-  std::string beside;  ///< the device's name: which recording
-  std::string channel;
-  std::vector<std::string> cells;
-};
-
-std::vector<ChannelRow> channel_rows(const FleetReport& report) {
+/// Of a lot that is small enough for a table of all its channels.
+std::vector<ChannelRow> all_channels(const FleetReport& report) {
   constexpr std::size_t kMost = 200;
   const std::vector<std::size_t>& order = report.lot->order;
   std::size_t channels = 0;
@@ -257,38 +235,26 @@ std::vector<ChannelRow> channel_rows(const FleetReport& report) {
   if (channels > kMost) return {};
   const std::vector<std::string> names = recording_names(report);
   std::vector<ChannelRow> out;
-  for (std::size_t i = 0; i < order.size(); ++i)
-    for (const RecordedChannel& channel : report.records[order[i]].channels)
-      out.push_back({order[i],
-                     names[i].empty() ? "" : " (" + names[i] + ")",
-                     channel.name,
-                     coefficient_cells(channel)});
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const DeviceRecord& record = report.records[order[i]];
+    const std::string which = names[i].empty() ? "" : " (" + names[i] + ")";
+    for (ChannelRow& row : channel_rows(record, record.device + which))
+      out.push_back(std::move(row));
+  }
   return out;
 }
 
 std::string channels_part(const FleetReport& report) {
-  const std::vector<ChannelRow> rows = channel_rows(report);
-  if (rows.empty()) return "";
-  std::vector<std::string> heads = {"Device", "Channel"};
-  for (const std::string& head : coefficient_heads()) heads.push_back(head);
-  std::string out =
-      "<section class=\"channel\">\n<h2>Channel by channel</h2>\n<div class=\"wide\"><table "
-      "class=\"many\">\n" +
-      table_head(heads);
-  for (const ChannelRow& row : rows) {
-    out += "<tr><th scope=\"row\">" + device_link(report.records[row.recording]) +
-           html_text(row.beside) + "</th><td>" + html_text(row.channel) + "</td>";
-    for (const std::string& cell : row.cells) out += "<td class=\"n\">" + html_text(cell) + "</td>";
-    out += "</tr>\n";
-  }
-  return out + "</tbody></table></div>\n" + coefficient_note() + "</section>\n";
+  const std::vector<ChannelRow> rows = all_channels(report);
+  return rows.empty() ? ""
+                      : "<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
+                            channels_table("Device", rows) + "</section>\n";
 }
 
 std::string channels_text(const FleetReport& report, std::size_t width) {
   std::vector<std::vector<std::string>> table = {{"device", "channel", "N", "B", "K", "fit"}};
-  for (const ChannelRow& row : channel_rows(report)) {
-    table.push_back({printable(report.records[row.recording].device + row.beside),
-                     printable(row.channel)});
+  for (const ChannelRow& row : all_channels(report)) {
+    table.push_back({printable(row.recording), printable(row.channel)});
     for (const std::string& cell : row.cells) table.back().push_back(printable(cell));
   }
   return table.size() > 1 ? "\n" + text_table(table, "  ", false, width) : "";
@@ -296,9 +262,9 @@ std::string channels_text(const FleetReport& report, std::size_t width) {
 
 std::string curves_part(const FleetReport& report) {
   const std::string figures = allan_figures(report);
-  return figures.empty() ? ""
-                         : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures +
-                               "</section>\n";
+  return figures.empty()
+             ? ""
+             : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures + "</section>\n";
 }
 
 /// What the list of devices shows: columns, types and batches by number.
@@ -363,7 +329,8 @@ std::string fleet_html(const FleetReport& report) {
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
                            quantities_part(lot) + "</section>\n" + worst_part(report) +
                            channels_part(report) + curves_part(report) + figures_part(report) +
-                           devices_part(*report.lot) + provenance(report);
+                           devices_part(*report.lot) +
+                           many_provenance(report.recordings, report.command);
   PageParts parts;
   parts.title = "A lot of sensors";
   parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;

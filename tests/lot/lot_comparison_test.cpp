@@ -148,6 +148,24 @@ TEST_CASE("what cannot be compared is said, and lots without a common channel ar
   CHECK_THROWS_WITH(compare_lots(a, {}), Contains("E0752") && Contains("none in B"));
 }
 
+TEST_CASE("lots in several units of one quantity are compared in that of the first") {
+  test::MadeLot made;
+  made.devices = 30;
+  const auto a = test::made_lot(made, 71);
+  auto b = test::made_lot(made, 72);
+  const FleetComparison same = compare_lots(a, b, {.name_a = "May", .name_b = "June"});
+  for (DeviceRecord& r : b) test::to_radians(r);
+  const FleetComparison c = compare_lots(a, b, {.name_a = "May", .name_b = "June"});
+  REQUIRE(c.notes.size() == 2);
+  CHECK(c.notes[0] == "gyro_x of mems is in deg/s in May and in rad/s in June: compared in deg/s.");
+  REQUIRE(c.differences.size() == same.differences.size());
+  for (std::size_t i = 0; i < c.differences.size(); ++i) {
+    CHECK(c.differences[i].unit == same.differences[i].unit);
+    CHECK(c.differences[i].change == Approx(same.differences[i].change).epsilon(1e-9));
+    CHECK(c.differences[i].p_mean == Approx(same.differences[i].p_mean).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("lots of two devices are compared as far as two devices go") {
   test::MadeLot made;
   made.devices = 2;

@@ -254,8 +254,7 @@ void foresee_reports(const CharacterizeVerb& verb) {
             {"report.html", "report.json", "curves.csv"});
   if (verb.pool) foresee(verb.folder, {"runs.html", "runs.json"});
   if (verb.lot)
-    foresee_outputs(
-        fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
+    foresee_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
 }
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {

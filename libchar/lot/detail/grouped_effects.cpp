@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/weighted.hpp"
-#include "libchar/lot/detail/within_spread.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/weighted.hpp"
+#include "libchar/lot/detail/within_spread.hpp"
 
 namespace libchar {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "libchar/lot/detail/within_spread.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/lot/detail/within_spread.hpp"
 
 namespace libchar {
 namespace {

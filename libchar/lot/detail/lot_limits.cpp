@@ -39,8 +39,8 @@ LimitFailure failure_of(const LotGroup& group, const Coefficient& found, const G
   LimitFailure out;
   const double value = found.value.value_or(limit.most);
   // Without a standard deviation the interval, which lies above the limit, says it.
-  const double sd = found.relative_sd > 0 ? found.relative_sd
-                                          : std::log(value / found.ci95.low) / kNormal95;
+  const double sd =
+      found.relative_sd > 0 ? found.relative_sd : std::log(value / found.ci95.low) / kNormal95;
   out.deviation = std::log(value / limit.most) / std::max(sd, 1e-9);
   out.p = std::erfc(out.deviation / std::sqrt(2.0)) / 2;
   const DeviceQuantity quantity = quantity_of(limit.term);
@@ -87,9 +87,9 @@ LimitCount judge_members(std::span<const DeviceRecord> records,
     const LotPlace& place = group.places[i];
     const RecordedChannel& channel = records[place.recording].channels[place.channel];
     const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-    const Coefficient found =
-        value == nullptr ? Coefficient{}
-                         : coefficient_of(*value, factor_of(group, channel, quantity));
+    const Coefficient found = value == nullptr
+                                  ? Coefficient{}
+                                  : coefficient_of(*value, factor_of(group, channel, quantity));
     const LimitStatus status = judge_limit(found, limit.most);
     const bool same = i > 0 && group.member[i] == group.member[i - 1];
     if (!same) out.status.push_back(status);

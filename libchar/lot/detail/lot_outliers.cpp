@@ -71,7 +71,8 @@ void search_outliers(const Fleet& fleet, double probability, std::vector<Statist
   for (Statistic& s : statistics) {
     const LotCounts& counts = s.lot.counts;
     s.lot.searched = shows_outliers(*s.group) && s.lot.effects &&
-                     counts.counted >= kFewestForOutliers && 3 * counts.counted >= 2 * counts.members;
+                     counts.counted >= kFewestForOutliers &&
+                     3 * counts.counted >= 2 * counts.members;
     count += s.lot.searched;
   }
   tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {

@@ -11,7 +11,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_tables.hpp"
-#include "libchar/report/detail/svg_curves.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 #include "libchar/report/detail/svg_lot.hpp"
 
 namespace libchar {
@@ -296,12 +296,14 @@ AllanFigure& figure_of(const Channel& channel,
   const std::string measures = unit                   ? std::string(name_of(unit->quantity))
                                : channel.unit.empty() ? "no unit"
                                                       : "in " + channel.unit;
-  const auto at = std::find_if(figures.begin(), figures.end(), [&](const AllanFigure& f) {
-    return f.measures == measures;
-  });
+  const auto at = std::find_if(
+      figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
   if (at != figures.end()) return *at;
-  return figures.emplace_back(AllanFigure{
-      measures, unit ? unit->symbol : channel_unit_text(channel.unit), "", unit ? unit->to_si : 1, {}});
+  return figures.emplace_back(AllanFigure{measures,
+                                          unit ? unit->symbol : channel_unit_text(channel.unit),
+                                          "",
+                                          unit ? unit->to_si : 1,
+                                          {}});
 }
 
 bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel) {
@@ -319,17 +321,11 @@ void add_curve(const FleetReport& report,
   const auto unit = find_unit(result.channel.unit);
   AllanFigure& figure = figure_of(result.channel, unit, figures);
   figure.deviation = name_of(result.allan.type);
-  const double factor = unit ? unit->to_si / figure.to_si : 1;
-  SvgCurve curve;
+  SvgCurve curve = allan_svg(result.allan, unit ? unit->to_si / figure.to_si : 1);
   curve.name = result.channel.name + " · " + report.records[recording].device;
   curve.colour = figure.curves.size();
   curve.strong = stands_out(*report.lot, recording, channel);
   if (curve.strong) curve.name += " (stands out)";
-  for (const AllanPoint& point : result.allan.points) {
-    if (!point.reliable) continue;
-    curve.x.push_back(point.tau_s);
-    curve.y.push_back(factor * point.deviation);
-  }
   figure.curves.push_back(std::move(curve));
 }
 
