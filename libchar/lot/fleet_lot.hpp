@@ -67,6 +67,8 @@ struct BatchLot {
   std::string batch;
   LotCounts counts;
   std::optional<LotFigures> figures;
+  std::size_t in_figures =
+      0;  ///< more than `counted` where those not detected or doubtful are in them
   double median = kNone;
 };
 

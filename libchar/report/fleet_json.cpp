@@ -55,6 +55,7 @@ Json batches_json(const QuantityLot& q) {
     Json one = {{"batch", json_text(b.batch)}};
     one.update(counts_json(b.counts));
     add_figures(one, b.figures);
+    one["of_all"] = b.in_figures > b.counts.counted;
     one["median"] = json_number(b.median);
     out.push_back(std::move(one));
   }

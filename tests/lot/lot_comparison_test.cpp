@@ -166,6 +166,37 @@ TEST_CASE("lots in several units of one quantity are compared in that of the fir
   }
 }
 
+TEST_CASE("two batches have the means that the report of their lot gives them") {
+  test::MadeLot made;
+  made.devices = 12;
+  auto both = test::made_lot(made, 81);
+  made.batch = "2";
+  made.prefix = "new";
+  test::append(both, test::made_lot(made, 82));
+  for (std::size_t i = 0; i < both.size(); i += 4)
+    for (RecordedChannel& c : both[i].channels) {
+      RecordedValue& k = c.values[2];
+      k.in_all = SquareInAll{0.5 * k.value * k.value, k.value * k.value, 0.5};
+      k.status = Status::not_detected;
+      k.upper95 = 2 * k.value;
+      k.value = kNone;
+    }
+  const std::span<const DeviceRecord> records = both;
+  const FleetComparison c = compare_lots(records.first(12), records.last(12));
+  const FleetLot lot = fleet_lot(both);
+  for (const QuantityLot& q : lot.quantities) {
+    if (q.of_kind) continue;
+    CAPTURE(q.group, title_of(q.quantity));
+    const LotDifference& d = find(c, q.group, q.quantity);
+    REQUIRE(q.batches.size() == 2);
+    CHECK(q.batches[0].figures->mean == d.a.mean);
+    CHECK(q.batches[1].figures->mean == d.b.mean);
+    CHECK(q.batches[1].figures->spread == d.b.spread);
+    const bool of_all = q.quantity == DeviceQuantity::random_walk;
+    CHECK(q.batches[0].in_figures == (of_all ? 12 : q.batches[0].counts.counted));
+  }
+}
+
 TEST_CASE("lots of two devices are compared as far as two devices go") {
   test::MadeLot made;
   made.devices = 2;

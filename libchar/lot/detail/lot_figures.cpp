@@ -38,7 +38,7 @@ std::vector<double> typical_variances(std::span<const double> variance,
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members) {
-  if (value.size() < 2 || 3 * value.size() < 2 * members) return std::nullopt;
+  if (!enough_count(value.size(), members)) return std::nullopt;
   return random_effects(value, variance);
 }
 

@@ -2,6 +2,7 @@
 // Mean and spread of a quantity over the members of a lot. Coefficients are compared as logarithms.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,7 +14,12 @@
 
 namespace libchar {
 
-/// Of the members that count; none for fewer than two, or under two thirds of all: what was not detected is smaller than what was.
+/// At least two, and two thirds of all: what was not detected is smaller than what was.
+inline bool enough_count(std::size_t counted, std::size_t members) {
+  return counted >= 2 && 3 * counted >= 2 * members;
+}
+
+/// Of the members that count; none where they are not enough.
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members);
@@ -40,6 +46,7 @@ std::optional<SquareInAll> square_in_lot(const Coefficient& found);
 /// The squares of a term over the members of a lot, one a member.
 struct LotSquares {
   std::vector<double> square, sd, skewness, samples;
+  std::vector<std::uint32_t> member;  ///< of the group
 };
 
 /// Of all members, also those that are not detected or doubtful, where they are more than those that count, and a third of all members counts.

@@ -72,7 +72,7 @@ void search_outliers(const Fleet& fleet, double probability, std::vector<Statist
     const LotCounts& counts = s.lot.counts;
     s.lot.searched = shows_outliers(*s.group) && s.lot.effects &&
                      counts.counted >= kFewestForOutliers &&
-                     3 * counts.counted >= 2 * counts.members;
+                     enough_count(counts.counted, counts.members);
     count += s.lot.searched;
   }
   tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {

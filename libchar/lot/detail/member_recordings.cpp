@@ -63,12 +63,13 @@ bool add_square(const RecordedChannel& channel,
   return std::abs(one->square) < kLargest && one->sd < kLargest && one->sd > 1 / kLargest;
 }
 
-void add_member(const SquareSums& sums, LotSquares& out) {
+void add_member(const SquareSums& sums, std::uint32_t member, LotSquares& out) {
   if (sums.count == 0) return;
   out.square.push_back(sums.square / sums.count);
   out.sd.push_back(std::sqrt(sums.variance) / sums.count);
   out.skewness.push_back(sums.third / std::pow(sums.variance, 1.5));
   out.samples.push_back(sums.samples);
+  out.member.push_back(member);
 }
 
 void count(Known known, LotCounts& out) {
@@ -110,7 +111,7 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
       out.member.push_back(out.members.size());
     }
     if (best == Known::counted) out.members.push_back(member);
-    if (squared) add_member(squares, out.squares);
+    if (squared) add_member(squares, member, out.squares);
     count(best, out.counts);
     count(best, out.batch_counts[batch_of[group.devices[member]]]);
   }

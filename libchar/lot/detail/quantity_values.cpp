@@ -131,6 +131,30 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
   return out;
 }
 
+QuantityValues values_of_batch(const QuantityValues& all,
+                               const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of,
+                               std::size_t batch) {
+  QuantityValues out;
+  out.counts = all.batch_counts[batch];
+  const auto take = [&](const std::vector<std::uint32_t>& member,
+                        const std::vector<double>& from,
+                        std::vector<double>& to) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (batch_of[group.devices[member[i]]] == batch) to.push_back(from[i]);
+  };
+  for (const auto values : {&QuantityValues::y,
+                            &QuantityValues::v,
+                            &QuantityValues::samples,
+                            &QuantityValues::v_low,
+                            &QuantityValues::v_high})
+    take(all.member, all.*values, out.*values);
+  for (const auto values :
+       {&LotSquares::square, &LotSquares::sd, &LotSquares::skewness, &LotSquares::samples})
+    take(all.squares.member, all.squares.*values, out.squares.*values);
+  return out;
+}
+
 namespace {
 
 std::optional<RandomEffects> effects_of_counted(const QuantityValues& values) {

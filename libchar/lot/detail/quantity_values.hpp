@@ -33,6 +33,12 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
                                const std::vector<std::size_t>& batch_of,
                                std::size_t batches);
 
+/// Those of the members of one batch.
+QuantityValues values_of_batch(const QuantityValues& all,
+                               const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of,
+                               std::size_t batch);
+
 /// Mean and spread of a quantity over its members.
 struct QuantityEffects {
   RandomEffects effects;

@@ -126,7 +126,8 @@ std::string batch_table(const QuantityLot& q) {
     const BatchLot& one = q.batches[b];
     rows += table_row(
         {batch_title(one.batch),
-         mean_text(one.figures, q.unit),
+         mean_text(one.figures, q.unit) +
+             (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
          one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
                      : "–",
          std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
@@ -236,7 +237,7 @@ std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
       "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
       "what their records show of the square, as values of a lognormal distribution. Not counted: "
-      "{}. Histogram, batches, chart and outliers are of the {} that count.",
+      "{}. Histogram, comparison of batches, chart and outliers are of the {} that count.",
       count_text(q.effects->count),
       count_text(q.counts.members),
       not_counted(q.counts),
